@@ -24,6 +24,12 @@ impl Refused {
     pub fn new(key: &str, value: impl ToString, allowed: Expected) -> Self {
         Refused { key: key.to_owned(), value: value.to_string(), allowed }
     }
+
+    /// Returns it without the value, which is a secret.
+    #[must_use]
+    pub fn masked(self) -> Self {
+        Refused { value: "**".to_owned(), ..self }
+    }
 }
 
 /// A parameter that a user can type into a form.
@@ -41,6 +47,11 @@ pub struct Entry {
     pub is_decimal: bool,
 }
 
+/// Returns the entries with these keys, in the order of the keys.
+pub fn chosen(entries: &[Entry], keys: &[&str]) -> Vec<Entry> {
+    keys.iter().filter_map(|key| entries.iter().find(|own| own.key == *key).cloned()).collect()
+}
+
 /// A group of parameters, made by `parameters!`. The default applies to those that are not given.
 pub trait Parameters: Default {
     /// The reason why a value is refused.
@@ -48,6 +59,9 @@ pub trait Parameters: Default {
 
     /// Their keys, in the order in which they are declared.
     const KEYS: &'static [&'static str];
+
+    /// The keys among them whose values are neither shown nor kept.
+    const SECRETS: &'static [&'static str];
 
     /// Sets a value; returns false if the key does not exist.
     ///
@@ -85,7 +99,8 @@ pub trait Parameters: Default {
 /// ```
 ///
 /// A line has field, type, default, key and [`Values`]; then, for a form, the text that names the entry, with an example
-/// after `like` if the default is no good example. A line without a key is a field and no parameter.
+/// after `like` where the default says little. A line without a key is a field and no parameter. The value of a key with
+/// `secret` before it is neither shown nor kept.
 #[macro_export]
 macro_rules! parameters {
     (@hint $values:expr, $default:expr) => {
@@ -94,13 +109,22 @@ macro_rules! parameters {
     (@hint $values:expr, $default:expr, $example:literal) => {
         $example.to_owned()
     };
+    (@take $key:ident, $value:ident, $values:expr) => {
+        ($values).take($key, $value)
+    };
+    (@take $key:ident, $value:ident, $values:expr, secret) => {
+        ($values).take($key, $value).map_err($crate::parameter::Refused::masked)
+    };
+    (@secret secret $key:literal) => {
+        $key
+    };
     (
         $(#[$meta:meta])*
         $vis:vis struct $name:ident: $error:ty {
             $(
                 $(#[$doc:meta])*
                 $own:vis $field:ident: $type:ty = $default:expr
-                $(, $key:literal => $values:expr $(, $label:literal $(like $example:literal)?)?)?;
+                $(, $($secret:ident)? $key:literal => $values:expr $(, $label:literal $(like $example:literal)?)?)?;
             )*
         }
     ) => {
@@ -127,11 +151,13 @@ macro_rules! parameters {
 
             const KEYS: &'static [&'static str] = $name::KEYS;
 
+            const SECRETS: &'static [&'static str] = &[$($($($crate::parameters!(@secret $secret $key),)?)?)*];
+
             fn set(&mut self, key: &str, value: &str) -> Result<bool, $error> {
                 #[allow(unused_imports, reason = "some have values of their own alone")]
                 use $crate::parameter::Values as _;
                 match key {
-                    $($($key => self.$field = ($values).take(key, value)?,)?)*
+                    $($($key => self.$field = $crate::parameters!(@take key, value, $values $(, $secret)?)?,)?)*
                     _ => return Ok(false),
                 }
                 Ok(true)

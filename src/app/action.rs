@@ -230,7 +230,8 @@ pub trait AnyOpened: Any + Send {
 impl<D: Kind> AnyOpened for Opened<D> {
     fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services) {
         let Opened { worker, url, turn, .. } = *self;
-        services.leave(worker, ClosingSessionInfo { session, about: url.to_string(), url, write: None }, Some(turn));
+        let about = services.world.kinds.shown_link(&url);
+        services.leave(worker, ClosingSessionInfo { session, about, url, write: None }, Some(turn));
     }
 
     fn into_any(self: Box<Self>) -> Box<dyn Any> {

@@ -4,6 +4,7 @@ use super::devices::DeviceKind;
 use super::tab::Tab;
 use super::tool::ToolKind;
 use super::{Text, explain};
+use crate::link::LinkUrl;
 use crate::profile::{Cause, Formats};
 
 /// The kinds of devices and the tools, in the order of the navigation.
@@ -47,6 +48,16 @@ impl Kinds {
     /// Returns why one of the kinds refuses a profile; in English, from the cause itself, if no kind knows it.
     pub(super) fn explain(self, cause: &Cause) -> Text {
         self.devices.iter().find_map(|kind| kind.explain(cause)).unwrap_or_else(|| explain::plain(cause))
+    }
+
+    /// Returns a link as it may be shown and kept: without the parameters that are secret in a link to any kind of device, as
+    /// it may have been given for another.
+    pub fn shown_link(self, url: &LinkUrl) -> String {
+        let secrets: Vec<&str> = self.devices.iter().flat_map(|kind| kind.secrets()).collect();
+        let query: Vec<String> =
+            url.query.without(&secrets).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let question = if query.is_empty() { "" } else { "?" };
+        format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
     }
 
     /// Returns the first tab of a device, or if there is none the first of a tool.

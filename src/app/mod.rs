@@ -72,6 +72,7 @@ pub use notices::{Log, Notice, Severity};
 pub use number::number;
 pub use payload::{DeviceAction, Payload, WrongKind};
 pub use pending::{EditStep, PendingEdits};
+pub(crate) use pending::{Stepped, SteppedParts};
 pub use picture::Picture;
 pub use press::{FreshKeys, PressKey};
 pub use question::Question;

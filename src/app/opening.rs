@@ -7,7 +7,7 @@ use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::given::Opener;
 use super::question::{Question, Then};
 use super::services::{Environment, JobEnd, Services};
-use super::session::{Kind, Opening, Phase, Source, without_secrets};
+use super::session::{Kind, Opening, Phase, Source};
 use super::shutdown::same_wire;
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
@@ -134,7 +134,7 @@ impl Studio {
             return self.attempt_to_open(id, url, false);
         }
         *device.phase_mut() = Phase::Lost(Text::new("session.not_asked"));
-        self.question = Some(Question::other_master(&url, Then::OpenLink(id)));
+        self.question = Some(Question::other_master(kinds.shown_link(&url), Then::OpenLink(id)));
     }
 
     /// Opens the link after the user has confirmed that no drive is on its line.
@@ -169,7 +169,7 @@ impl Studio {
         match result {
             Ok(opened) => {
                 if let Source::Link(url) = device.source() {
-                    self.settings.use_link(device.tab(), &without_secrets(url));
+                    self.settings.use_link(device.tab(), &self.services.world.kinds.shown_link(url));
                 }
                 let taken = device.connect(opened, &mut self.services);
                 self.check_kind(taken, session);

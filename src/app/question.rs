@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use super::Text;
 use super::action::RecorderOwner;
 use super::file_question::FileQuestion;
-use super::session::{Saving, without_secrets};
+use super::session::Saving;
 use super::studio::SessionId;
 use super::tab::Tab;
-use crate::link::LinkUrl;
 
 /// Question to be answered before something is done.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,10 +40,10 @@ impl Question {
         Question { text, confirm, decline: Text::new("question.stay"), then }
     }
 
-    /// Returns the question whether another master may be on the line behind a link.
-    pub(crate) fn other_master(link: &LinkUrl, then: Then) -> Self {
+    /// Returns the question whether another master may be on the line behind a link, as it may be shown.
+    pub(crate) fn other_master(link: String, then: Then) -> Self {
         Question {
-            text: Text::new("question.drive").with("link", without_secrets(link)),
+            text: Text::new("question.drive").with("link", link),
             confirm: Text::new("question.no_drive"),
             decline: Text::new("question.maybe_drive"),
             then,

@@ -40,6 +40,17 @@ pub(crate) enum LineError {
     Link(LinkError),
 }
 
+impl LineError {
+    /// Returns it as an error of the device at the line.
+    pub(crate) fn at_device<E>(self, cancelled: E, never_silent: E, link: fn(LinkError) -> E) -> E {
+        match self {
+            LineError::Cancelled => cancelled,
+            LineError::NeverSilent => never_silent,
+            LineError::Link(error) => link(error),
+        }
+    }
+}
+
 impl From<LinkError> for LineError {
     fn from(error: LinkError) -> Self {
         LineError::Link(error)

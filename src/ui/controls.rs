@@ -320,7 +320,26 @@ pub(crate) fn two_columns<C>(
     split(ui, theme, (0.5, 640.0), context, left, right);
 }
 
-/// Draws two columns of cards, the left one with this share of the width, from this width on; else one below the other.
+/// The page of an encoder: who it is and its check, beside what it says; a profile has no more than who it is and the wiring.
+pub(crate) fn encoder_page<C>(
+    ui: &mut Ui,
+    theme: &Theme,
+    context: C,
+    is_profile: bool,
+    (identity, check): (impl FnOnce(&mut Ui, &mut C), impl FnOnce(&mut Ui, &mut C)),
+    (wiring, status): (impl FnOnce(&mut Ui), impl FnOnce(&mut Ui, &mut C)),
+) {
+    let left = |ui: &mut Ui, context: &mut C| {
+        identity(ui, context);
+        if !is_profile {
+            ui.add_space(theme.space.groups);
+            check(ui, context);
+        }
+    };
+    two_columns(ui, theme, context, left, |ui, context| if is_profile { wiring(ui) } else { status(ui, context) });
+}
+
+/// Two columns of cards, the left one with this share of the width, from this width on; else one below the other.
 pub(crate) fn split<C>(
     ui: &mut Ui,
     theme: &Theme,

@@ -80,27 +80,50 @@ pub trait Planned {
     /// Kinds of change that differ in how an interrupted one is completed.
     type Kind;
 
-    /// Returns the plan to write.
-    fn plan(&self) -> &Plan<Self::Base, Self::Op>;
-
-    /// Returns the kind of change of the plan.
-    fn kind(&self) -> Self::Kind;
+    /// Returns the plan, what it is for, and the wear of the device.
+    fn head(&self) -> PlanHead<'_, Self>;
 
     /// Returns how backups and the logbook know the device.
     fn device(&self, is_virtual: bool) -> DeviceKey;
-
-    /// Returns the write cycles that the logbook of this computer has recorded for the device; `None` if the logbook cannot
-    /// be read.
-    fn cycles_seen(&self) -> Option<u64>;
-
-    /// Returns the write cycles beyond which the device counts as worn.
-    fn wear_limit(&self) -> u64;
 
     /// Returns the change of an operation, as a text for the logbook.
     fn note(&self, op: &Self::Op) -> String;
 
     /// Returns a restorable text of the previous values that the plan changes.
     fn before_image(&self) -> String;
+
+    /// Returns the plan to write.
+    fn plan(&self) -> &Plan<Self::Base, Self::Op> {
+        self.head().plan
+    }
+
+    /// Returns the kind of change of the plan.
+    fn kind(&self) -> Self::Kind {
+        self.head().kind
+    }
+
+    /// Returns the write cycles that the logbook of this computer has recorded for the device; `None` if the logbook cannot
+    /// be read.
+    fn cycles_seen(&self) -> Option<u64> {
+        self.head().cycles_seen
+    }
+
+    /// Returns the write cycles beyond which the device counts as worn.
+    fn wear_limit(&self) -> u64 {
+        self.head().wear_limit
+    }
+}
+
+/// A plan, what it is for, and the wear of the device.
+pub struct PlanHead<'p, P: Planned + ?Sized> {
+    /// What would be written.
+    pub plan: &'p Plan<P::Base, P::Op>,
+    /// The kind of change that it is for.
+    pub kind: P::Kind,
+    /// Write cycles that this computer has seen the device take; `None` where the logbook does not tell.
+    pub cycles_seen: Option<u64>,
+    /// Write cycles beyond which the device counts as worn.
+    pub wear_limit: u64,
 }
 
 /// The error of a write that did not begin or was interrupted; if the base has changed, it is the device's error.

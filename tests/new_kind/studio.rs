@@ -7,11 +7,13 @@ use egui_kittest::kittest::Queryable;
 use encoder_studio::analysis::history::Value;
 use encoder_studio::app::connect::ConnectAction as Connect;
 use encoder_studio::app::review::Stage;
+use encoder_studio::app::session::Phase;
 use encoder_studio::app::{
     Action as StudioAction, DeviceCommand, DeviceModel, Language, ReviewAction, Severity, Text, ThemeData,
 };
 use encoder_studio::devices::interbus::state::InterbusAction as Interbus;
 use encoder_studio::profile::{Body, Document};
+use encoder_studio::store::Store;
 use encoder_studio::ui::{Window, install_fonts};
 use std::time::Duration;
 
@@ -42,6 +44,53 @@ fn it_is_offered_and_connects_from_the_dialog() {
     let read = desk.encoder().read().cloned();
     assert_eq!(read, Some(NovoProfile { serial: 77, values: DELIVERED }));
     assert_eq!((desk.shown().tab(), desk.shown().name().as_str()), (Encoder::TAB, "Novo · 77"));
+}
+
+/// What is declared as secret is in no message, no name, no setting and no other file.
+#[test]
+fn a_secret_parameter_is_neither_shown_nor_kept() {
+    let mut desk = Desk::connected("?serial=77&pin=4711");
+    assert_eq!(desk.shown().place(), "sim:?serial=77");
+    assert_eq!(desk.studio.settings.links(Encoder::TAB), ["sim:?serial=77"]);
+    desk.set(1, 9);
+    desk.command(DeviceCommand::Review);
+    let Stage::Ready(plan) = desk.until_stage(|stage| matches!(stage, Stage::Ready(_))) else { panic!("no plan") };
+    desk.review(ReviewAction::Write(plan));
+    desk.until_stage(|stage| matches!(stage, Stage::Failed { .. }));
+    // A value that is refused, in the dialog; and one in a link that no kind takes.
+    for action in [Connect::Open, Connect::Device(Encoder::TAB), Connect::Use("sim:?pin=47110".to_owned())] {
+        desk.studio.act(StudioAction::Connect(action));
+    }
+    let refused = desk.studio.connect.as_ref().unwrap().url().unwrap_err();
+    assert!(refused.terminal().contains("**") && !refused.terminal().contains("4711"), "{}", refused.terminal());
+    desk.studio.begin(Some("sim:?pin=4711&colour=green".parse().unwrap()), None);
+    desk.until("it is refused", |desk| matches!(desk.shown().phase(), Phase::Lost(_)));
+    assert_eq!(desk.shown().place(), "sim:?colour=green");
+    let names: Vec<String> = desk.studio.devices().iter().map(|device| device.name()).collect();
+    let told = |text: &Text| text.terminal();
+    let log: Vec<String> = (desk.studio.services.log.notices())
+        .map(|own| format!("{:?} {}", own.about, own.texts.iter().map(told).collect::<String>()))
+        .collect();
+    assert!(!format!("{names:?} {log:?}").contains("4711"), "{names:?} {log:?}");
+    desk.until("the link is kept", |desk| {
+        let settings = std::fs::read_to_string(Store::at(desk.folder.path()).settings_path());
+        settings.is_ok_and(|text| text.contains("sim:?serial=77"))
+    });
+    let mut folders = vec![desk.folder.path().to_owned()];
+    let mut files = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            match entry.is_dir() {
+                true => folders.push(entry),
+                false => {
+                    files += 1;
+                    let text = String::from_utf8_lossy(&std::fs::read(&entry).unwrap()).into_owned();
+                    assert!(!text.contains("4711"), "{}", entry.display());
+                }
+            }
+        }
+    }
+    assert!(files > 2, "settings, a backup, the logbook");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use encoder_studio::app::connect::form::FormModel;
 use encoder_studio::app::connect::{Connect as Dialog, ConnectAction as Connect, is_missing};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, FileQuestion, Language};
-use encoder_studio::devices::biss::state::{BissForm, BissLinkKind};
+use encoder_studio::devices::biss::state::BissLinkKind;
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::{LinkForm, LinkKind, Search};
 use encoder_studio::units::{Baud, Parity};
@@ -100,10 +100,10 @@ fn what_cannot_be_is_refused_with_a_sentence() {
         (|form| (form.kind, form.host) = (LinkKind::Tcp, "moxa".to_owned()), "form.tcp_port_missing"),
         (|form| form.kind = LinkKind::Replay, "form.file_missing"),
         (|form| form.address = "60".to_owned(), "form.address"),
-        (|form| form.margin = "soon".to_owned(), "form.margin"),
-        (|form| form.turns = "4096".to_owned(), "form.turns_alone"),
-        (|form| form.rpm = "fast".to_owned(), "form.rpm"),
-        (|form| form.fault = "drop:2".to_owned(), "form.fault"),
+        (|form| form.typed.set("margin", "soon"), "form.margin"),
+        (|form| form.typed.set("turns", "4096"), "form.turns_alone"),
+        (|form| form.typed.set("rpm", "fast"), "form.rpm"),
+        (|form| form.typed.set("fault", "drop:2"), "form.fault"),
     ];
     for (slip, id) in cases {
         edit(&mut desk, slip);
@@ -177,9 +177,10 @@ fn a_link_is_typed_or_pasted() {
     }
     desk.connect(Connect::Device(crate::tabs::BISS));
     desk.connect(Connect::Use("bridge:tcp:adapter:5000?clock=2000000".to_owned()));
-    let form = dialog(&desk).form::<encoder_studio::devices::biss::state::BissForm>().unwrap().clone();
-    assert_eq!((form.kind, form.host.as_str(), form.clock.as_str()), (BissLinkKind::Bus, "adapter", "2000000"));
-    desk.connect(Connect::edit(BissForm { clock: String::new(), ..form }));
+    let mut form = dialog(&desk).form::<encoder_studio::devices::biss::state::BissForm>().unwrap().clone();
+    assert_eq!((form.kind, form.host.as_str(), form.typed.get("clock")), (BissLinkKind::Bus, "adapter", "2000000"));
+    form.typed.set("clock", "");
+    desk.connect(Connect::edit(form));
     assert_eq!(dialog(&desk).link(), "bridge:tcp:adapter:5000");
 
     desk.connect(Connect::Device(crate::tabs::HIPERFACE));

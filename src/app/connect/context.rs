@@ -67,7 +67,8 @@ impl<'a> FinderContext<'a> {
 
     /// Asks whether another master is on the line; the search continues if there is none.
     pub fn ask_other_master(&mut self, url: &LinkUrl) {
-        self.studio.question = Some(Question::other_master(url, Then::Find(self.tab)));
+        self.studio.question =
+            Some(Question::other_master(self.studio.services.world.kinds.shown_link(url), Then::Find(self.tab)));
     }
 
     /// Reports why a request was not carried out.

@@ -73,7 +73,12 @@ impl Parameters {
         self.entry(name, &entry.replace(',', "."));
     }
 
-    /// Returns the parameters without an entry that belong to the link. An entry overrides an older parameter.
+    /// Adds the parameters without an entry; those of a virtual device alone only where the link leads to one.
+    pub(crate) fn rest_of(&mut self, rest: &[Pair], is_virtual: bool, (link, of_the_virtual): (&[&str], &[&str])) {
+        self.rest(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
+    }
+
+    /// Adds the parameters without an entry that belong to the link. An entry overrides an older parameter.
     pub(crate) fn rest(&mut self, rest: &[Pair], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
             if self.0.iter().all(|(own, _)| own != name) {

@@ -43,6 +43,9 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Why it cannot.
     fn check(url: &LinkUrl) -> Result<(), OpenError>;
 
+    /// Returns the parameters of its links whose values are neither shown nor kept: those that are declared as secret.
+    fn secrets() -> Vec<&'static str>;
+
     /// Returns whether another master may be on the line behind a link: the user is then asked before anything is sent.
     fn may_have_other_master(_url: &LinkUrl) -> bool {
         false
@@ -57,7 +60,7 @@ pub trait DeviceType: DeviceModel + Sized {
 
     /// Returns a device at a link that is being opened.
     fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
-        Self::begin(Session::at_link(id, url), None, services)
+        Self::begin(Session::at_link(id, url, services.world.kinds), None, services)
     }
 
     /// Reads the tables for its profiles. Runs on the thread of a task.
@@ -107,6 +110,8 @@ pub trait DeviceKind: Sync {
     /// # Errors
     /// Why it cannot.
     fn check(&self, url: &LinkUrl) -> Result<(), OpenError>;
+    /// Returns the parameters of its links whose values are neither shown nor kept.
+    fn secrets(&self) -> Vec<&'static str>;
     /// Returns the link to the virtual device of this kind.
     fn virtual_link(&self) -> LinkUrl;
     /// Returns whether another master may be on the line behind a link.
@@ -161,6 +166,10 @@ impl<M: DeviceType> DeviceKind for KindOf<M> {
 
     fn explain(&self, cause: &Cause) -> Option<Text> {
         M::explain(cause)
+    }
+
+    fn secrets(&self) -> Vec<&'static str> {
+        M::secrets()
     }
 
     fn virtual_link(&self) -> LinkUrl {

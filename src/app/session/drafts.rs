@@ -192,7 +192,9 @@ impl<E: DraftEdits> Drafting<E> {
         match ron::from_str::<E>(&text) {
             Ok(edits) => Some(edits),
             Err(error) => {
-                let text = Text::new("session.draft_broken").with("why", error);
+                tracing::warn!("the draft of {name} cannot be read: {error}");
+                let place = error.span.start;
+                let text = Text::new("session.draft_broken").with("line", place.line).with("column", place.col);
                 services.notify(Severity::Warning, vec![text], Some(name));
                 None
             }

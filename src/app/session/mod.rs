@@ -32,6 +32,7 @@ pub use session_events::{EarlyEnd, SessionEvents};
 pub use state::SessionState;
 
 use super::action::Opened;
+use super::kinds::Kinds;
 use super::live_session::LiveSession;
 use super::services::{JobEnd, Services};
 use super::shutdown::ClosingSessionInfo;
@@ -99,18 +100,7 @@ pub(crate) struct Opening {
     pub(crate) is_sole_master: bool,
 }
 
-/// Link parameters that are neither shown nor stored, for any kind of device: the access codes of a virtual encoder.
-const SECRETS: &[&str] = &["codes"];
-
-/// Returns a link as it may be shown and kept.
-pub(in crate::app) fn without_secrets(url: &LinkUrl) -> String {
-    let query: Vec<String> =
-        url.query.without(SECRETS).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
-    let question = if query.is_empty() { "" } else { "?" };
-    format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
-}
-
-/// Open device, or profile of one: its state, its connection and its draft.
+/// A device, or profile of one: its state, its connection and its draft.
 pub struct Session<D: Kind> {
     state: SessionState,
     pub(crate) line: Option<LiveSession<D>>,
@@ -136,9 +126,11 @@ impl<D: Kind> DerefMut for Session<D> {
 }
 
 impl<D: Kind> Session<D> {
-    /// Creates a session for a link that is being opened.
-    pub fn at_link(id: SessionId, url: LinkUrl) -> Self {
-        Session::new(id, Source::Link(url), Phase::Opening)
+    /// Creates a session for a link that is being opened; `kinds` know which of its parameters are secret.
+    pub fn at_link(id: SessionId, url: LinkUrl, kinds: Kinds) -> Self {
+        let mut own = Session::new(id, Source::Link(url), Phase::Opening);
+        own.kinds = kinds;
+        own
     }
 
     pub fn in_file(id: SessionId, file: ProfileFile, document: Document) -> Self {

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::{Opening, Phase, Source, first, without_secrets};
+use super::{Opening, Phase, Source, first};
+use crate::app::kinds::Kinds;
 use crate::app::services::Services;
 use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
@@ -15,6 +16,8 @@ pub struct SessionState {
     pub id: SessionId,
     pub source: Source,
     pub phase: Phase,
+    /// They know what of a link may be shown.
+    pub(super) kinds: Kinds,
     pub(crate) opening: Option<Opening>,
     /// The title of the device, once known.
     pub title: Option<String>,
@@ -43,6 +46,7 @@ impl SessionState {
             id,
             source,
             phase,
+            kinds: Kinds::NONE,
             opening: None,
             title: None,
             trace: TraceLog::default(),
@@ -65,7 +69,7 @@ impl SessionState {
     /// Returns the source of the data, without secrets.
     pub fn place(&self) -> String {
         match &self.source {
-            Source::Link(url) => without_secrets(url),
+            Source::Link(url) => self.kinds.shown_link(url),
             Source::File { path, .. } => path.display().to_string(),
             Source::New { .. } => String::new(),
         }
@@ -79,14 +83,15 @@ impl SessionState {
             }
             (Source::Link(_) | Source::New { .. }, Some(title)) => title.clone(),
             (Source::New { suggested }, None) => suggested.display().to_string(),
-            (Source::Link(url), None) => without_secrets(url),
+            (Source::Link(url), None) => self.kinds.shown_link(url),
         }
     }
 
     /// Logs the first answer since the link was opened, with facts about the device.
     pub fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
         let Source::Link(url) = &self.source else { return };
-        let texts = std::iter::once(Text::new("log.answers").with("link", without_secrets(url))).chain(facts).collect();
+        let link = Text::new("log.answers").with("link", self.kinds.shown_link(url));
+        let texts = std::iter::once(link).chain(facts).collect();
         services.note(Severity::Note, texts, Some(&self.name()));
     }
 

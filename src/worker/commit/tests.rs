@@ -116,25 +116,13 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = char;
 
-    fn plan(&self) -> &Plan<(), Op> {
-        &self.plan
-    }
-
-    fn kind(&self) -> char {
-        'k'
+    fn head(&self) -> PlanHead<'_, Self> {
+        PlanHead { plan: &self.plan, kind: 'k', cycles_seen: self.seen, wear_limit: 10 }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
         assert!(is_virtual);
         device()
-    }
-
-    fn cycles_seen(&self) -> Option<u64> {
-        self.seen
-    }
-
-    fn wear_limit(&self) -> u64 {
-        10
     }
 
     fn note(&self, op: &Op) -> String {

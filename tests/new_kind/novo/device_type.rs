@@ -11,6 +11,7 @@ use encoder_studio::worker::{self, OpenError};
 use super::jobs::{self, Error, Job, JobError, Novo, Output};
 use super::profile::NovoProfile;
 use super::protocol::{KIND, name_of};
+use super::sim::Virtual;
 use super::state::{Encoder, TEXTS};
 
 impl Kind for Novo {
@@ -68,6 +69,9 @@ impl DeviceType for Encoder {
 
     fn check(url: &LinkUrl) -> Result<(), OpenError> {
         jobs::check(url)
+    }
+    fn secrets() -> Vec<&'static str> {
+        Virtual::SECRETS.to_vec()
     }
     fn tables(_: &Store) {}
 

@@ -2,7 +2,7 @@
 
 use encoder_studio::cli::Simulated;
 use encoder_studio::expected::Quantity;
-use encoder_studio::parameter::{Maybe, Whole};
+use encoder_studio::parameter::{Maybe, Parameters, Whole};
 use encoder_studio::parameters;
 use encoder_studio::sim::{ByteDevice, ConfigError, RPM, VirtualDevice, setting};
 use encoder_studio::units::Moment;
@@ -16,6 +16,8 @@ parameters! {
         rpm: f64 = 0.0, "rpm" => RPM;
         /// The address of a value that no longer changes.
         stuck: Option<u8> = None, "stuck" => Maybe(Whole(Quantity::Address, 0..=255));
+        /// The number that it is locked with: no value changes.
+        pin: Option<u16> = None, secret "pin" => Maybe(Whole(Quantity::Number, 0..=9999));
     }
 }
 
@@ -28,7 +30,10 @@ pub(crate) struct Virtual {
 }
 
 impl Virtual {
-    /// Creates an encoder from the query of a link.
+    /// The settings whose values are neither shown nor kept.
+    pub(crate) const SECRETS: &'static [&'static str] = Settings::SECRETS;
+
+    /// As the query of a link.
     pub(crate) fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let settings = setting::read(VirtualDevice::EncoderOf("Novo"), pairs)?;
         Ok(Virtual { settings, values: [0, 3, 0, 65535], asked: vec![], answers: vec![] })
@@ -55,7 +60,9 @@ impl ByteDevice for Virtual {
             Request::Read(address) => address,
             Request::Write(address, word) => {
                 let kept = self.values.get_mut(usize::from(address.wrapping_sub(FIRST)));
-                if let Some(value) = kept.filter(|_| self.settings.stuck != Some(address)) {
+                if let Some(value) =
+                    kept.filter(|_| self.settings.stuck != Some(address) && self.settings.pin.is_none())
+                {
                     *value = word;
                 }
                 address

@@ -3,7 +3,7 @@
 use encoder_studio::profile::{Body, Confirmed, DeviceError, Write, Written};
 use encoder_studio::store::DeviceKey;
 use encoder_studio::worker::SessionContext;
-use encoder_studio::worker::commit::{Planned, backup_of};
+use encoder_studio::worker::commit::{PlanHead, Planned, backup_of};
 
 use super::jobs::{Error, LIFE, Novo, Prepared, device_key};
 use super::profile::{NovoPlan, NovoProfile, Op};
@@ -50,19 +50,12 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = ();
 
-    fn plan(&self) -> &NovoPlan {
-        &self.plan
+    fn head(&self) -> PlanHead<'_, Self> {
+        PlanHead { plan: &self.plan, kind: (), cycles_seen: self.seen, wear_limit: LIFE }
     }
-    fn kind(&self) {}
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
         device_key(self.serial, is_virtual)
-    }
-    fn cycles_seen(&self) -> Option<u64> {
-        self.seen
-    }
-    fn wear_limit(&self) -> u64 {
-        LIFE
     }
     fn note(&self, op: &Op) -> String {
         op.name().to_owned()

@@ -179,6 +179,16 @@ impl Flow {
         adapter.ask(&self.streamed.stop()).map(drop)
     }
 
+    /// Returns whether the adapter has ended the stream itself; one that knows of none was reset, and has to be set again.
+    /// What else failed has to be tried again.
+    pub(crate) fn ended(ended: Result<(), Failure>) -> Result<bool, Failure> {
+        match ended {
+            Ok(()) => Ok(true),
+            Err(Failure::Adapter(AdapterError::Refused { .. })) => Ok(false),
+            Err(failure) => Err(failure),
+        }
+    }
+
     fn patience(&self) -> Duration {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         SILENT + period.saturating_mul(SILENT_SAMPLES)

@@ -22,6 +22,7 @@ use crate::units::{Moment, SupplyVoltage};
 
 pub use flow::Portion;
 pub use power::SupplyAfter;
+pub(crate) use power::warn_of_supply;
 pub use tap::{StreamRequest, Streaming, Tap, TapError};
 
 /// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).

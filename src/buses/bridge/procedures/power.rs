@@ -44,6 +44,13 @@ impl Power {
     }
 }
 
+/// Logs that the supply could not be left as requested: the session has ended, and no result is waited for.
+pub(crate) fn warn_of_supply(left: Result<(), impl std::fmt::Display>) {
+    if let Err(error) = left {
+        tracing::warn!("the encoder's supply could not be switched off: {error}");
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

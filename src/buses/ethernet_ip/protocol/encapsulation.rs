@@ -1,6 +1,6 @@
 //! The frame around every explicit message: command, session, status, context (reference 7).
 
-use super::fields::{Fields, PacketError};
+use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::items::{Item, Items};
 use super::status::EncapsulationStatus;
 
@@ -163,7 +163,7 @@ impl Frame {
         let length = u16::from_le_bytes([*low, *high]);
         match usize::from(length) {
             data if data <= Frame::MAX_DATA => Ok(Some(Frame::HEADER + data)),
-            _ => Err(PacketError::Value { what: WHAT, field: "length", got: length.into() }),
+            _ => Err(PacketError::Value { what: WHAT, field: PacketField::Length, got: length.into() }),
         }
     }
 
@@ -209,7 +209,7 @@ impl Frame {
         }
         match self.command {
             Command::REGISTER_SESSION => {
-                let mut fields = Fields::new("RegisterSession", &self.data);
+                let mut fields = Fields::new(Structure::RegisterSession, &self.data);
                 let body = Body::Register { version: fields.u16()?, options: fields.u16()? };
                 fields.end(body)
             }
@@ -217,7 +217,7 @@ impl Frame {
                 Ok(Body::List(Items::parse(&self.data)?))
             }
             Command::SEND_RR_DATA | Command::SEND_UNIT_DATA => {
-                let mut fields = Fields::new("SendRRData", &self.data);
+                let mut fields = Fields::new(Structure::SendRRData, &self.data);
                 let (interface, timeout_s) = (fields.u32()?, fields.u16()?);
                 Ok(Body::Data { interface, timeout_s, items: Items::parse(fields.tail())? })
             }
@@ -226,7 +226,7 @@ impl Frame {
     }
 }
 
-const WHAT: &str = "the encapsulation frame";
+const WHAT: Structure = Structure::Encapsulation;
 
 impl Body {
     /// Returns its bytes.

@@ -1,5 +1,69 @@
 //! Packets field by field.
 
+/// A structure of EtherNet/IP.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs, reason = "each has its English name")]
+pub enum Structure {
+    #[error("the configuration control")]
+    ConfigurationControl,
+    #[error("the interface configuration")]
+    InterfaceConfiguration,
+    #[error("the CIP request")]
+    CipRequest,
+    #[error("the CIP reply")]
+    CipReply,
+    #[error("RegisterSession")]
+    RegisterSession,
+    #[error("SendRRData")]
+    SendRRData,
+    #[error("the identity object")]
+    IdentityObject,
+    #[error("the identity item")]
+    IdentityItem,
+    #[error("ForwardOpen")]
+    ForwardOpen,
+    #[error("the reply to ForwardOpen")]
+    ForwardOpenReply,
+    #[error("the refusal of a connection")]
+    Refusal,
+    #[error("ForwardClose")]
+    ForwardClose,
+    #[error("the reply to ForwardClose")]
+    ForwardCloseReply,
+    #[error("the list of items")]
+    Items,
+    #[error("the null address")]
+    NullAddress,
+    #[error("the connected address")]
+    ConnectedAddress,
+    #[error("the sequenced address")]
+    SequencedAddress,
+    #[error("the socket address")]
+    SocketAddress,
+    #[error("the encapsulation frame")]
+    Encapsulation,
+    #[error("the cyclic packet")]
+    CyclicPacket,
+    #[error("the path")]
+    Path,
+}
+
+/// A field of a structure that not every value fits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs, reason = "each has its English name")]
+pub enum PacketField {
+    #[error("service")]
+    Service,
+    #[error("length")]
+    Length,
+    #[error("list of items")]
+    Items,
+    #[error("the byte before a wide number")]
+    WidePrefix,
+    #[error("connection time-out multiplier")]
+    TimeoutMultiplier,
+}
+
 /// Why bytes cannot be parsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PacketError {
@@ -7,7 +71,7 @@ pub enum PacketError {
     #[error("{what} is cut off after {got} bytes")]
     Short {
         /// The structure being parsed.
-        what: &'static str,
+        what: Structure,
         /// Bytes there were.
         got: usize,
     },
@@ -15,7 +79,7 @@ pub enum PacketError {
     #[error("{what} has {left} extra bytes")]
     Long {
         /// The structure being parsed.
-        what: &'static str,
+        what: Structure,
         /// Bytes left over.
         left: usize,
     },
@@ -23,9 +87,9 @@ pub enum PacketError {
     #[error("{what}: {field} cannot be 0x{got:X}")]
     Value {
         /// The structure being parsed.
-        what: &'static str,
+        what: Structure,
         /// Name of the field.
-        field: &'static str,
+        field: PacketField,
         /// The value.
         got: u32,
     },
@@ -34,13 +98,13 @@ pub enum PacketError {
 /// The rest of the bytes to be parsed.
 #[derive(Clone)]
 pub(super) struct Fields<'a> {
-    what: &'static str,
+    what: Structure,
     whole: usize,
     rest: &'a [u8],
 }
 
 impl<'a> Fields<'a> {
-    pub(super) fn new(what: &'static str, bytes: &'a [u8]) -> Self {
+    pub(super) fn new(what: Structure, bytes: &'a [u8]) -> Self {
         Fields { what, whole: bytes.len(), rest: bytes }
     }
 
@@ -86,7 +150,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    pub(super) fn value(&self, field: &'static str, got: impl Into<u32>) -> PacketError {
+    pub(super) fn value(&self, field: PacketField, got: impl Into<u32>) -> PacketError {
         PacketError::Value { what: self.what, field, got: got.into() }
     }
 

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use super::connection::{ConnectionTimeout, NetworkParameters, RequestTimeout, Transport};
-use super::fields::{Fields, PacketError};
+use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::message::{Reply, Request, Service};
 use super::path::Path;
 
@@ -120,13 +120,13 @@ impl ForwardOpen {
     /// # Errors
     /// [`PacketError`] if it is incomplete, too long, or its time-out is an invalid number.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("ForwardOpen", data);
+        let mut fields = Fields::new(Structure::ForwardOpen, data);
         let timeout = RequestTimeout::take(&mut fields)?;
         let (to_target_id, to_originator_id) = (fields.u32()?, fields.u32()?);
         let owner = Owner::take(&mut fields)?;
         let multiplier = fields.u8()?;
         let connection_timeout =
-            ConnectionTimeout::new(multiplier).ok_or(fields.value("connection time-out multiplier", multiplier))?;
+            ConnectionTimeout::new(multiplier).ok_or(fields.value(PacketField::TimeoutMultiplier, multiplier))?;
         // Reserved.
         fields.array::<3>()?;
         let to_target_interval_us = fields.u32()?;
@@ -172,7 +172,7 @@ impl ForwardOpened {
     /// # Errors
     /// [`PacketError`] if they are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("the reply to ForwardOpen", data);
+        let mut fields = Fields::new(Structure::ForwardOpenReply, data);
         let (to_target_id, to_originator_id) = (fields.u32()?, fields.u32()?);
         let owner = Owner::take(&mut fields)?;
         let (to_target_interval_us, to_originator_interval_us) = (fields.u32()?, fields.u32()?);
@@ -206,7 +206,7 @@ impl ForwardRefused {
     /// # Errors
     /// [`PacketError`] if they are incomplete or too long; many devices send none.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("the refusal of a connection", data);
+        let mut fields = Fields::new(Structure::Refusal, data);
         let owner = Owner::take(&mut fields)?;
         let remaining_path_words = fields.u8()?;
         // Reserved.
@@ -238,7 +238,7 @@ impl ForwardClose {
     /// # Errors
     /// [`PacketError`] if it is incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("ForwardClose", data);
+        let mut fields = Fields::new(Structure::ForwardClose, data);
         let timeout = RequestTimeout::take(&mut fields)?;
         let owner = Owner::take(&mut fields)?;
         let words = fields.u8()?;
@@ -267,7 +267,7 @@ impl ForwardClosed {
     /// # Errors
     /// [`PacketError`] if they are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("the reply to ForwardClose", data);
+        let mut fields = Fields::new(Structure::ForwardCloseReply, data);
         let owner = Owner::take(&mut fields)?;
         let application = application(&mut fields)?;
         fields.end(ForwardClosed { owner, application })

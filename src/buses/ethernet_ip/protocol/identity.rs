@@ -1,6 +1,6 @@
 //! The identity of a device: the identity object (class 1) and the item of the ListIdentity reply (`P ODVA`).
 
-use super::fields::{Fields, PacketError, push_short_text, text};
+use super::fields::{Fields, PacketError, Structure, push_short_text, text};
 use super::items::SocketAddress;
 
 /// The identity object, attributes 1 to 7.
@@ -53,7 +53,7 @@ impl Identity {
     /// # Errors
     /// [`PacketError`] if they are incomplete.
     pub fn parse_all(bytes: &[u8]) -> Result<Self, PacketError> {
-        Identity::take(&mut Fields::new("the identity object", bytes))
+        Identity::take(&mut Fields::new(Structure::IdentityObject, bytes))
     }
 
     /// Attributes 1 to 7, as Get_Attributes_All has them.
@@ -98,7 +98,7 @@ impl Identity {
 
 impl IdentityItem {
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("the identity item", bytes);
+        let mut fields = Fields::new(Structure::IdentityItem, bytes);
         let version = fields.u16()?;
         let socket = SocketAddress::parse(fields.bytes(SocketAddress::LENGTH)?)?;
         let identity = Identity::take(&mut fields)?;

@@ -1,6 +1,6 @@
 //! Packets of a cyclic connection of class 1, over UDP (reference 7).
 
-use super::fields::{Fields, PacketError};
+use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::items::{Item, Items};
 
 /// A packet.
@@ -67,14 +67,14 @@ impl IoPacket {
     /// # Errors
     /// [`PacketError`] if it is not a sequenced address and connected data, or incomplete.
     pub fn parse(bytes: &[u8], format: RealTimeFormat) -> Result<Self, PacketError> {
-        const WHAT: &str = "the cyclic packet";
+        const WHAT: Structure = Structure::CyclicPacket;
         let items = Items::parse(bytes)?;
         let (connection, sequence, data) = match items.0.as_slice() {
             [Item::SequencedAddress { connection, sequence }, Item::ConnectedData(data), ..] => {
                 (*connection, *sequence, data)
             }
             // No more than fits into a UDP packet.
-            other => return Err(PacketError::Value { what: WHAT, field: "list of items", got: other.len() as u32 }),
+            other => return Err(PacketError::Value { what: WHAT, field: PacketField::Items, got: other.len() as u32 }),
         };
         let mut fields = Fields::new(WHAT, data);
         let count = fields.u16()?;

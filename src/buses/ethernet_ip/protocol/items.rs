@@ -2,7 +2,7 @@
 
 use core::net::Ipv4Addr;
 
-use super::fields::{Fields, PacketError};
+use super::fields::{Fields, PacketError, Structure};
 use super::identity::IdentityItem;
 
 /// List of items. An address precedes its data.
@@ -68,7 +68,7 @@ impl Items {
     /// # Errors
     /// [`PacketError`] if an item is incomplete, does not have its type's length, or bytes remain.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("the list of items", bytes);
+        let mut fields = Fields::new(Structure::Items, bytes);
         let count = fields.u16()?;
         let mut items = Vec::new();
         for _ in 0..count {
@@ -129,10 +129,10 @@ impl Items {
 impl Item {
     fn parse(kind: u16, data: &[u8]) -> Result<Self, PacketError> {
         let item = match kind {
-            NULL => Fields::new("the null address", data).end(Item::Null)?,
+            NULL => Fields::new(Structure::NullAddress, data).end(Item::Null)?,
             IDENTITY => Item::Identity(IdentityItem::parse(data)?),
             CONNECTED_ADDRESS => {
-                let mut fields = Fields::new("the connected address", data);
+                let mut fields = Fields::new(Structure::ConnectedAddress, data);
                 let connection = fields.u32()?;
                 fields.end(Item::ConnectedAddress(connection))?
             }
@@ -141,7 +141,7 @@ impl Item {
             SOCKET_TO_TARGET => Item::SocketToTarget(SocketAddress::parse(data)?),
             SOCKET_TO_ORIGINATOR => Item::SocketToOriginator(SocketAddress::parse(data)?),
             SEQUENCED_ADDRESS => {
-                let mut fields = Fields::new("the sequenced address", data);
+                let mut fields = Fields::new(Structure::SequencedAddress, data);
                 let item = Item::SequencedAddress { connection: fields.u32()?, sequence: fields.u32()? };
                 fields.end(item)?
             }
@@ -179,7 +179,7 @@ impl SocketAddress {
 
     /// Parses 16 bytes; the last eight are ignored.
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("the socket address", bytes);
+        let mut fields = Fields::new(Structure::SocketAddress, bytes);
         let family = u16::from_be_bytes(fields.array()?);
         let port = u16::from_be_bytes(fields.array()?);
         let address = Ipv4Addr::from(fields.array::<4>()?);

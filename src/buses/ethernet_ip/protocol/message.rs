@@ -1,6 +1,6 @@
 //! CIP requests and their replies (reference 7).
 
-use super::fields::{Fields, PacketError};
+use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::path::{LogicalKind, Path};
 use super::status::GeneralStatus;
 
@@ -134,9 +134,9 @@ impl Request {
     /// # Errors
     /// [`PacketError`] if it is a reply, or its path is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("the CIP request", bytes);
+        let mut fields = Fields::new(Structure::CipRequest, bytes);
         let code = fields.u8()?;
-        let service = Service::new(code).ok_or(fields.value("service", code))?;
+        let service = Service::new(code).ok_or(fields.value(PacketField::Service, code))?;
         let path = Path::take(&mut fields)?;
         Ok(Request { service, path, data: fields.tail().to_vec() })
     }
@@ -166,9 +166,9 @@ impl Reply {
     /// # Errors
     /// [`PacketError`] if it is a request, or is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("the CIP reply", bytes);
+        let mut fields = Fields::new(Structure::CipReply, bytes);
         let code = fields.u8()?;
-        let service = code.checked_sub(Service::REPLY_BIT).ok_or(fields.value("service", code))?;
+        let service = code.checked_sub(Service::REPLY_BIT).ok_or(fields.value(PacketField::Service, code))?;
         // Reserved.
         fields.u8()?;
         let status = GeneralStatus::new(fields.u8()?);

@@ -32,7 +32,7 @@ pub use connection::{
     ConnectionTimeout, NetworkParameters, NetworkPriority, NetworkType, RequestTimeout, Transport, Trigger,
 };
 pub use encapsulation::{Body, Command, Frame};
-pub use fields::PacketError;
+pub use fields::{PacketError, PacketField, Structure};
 pub use forward::{ForwardClose, ForwardClosed, ForwardOpen, ForwardOpened, ForwardRefused, Owner};
 pub use identity::{Identity, IdentityItem, Revision};
 pub use io::{IoPacket, RealTimeFormat, RunIdle};

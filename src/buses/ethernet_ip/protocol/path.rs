@@ -1,7 +1,7 @@
 //! The path of a CIP request: segments of class, instance, attribute and connection point, of 8 or 16 bits (reference
 //! 7).
 
-use super::fields::{Fields, PacketError};
+use super::fields::{Fields, PacketError, PacketField, Structure};
 
 /// Path. Its segments fill whole words.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -73,7 +73,7 @@ const KINDS: [(u8, LogicalKind); 4] = [
 /// The only format of an electronic key, and its first bytes: type, format.
 const KEY: [u8; 2] = [0x34, 0x04];
 const DATA: u8 = 0x80;
-const WHAT: &str = "the path";
+const WHAT: Structure = Structure::Path;
 
 impl Path {
     /// Creates an object.
@@ -160,7 +160,7 @@ impl Segment {
         let segment = match (kind, first) {
             (Some(kind), _) if wide => match fields.u8()? {
                 0 => Segment::Logical { kind, number: fields.u16()?, width: Width::Word },
-                got => return Err(fields.value("the byte before a wide number", got)),
+                got => return Err(fields.value(PacketField::WidePrefix, got)),
             },
             (Some(kind), _) => Segment::Logical { kind, number: fields.u8()?.into(), width: Width::Byte },
             (None, first) if [first, fields.clone().u8().unwrap_or(0)] == KEY => {

@@ -57,7 +57,7 @@ impl Receiver {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Command, EncapsulationStatus};
+    use super::super::{Command, EncapsulationStatus, PacketField, Structure};
     use super::*;
     use proptest::prelude::*;
 
@@ -95,7 +95,7 @@ mod tests {
         // 65512 is one more than a frame may have.
         bytes.splice(2..4, [0xE8, 0xFF]);
         receiver.push(&bytes);
-        let broken = PacketError::Value { what: "the encapsulation frame", field: "length", got: 65512 };
+        let broken = PacketError::Value { what: Structure::Encapsulation, field: PacketField::Length, got: 65512 };
         assert_eq!(receiver.next_frame(), Err(broken));
         receiver.push(&frame(2, 0).emit());
         assert_eq!((receiver.next_frame(), receiver.pending()), (Err(broken), 0));

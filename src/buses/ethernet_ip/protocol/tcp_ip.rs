@@ -2,7 +2,7 @@
 
 use core::net::Ipv4Addr;
 
-use super::fields::{Fields, PacketError, ascii, text};
+use super::fields::{Fields, PacketError, Structure, ascii, text};
 
 /// Attribute 3; the default 0 means the stored address. Unknown bits are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -85,7 +85,7 @@ impl ConfigurationControl {
     /// # Errors
     /// [`PacketError`] if there are fewer or more.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("the configuration control", data);
+        let mut fields = Fields::new(Structure::ConfigurationControl, data);
         let word = fields.u32()?;
         fields.end(ConfigurationControl(word))
     }
@@ -127,7 +127,7 @@ impl InterfaceConfiguration {
     /// # Errors
     /// [`PacketError`] if it is incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
-        let mut fields = Fields::new("the interface configuration", data);
+        let mut fields = Fields::new(Structure::InterfaceConfiguration, data);
         let mut address = || fields.u32().map(Ipv4Addr::from);
         let (own, mask, gateway) = (address()?, address()?, address()?);
         let name_servers = [address()?, address()?];

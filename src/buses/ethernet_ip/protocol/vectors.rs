@@ -120,7 +120,7 @@ fn every_path_survives() {
     }
     assert_eq!(
         Request::parse(&bytes("0E 03 20 65 24 01")),
-        Err(PacketError::Short { what: "the CIP request", got: 6 })
+        Err(PacketError::Short { what: Structure::CipRequest, got: 6 })
     );
 }
 
@@ -195,8 +195,8 @@ fn a_connection_ends_or_is_refused() {
     assert!(extended_row(Service::GET, reply.status, 0x0106).is_none());
     let mut wrong = open().request().data;
     wrong[18] = 8;
-    let field = "connection time-out multiplier";
-    assert_eq!(ForwardOpen::parse(&wrong), Err(PacketError::Value { what: "ForwardOpen", field, got: 8 }));
+    let field = PacketField::TimeoutMultiplier;
+    assert_eq!(ForwardOpen::parse(&wrong), Err(PacketError::Value { what: Structure::ForwardOpen, field, got: 8 }));
 }
 
 /// Reference 7: the sizes of the table, bit by bit, and the variant with multicast.
@@ -251,7 +251,7 @@ fn the_published_cyclic_packets() {
     }
     assert!(RunIdle::RUN.runs() && !RunIdle::IDLE.runs());
     let short = Items(vec![Item::SequencedAddress { connection: 1, sequence: 1 }, Item::ConnectedData(vec![1, 0, 1])]);
-    let cut = Err(PacketError::Short { what: "the cyclic packet", got: 3 });
+    let cut = Err(PacketError::Short { what: Structure::CyclicPacket, got: 3 });
     assert_eq!(IoPacket::parse(&short.emit(), RealTimeFormat::Header), cut);
     let Items(items) = short;
     let turned = Items(items.into_iter().rev().collect()).emit();

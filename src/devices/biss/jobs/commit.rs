@@ -3,10 +3,10 @@
 use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WEAR_LIMIT, device_key};
 use crate::devices::biss::procedures::procedure::ProcedureProgress;
 use crate::devices::biss::procedures::write::EncoderWrite;
-use crate::devices::biss::profile::{Base, BissPlan, BissProfile, DataImage, Op, PresetSetting, Recorded};
+use crate::devices::biss::profile::{Base, BissProfile, DataImage, Op, PresetSetting, Recorded};
 use crate::profile::{Body, Unknown};
 use crate::store::DeviceKey;
-use crate::worker::commit::{Planned, backup_of, write_plan};
+use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
 use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
@@ -43,24 +43,12 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn plan(&self) -> &BissPlan {
-        &self.plan
-    }
-
-    fn kind(&self) -> ChangeKind {
-        self.kind
+    fn head(&self) -> PlanHead<'_, Self> {
+        PlanHead { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: WEAR_LIMIT }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
         device_key(&self.identity, is_virtual)
-    }
-
-    fn cycles_seen(&self) -> Option<u64> {
-        self.cycles_seen
-    }
-
-    fn wear_limit(&self) -> u64 {
-        WEAR_LIMIT
     }
 
     fn note(&self, op: &Op) -> String {

@@ -19,6 +19,7 @@ pub use job::{
 };
 pub use open::{check, open};
 
+use crate::buses::bridge::procedures::warn_of_supply;
 use crate::devices::biss::procedures::check::Wear;
 use crate::devices::biss::procedures::{
     self, Error, Identity, Master, ReadStage, Sample, Station, Unsaved, identify, procedure, read_position,
@@ -218,9 +219,7 @@ impl Device for Biss {
     }
 
     fn leave(&mut self, context: &mut SessionContext) {
-        if let Err(error) = self.master(context).leave_supply() {
-            tracing::warn!("the encoder's supply could not be switched off: {error}");
-        }
+        warn_of_supply(self.master(context).leave_supply());
     }
 }
 

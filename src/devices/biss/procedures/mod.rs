@@ -33,5 +33,5 @@ pub use memory::{
 };
 pub use position::{PositionReading, Sample, WatchedReading, read_sample, read_watched};
 pub use registers::Registers;
-pub use station::{BusParameters, FrameParameters, LineParameters, PinParameters, Station, Supply, Transport};
+pub use station::{BusParameters, FrameParameters, LineParameters, ORDERS, PinParameters, Station, Supply, Transport};
 pub use survey::{Bits, Status, Survey, read_status, survey};

@@ -19,6 +19,10 @@ use crate::parameter::{Checked, Maybe, Milliseconds, Millivolts, Parameters, Ref
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
+/// Which byte of a register's number comes first; `None`: it is probed.
+pub const ORDERS: Words<Option<ByteOrder>> =
+    Words(&[("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst))]);
+
 parameters! {
     /// Parameters of the configuration pin in a link.
     pub struct PinParameters: UrlError {
@@ -28,9 +32,7 @@ parameters! {
         /// Parity.
         pub parity: Parity = FORMAT.parity, "parity" => Parity::WORDS;
         /// Byte order of register numbers; `None`: it is detected.
-        pub order: Option<ByteOrder> = None, "order" => Words(&[
-            ("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst)),
-        ]);
+        pub order: Option<ByteOrder> = None, "order" => ORDERS;
         /// Whether the line echoes.
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
         /// Time limit of a reply, besides the time of its bytes and the margin.

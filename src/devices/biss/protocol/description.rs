@@ -1,7 +1,9 @@
 //! The description of an encoder: a file that anyone can write (RON, `assets/devices/biss/`), with the frame, the
 //! registers, the areas of plain data and the procedures of one kind of encoder. It is data: nothing is opened here.
 
+mod codes;
 mod file;
+mod flaw;
 mod german;
 mod name;
 mod register;
@@ -10,6 +12,7 @@ mod tests;
 
 use std::fmt;
 
+pub use flaw::{Claim, Flaw};
 pub use name::Name;
 pub use register::{Access, Area, Decoded, Decoding, Register, Role};
 
@@ -93,7 +96,7 @@ pub struct DescriptionError {
     /// Column, counted from 1.
     pub column: usize,
     /// The problem.
-    pub problem: String,
+    pub problem: Flaw,
 }
 
 /// All known kinds of encoders, the most specific first.
@@ -107,11 +110,11 @@ impl Description {
     /// Returns line and column: text that is not RON, unknown or missing keys, numbers outside their range, overlapping
     /// registers.
     pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionError> {
-        file::parse(text).map_err(|error| DescriptionError {
+        file::parse(text).map_err(|(place, what)| DescriptionError {
             file: file.to_owned(),
-            line: error.span.start.line,
-            column: error.span.start.col,
-            problem: error.code.to_string(),
+            line: place.line,
+            column: place.col,
+            problem: what,
         })
     }
 

@@ -28,8 +28,8 @@ pub use control::{
 };
 pub use crc::{Crc, CrcError};
 pub use description::{
-    Access, Area, Decoded, Decoding, Description, DescriptionError, Descriptions, Identity, Lock, Mismatch, Name,
-    Procedure, Register, Role,
+    Access, Area, Claim, Decoded, Decoding, Description, DescriptionError, Descriptions, Flaw, Identity, Lock,
+    Mismatch, Name, Procedure, Register, Role,
 };
 pub use eds::{EDS_TICK, Eds, EdsBank, EdsError, EdsField, EdsValue, Feedback, layout as eds_layout};
 pub use line::{Cycle, CycleError};

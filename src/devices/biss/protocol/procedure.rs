@@ -4,7 +4,7 @@
 use std::fmt;
 
 /// A procedure that leads an encoder through a device mode.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProcedureKind {
     /// Manual 6.3.
@@ -42,6 +42,9 @@ macro_rules! codes {
         }
 
         impl $name {
+            /// Every code of the manual with its name, in the manual's order.
+            pub const TABLE: &'static [(u8, &'static str)] = &[$(($code, $text),)*];
+
             /// Returns the state for the register's value.
             pub const fn from_byte(byte: u8) -> Self {
                 match byte {
@@ -299,6 +302,9 @@ impl PulseVoltage {
 }
 
 impl WiegandResult {
+    /// Revolutions in each direction that its pulses are of (manual 6.3).
+    pub const REVOLUTIONS: u16 = 515;
+
     /// Parses the registers in the order of their addresses.
     pub fn parse(bytes: [u8; 4]) -> Self {
         let [average_cw, lowest_cw, average_ccw, lowest_ccw] = bytes.map(PulseVoltage);

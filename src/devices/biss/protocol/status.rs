@@ -125,6 +125,16 @@ impl DeviceMode {
     /// Preset.
     pub const PRESET: DeviceMode = DeviceMode(0x07);
 
+    /// Every mode of the manual with its name, in the manual's order.
+    pub const TABLE: &'static [(u8, &'static str)] = &[
+        (DeviceMode::OPERATION.0, "operation"),
+        (DeviceMode::CALIBRATION.0, "calibration"),
+        (DeviceMode::WIEGAND_TEST.0, "Wiegand sensor test"),
+        (DeviceMode::DATA_WRITE.0, "OEM/EDS motor data write"),
+        (DeviceMode::FILTER.0, "filter selection"),
+        (DeviceMode::PRESET.0, "preset"),
+    ];
+
     /// Opens the mode register, written to 6Bh.
     pub const PASSWORD: u8 = 0x2A;
 
@@ -139,22 +149,14 @@ impl DeviceMode {
     }
 
     /// Returns whether the manual knows this mode.
-    pub const fn is_known(self) -> bool {
-        matches!(self.0, 0x00 | 0x01 | 0x02 | 0x04 | 0x05 | 0x07)
+    pub fn is_known(self) -> bool {
+        Self::TABLE.iter().any(|(byte, _)| *byte == self.0)
     }
 }
 
 impl fmt::Display for DeviceMode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = match *self {
-            DeviceMode::OPERATION => "operation",
-            DeviceMode::CALIBRATION => "calibration",
-            DeviceMode::WIEGAND_TEST => "Wiegand sensor test",
-            DeviceMode::DATA_WRITE => "OEM/EDS motor data write",
-            DeviceMode::FILTER => "filter selection",
-            DeviceMode::PRESET => "preset",
-            DeviceMode(_) => "unknown mode",
-        };
+        let name = Self::TABLE.iter().find(|(byte, _)| *byte == self.0).map_or("unknown mode", |(_, name)| name);
         write!(f, "0x{:02X} {name}", self.0)
     }
 }

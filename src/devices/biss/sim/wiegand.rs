@@ -2,7 +2,7 @@
 //! does not know which direction is which; chosen here (`U`): it notices that the second run turns in the same direction as
 //! the first, and a sensor without pulses fails with code 01h.
 
-use crate::devices::biss::protocol::{WiegandCommand, WiegandStatus};
+use crate::devices::biss::protocol::{WiegandCommand, WiegandResult, WiegandStatus};
 use crate::units::Moment;
 
 /// The pulses of the sensor, in tenths of a volt.
@@ -29,7 +29,7 @@ pub(super) struct Wiegand {
 }
 
 impl Wiegand {
-    const REVOLUTIONS: f64 = 515.0;
+    const REVOLUTIONS: f64 = WiegandResult::REVOLUTIONS as f64;
     const NO_PULSES: u8 = 0x01;
 
     pub(super) fn new() -> Self {

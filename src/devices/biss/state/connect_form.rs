@@ -2,18 +2,20 @@
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
-use crate::app::connect::parameters::{Parameters, without_entry};
-use crate::app::connect::target::{adapter_in_network, checked, entered, filled, host_and_port, parted, to_adapter};
+use crate::app::connect::parameters::{Parameters, Typed, without_entry};
+use crate::app::connect::target::{adapter_in_network, checked, entered, host_and_port, parted, to_adapter};
 use crate::bits::ByteOrder;
 use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol::FORMAT;
 use crate::devices::biss::jobs::check;
-use crate::devices::biss::procedures::{Echo, Transport};
+use crate::devices::biss::procedures::{
+    BusParameters, Echo, FrameParameters, LineParameters, ORDERS, PinParameters, Transport,
+};
 use crate::devices::biss::sim;
 use crate::kinds::at_adapter;
 use crate::link::{LinkUrl, Scheme};
-use crate::parameter::Values;
+use crate::parameter::{Entry, Parameters as _, Values, chosen};
 use crate::units::Parity;
 
 /// Kind of connection to the encoder.
@@ -46,30 +48,16 @@ pub struct BissForm {
     pub tcp_port: String,
     /// The recording.
     pub file: String,
-    /// Baud rate of the configuration pin; empty: 115200.
-    pub baud: String,
     /// Parity on the configuration pin.
     pub parity: Parity,
     /// Byte order of register numbers on the configuration pin; `None`: detect it.
     pub order: Option<ByteOrder>,
     /// Whether the line echoes; unknown: detect it.
     pub echo: Echo,
-    /// The clock on the bus in hertz.
-    pub clock: String,
     /// The adapter leaves the encoder's supply on at the end.
     pub leave_supply: bool,
-    /// Turn bits of an encoder that does not report its frame.
-    pub turns: String,
-    /// Bits of steps of such an encoder.
-    pub steps: String,
-    /// The polynomial of its checksum; empty: the usual one.
-    pub crc: String,
-    /// Milliseconds that a reply may come later than usual.
-    pub margin: String,
-    /// The virtual encoder's speed in revolutions per minute.
-    pub rpm: String,
-    /// Injected faults.
-    pub fault: String,
+    /// Text of other parameters.
+    pub typed: Typed,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
 }
@@ -88,18 +76,11 @@ impl Default for BissForm {
             host: none(),
             tcp_port: none(),
             file: none(),
-            baud: none(),
             parity: FORMAT.parity,
             order: None,
             echo: Echo::Unknown,
-            clock: none(),
             leave_supply: false,
-            turns: none(),
-            steps: none(),
-            crc: none(),
-            margin: none(),
-            rpm: none(),
-            fault: none(),
+            typed: Typed::default(),
             rest: Vec::new(),
         }
     }
@@ -161,45 +142,48 @@ impl BissForm {
             self.leave_supply = value == SupplyAfter::LEFT_ON.1;
             return self.leave_supply;
         }
-        let is_virtual = self.kind == BissLinkKind::Virtual;
-        let entry = match name {
-            "mt" => &mut self.turns,
-            "st" => &mut self.steps,
-            "crc" => &mut self.crc,
-            "margin" => &mut self.margin,
-            "clock" => &mut self.clock,
-            "baud" => &mut self.baud,
-            "rpm" if is_virtual => &mut self.rpm,
-            "fault" if is_virtual => &mut self.fault,
+        match name {
             "bridge" if self.may_say_what_is_between() => {
                 self.behind_adapter = value == BRIDGE.1;
-                return self.behind_adapter;
+                self.behind_adapter
             }
-            "parity" => {
-                let Some(parity) = Parity::WORDS.read(value) else { return false };
-                self.parity = parity;
-                return true;
-            }
-            "order" => {
-                self.order = match value {
-                    "low-first" => Some(ByteOrder::LowFirst),
-                    "high-first" => Some(ByteOrder::HighFirst),
-                    _ => return false,
-                };
-                return true;
-            }
-            "echo" => {
-                self.echo = match value {
-                    "on" => Echo::On,
-                    "off" => Echo::Off,
-                    _ => return false,
-                };
-                return true;
-            }
-            _ => return false,
-        };
-        value.clone_into(entry);
-        true
+            "parity" | "order" | "echo" => self.take_choice(name, value),
+            _ => self.typed.take(&self.entries(), name, value),
+        }
+    }
+
+    fn take_choice(&mut self, name: &str, value: &str) -> bool {
+        let mut pin = PinParameters { parity: self.parity, order: self.order, echo: self.echo, ..Default::default() };
+        let is_taken = pin.set(name, value).unwrap_or(false);
+        (self.parity, self.order, self.echo) = (pin.parity, pin.order, pin.echo);
+        is_taken
+    }
+
+    /// Returns the entries of the virtual encoder that are typed.
+    pub fn of_the_virtual() -> Vec<Entry> {
+        chosen(&sim::Config::entries(), &["rpm", "fault"])
+    }
+
+    /// Returns the entries of the bus that are typed.
+    pub fn of_the_bus() -> Vec<Entry> {
+        BusParameters::entries()
+    }
+
+    /// Returns the entry of the baud rate of the configuration pin, and its other entries.
+    pub fn of_the_pin() -> (Vec<Entry>, Vec<Entry>) {
+        PinParameters::entries().into_iter().partition(|own| own.key == "baud")
+    }
+
+    /// Returns the entries of the frame, and those of the line.
+    pub fn of_every_way() -> (Vec<Entry>, Vec<Entry>) {
+        (FrameParameters::entries(), LineParameters::entries())
+    }
+
+    /// The parameters that are typed, over whatever way.
+    fn entries(&self) -> Vec<Entry> {
+        let own = if self.kind == BissLinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
+        let (frame, line) = Self::of_every_way();
+        [own, Self::of_the_bus(), PinParameters::entries(), frame, line].concat()
     }
 
     /// Returns whether the encoder is reached over its bus.
@@ -230,36 +214,27 @@ impl BissForm {
             parameters.set(BRIDGE.0, BRIDGE.1);
         }
         if self.kind == BissLinkKind::Virtual {
-            parameters.decimal("rpm", &self.rpm);
-            parameters.entry("fault", &self.fault);
+            parameters.typed(&Self::of_the_virtual(), &self.typed);
         }
         if self.is_on_the_bus() {
-            parameters.entry("clock", &self.clock);
+            parameters.typed(&Self::of_the_bus(), &self.typed);
             if self.leave_supply {
                 parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
             }
         } else {
-            if filled(&self.baud).is_some_and(|baud| baud != FORMAT.baud.to_string()) {
-                parameters.entry("baud", &self.baud);
-            }
+            parameters.typed(&PinParameters::entries(), &self.typed);
             if self.parity != FORMAT.parity {
                 parameters.set("parity", self.parity.word());
             }
-            match self.order {
-                None => {}
-                Some(ByteOrder::LowFirst) => parameters.set("order", "low-first"),
-                Some(ByteOrder::HighFirst) => parameters.set("order", "high-first"),
+            if self.order.is_some() {
+                parameters.set("order", &ORDERS.print(&self.order));
             }
-            match self.echo {
-                Echo::Unknown => {}
-                Echo::On => parameters.set("echo", "on"),
-                Echo::Off => parameters.set("echo", "off"),
+            if self.echo != Echo::Unknown {
+                parameters.set("echo", &Echo::WORDS.print(&self.echo));
             }
         }
-        parameters.entry("mt", &self.turns);
-        parameters.entry("st", &self.steps);
-        parameters.entry("crc", &self.crc);
-        parameters.entry("margin", &self.margin);
+        let (frame, line) = Self::of_every_way();
+        parameters.typed(&[frame, line].concat(), &self.typed);
         parameters.rest(&self.rest, |name| self.belongs(name));
         parameters
     }
@@ -267,12 +242,12 @@ impl BissForm {
     /// Returns whether a parameter belongs to this kind of connection. Those of other kinds are dropped; unknown ones are
     /// kept, so that they are refused by name.
     fn belongs(&self, name: &str) -> bool {
-        let way = if self.is_on_the_bus() { Transport::Adapter } else { Transport::ConfigPin };
-        let own = |way: Transport| way.parameters().contains(&name);
+        let kind = if self.is_on_the_bus() { Transport::Adapter } else { Transport::ConfigPin };
+        let own = |kind: Transport| kind.parameters().contains(&name);
         let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(at_adapter()).contains(&name));
         let of_the_virtual = self.kind == BissLinkKind::Virtual && (encoder || (adapter && self.behind_adapter));
         let elsewhere = own(Transport::ConfigPin) || own(Transport::Adapter) || encoder || adapter || name == BRIDGE.0;
-        own(way) || of_the_virtual || !elsewhere
+        own(kind) || of_the_virtual || !elsewhere
     }
 }
 
@@ -341,13 +316,15 @@ mod tests {
         assert_eq!(refused(|form| form.kind = BissLinkKind::Bus), "form.port_missing");
         assert_eq!(refused(|form| (form.kind, form.network) = (BissLinkKind::Bus, true)), "form.host_missing");
         assert_eq!(refused(|form| form.kind = BissLinkKind::Replay), "form.file_missing");
-        assert_eq!(refused(|form| form.margin = "soon".to_owned()), "form.margin");
-        assert_eq!(refused(|form| form.clock = "1".to_owned()), "form.clock");
-        assert_eq!(refused(|form| form.rpm = "fast".to_owned()), "form.rpm");
-        assert_eq!(refused(|form| form.fault = "drop:2".to_owned()), "form.fault");
+        assert_eq!(refused(|form| form.typed.set("margin", "soon")), "form.margin");
+        assert_eq!(refused(|form| form.typed.set("clock", "1")), "form.clock");
+        assert_eq!(refused(|form| form.typed.set("rpm", "fast")), "form.rpm");
+        assert_eq!(refused(|form| form.typed.set("fault", "drop:2")), "form.fault");
         assert_eq!(refused(|form| form.rest = vec![("motor".to_owned(), "none".to_owned())]), "form.parameter");
-        let fast =
-            |form: &mut BissForm| (form.kind, form.port, form.baud) = (BissLinkKind::Pin, "COM3".into(), "fast".into());
+        let fast = |form: &mut BissForm| {
+            (form.kind, form.port) = (BissLinkKind::Pin, "COM3".into());
+            form.typed.set("baud", "fast");
+        };
         assert_eq!(refused(fast), "form.parameter");
         assert_eq!(refused(|form| (form.kind, form.port) = (BissLinkKind::Pin, "a?b".to_owned())), "form.characters");
         let colour = |form: &mut BissForm| {

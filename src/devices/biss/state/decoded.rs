@@ -90,6 +90,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
+    use crate::app::Kinds;
     use crate::app::Language;
     use crate::app::studio::SessionId;
     use crate::devices::biss::protocol::Descriptions;
@@ -105,7 +106,7 @@ mod tests {
     /// Reference 4: every register whose number alone is not enough to understand it.
     #[test]
     fn every_register_of_the_reference_says_what_it_means() {
-        let mut encoder = Encoder::with(Session::at_link(SessionId::default(), "sim:".parse().unwrap()));
+        let mut encoder = Encoder::with(Session::at_link(SessionId::default(), "sim:".parse().unwrap(), Kinds::NONE));
         let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone();
         encoder.describe(Some(Arc::new(kit.clone())));
         for register in kit.registers() {

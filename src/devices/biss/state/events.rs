@@ -49,10 +49,8 @@ impl Kind for Biss {
     }
 
     fn result_texts(output: &BissOutput) -> Option<(Severity, Vec<Text>)> {
-        match output {
-            BissOutput::Committed(committed) => Some(written_texts::<Biss>(committed)),
-            _ => None,
-        }
+        let BissOutput::Committed(committed) = output else { return None };
+        Some(written_texts::<Biss>(committed))
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {

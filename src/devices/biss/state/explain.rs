@@ -3,6 +3,7 @@
 mod check;
 mod damage;
 mod entry;
+mod flaw;
 mod guide;
 #[cfg(test)]
 mod phrases;
@@ -204,7 +205,7 @@ fn description(error: &StoreError) -> Text {
         Some(DescriptionError { file, line, column, problem: what }) => TEXTS
             .text("store.description")
             .with("path", file)
-            .with_text("why", syntax(*line, *column, general::plain(what))),
+            .with_text("why", syntax(*line, *column, flaw::flaw(what))),
         None => general::store(error),
     }
 }

@@ -7,10 +7,13 @@ use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
 use crate::devices::biss::jobs::{Biss, check, descriptions};
+use crate::devices::biss::procedures::{BusParameters, FrameParameters, LineParameters, PinParameters};
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::biss::protocol::Descriptions;
+use crate::devices::biss::sim::Config;
 use crate::devices::biss::state::explain;
 use crate::link::LinkUrl;
+use crate::parameter::Parameters as _;
 use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
@@ -41,5 +44,16 @@ impl DeviceType for Encoder {
             encoder.take_profile(profile);
         }
         encoder
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [
+            PinParameters::SECRETS,
+            LineParameters::SECRETS,
+            BusParameters::SECRETS,
+            FrameParameters::SECRETS,
+            Config::SECRETS,
+        ]
+        .concat()
     }
 }

@@ -8,10 +8,10 @@ use crate::bits::ByteOrder;
 use crate::devices::biss::state::{BissForm, BissLinkKind};
 use crate::devices::biss::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{choice, entry, paragraph, text_entry};
+use crate::ui::controls::{choice, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
-    echo, leave_supply, margin, network, parity, recording, segments, serial, unfolded,
+    echo, field, leave_supply, network, parity, recording, segments, serial, typed, typed_in_a_row, unfolded,
 };
 
 /// The connection form of BiSS encoders.
@@ -61,17 +61,19 @@ impl TypedConnectForm for BissConnectForm {
             }
         }
         if form.is_on_the_bus() {
-            entry(ui, theme, &say(theme, "connect.biss_clock"), |ui| {
-                text_entry(ui, &mut form.clock, 96.0, &say(theme, "connect.biss_clock"), "1000000");
-                ui.label(theme.label("Hz"));
-            });
+            typed(ui, theme, say, BissForm::of_the_bus(), &mut form.typed);
         }
         if form.kind != BissLinkKind::Replay && unfolded(ui, theme, more) {
             if !form.is_on_the_bus() {
-                entry(ui, theme, &theme.say("settings_card.baud"), |ui| {
-                    text_entry(ui, &mut form.baud, 96.0, &theme.say("settings_card.baud"), "115200");
-                    parity(ui, theme, &mut form.parity);
-                });
+                let (baud, others) = BissForm::of_the_pin();
+                for own in baud {
+                    let word = say(theme, own.label);
+                    entry(ui, theme, &word, |ui| {
+                        field(ui, theme, &word, &own, &mut form.typed);
+                        parity(ui, theme, &mut form.parity);
+                    });
+                }
+                typed(ui, theme, say, others, &mut form.typed);
                 let word = say(theme, "connect.biss_order");
                 entry(ui, theme, &word, |ui| {
                     let orders = [
@@ -83,22 +85,15 @@ impl TypedConnectForm for BissConnectForm {
                 });
                 echo(ui, theme, &mut form.echo);
             }
+            let (frame, line) = BissForm::of_every_way();
             entry(ui, theme, &say(theme, "connect.biss_frame"), |ui| {
-                for (own, word, usual) in [
-                    (&mut form.turns, "connect.biss_turns", "16"),
-                    (&mut form.steps, "connect.biss_steps", "17"),
-                    (&mut form.crc, "connect.biss_crc", "0x43"),
-                ] {
-                    let word = say(theme, word);
-                    text_entry(ui, own, 48.0, &word, usual);
-                    ui.label(theme.label(word));
-                }
+                typed_in_a_row(ui, theme, say, frame, &mut form.typed);
             });
             paragraph(ui, theme.caption(say(theme, "connect.biss_frame_words")));
             if form.is_on_the_bus() {
                 leave_supply(ui, theme, &mut form.leave_supply);
             }
-            margin(ui, theme, &mut form.margin);
+            typed(ui, theme, say, line, &mut form.typed);
         }
     }
 }
@@ -114,10 +109,5 @@ fn reached(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
 
 fn simulated(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     reached(ui, theme, form);
-    entry(ui, theme, &theme.say("connect.rpm"), |ui| {
-        text_entry(ui, &mut form.rpm, 96.0, &theme.say("connect.rpm"), "0")
-    });
-    entry(ui, theme, &theme.say("connect.fault"), |ui| {
-        text_entry(ui, &mut form.fault, 200.0, &theme.say("connect.fault"), "drop:0.01");
-    });
+    typed(ui, theme, say, BissForm::of_the_virtual(), &mut form.typed);
 }

@@ -10,33 +10,27 @@ use crate::devices::biss::state::explain as explained;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, words};
 use crate::devices::biss::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};
+use crate::ui::controls::{card_with, empty, enabled_button, encoder_page, paragraph, row};
 use crate::ui::{Theme, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let is_profile = encoder.profile().is_some();
-    two_columns(
+    encoder_page(
         ui,
         theme,
         &mut *actions,
-        |ui, actions| {
-            identity(ui, theme, encoder, actions);
-            if !is_profile {
-                ui.add_space(theme.space.groups);
-                check(ui, theme, encoder, actions);
-            }
-        },
-        |ui, actions| {
-            if is_profile {
-                wiring::card_ui(ui, theme);
-                return;
-            }
-            status(ui, theme, encoder, actions);
-            if let Some(motor) = &encoder.motor {
-                ui.add_space(theme.space.groups);
-                motor::card_ui(ui, theme, encoder, motor, actions);
-            }
-        },
+        is_profile,
+        (|ui, actions| identity(ui, theme, encoder, actions), |ui, actions| check(ui, theme, encoder, actions)),
+        (
+            |ui| wiring::card_ui(ui, theme),
+            |ui, actions| {
+                status(ui, theme, encoder, actions);
+                if let Some(motor) = &encoder.motor {
+                    ui.add_space(theme.space.groups);
+                    motor::card_ui(ui, theme, encoder, motor, actions);
+                }
+            },
+        ),
     );
     ui.add_space(theme.space.groups);
     if encoder.identity().is_some() {

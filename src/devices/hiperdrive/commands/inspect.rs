@@ -12,6 +12,10 @@ use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::{DriveIdentity, DriveStatus, Identity, Status};
 use crate::devices::hiperdrive::profile::Item;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    CONTROL, NEWEST_ERROR, NO_TIMEOUT, OLDEST_ERROR, SPEED, SPEED_DENOMINATOR, SPEED_NUMERATOR, STATUS, TIMEOUT,
+    VARIANT,
+};
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, ErrorCode, KIND, ParameterNumber, SpeedScale, State, StatusBit, StatusWord, Value, Variant, nominal,
 };
@@ -220,17 +224,17 @@ fn number_text(item: Item, number: i64) -> String {
     let (base, unit) = (item.0.base(), item.0.row().map_or("", |row| row.unit));
     let word = u16::try_from(number).ok();
     match (base, word, unit.strip_prefix("0.1 ")) {
-        (105, Some(word), _) => {
+        (STATUS, Some(word), _) => {
             let state = words::state(StatusWord::new(word).state());
             format!("0x{word:04X} ({})", state.terminal())
         }
-        (108..=115, Some(0), _) => "0x0000 (no error)".to_owned(),
-        (108..=115, Some(word), _) => format!("0x{word:04X} {}", error_text(ErrorCode::new(word))),
-        (101 | 116..=118, Some(word), _) => format!("0x{word:04X}"),
-        (120, Some(word), _) => {
+        (NEWEST_ERROR..=OLDEST_ERROR, Some(0), _) => "0x0000 (no error)".to_owned(),
+        (NEWEST_ERROR..=OLDEST_ERROR, Some(word), _) => format!("0x{word:04X} {}", error_text(ErrorCode::new(word))),
+        (CONTROL | 116..=118, Some(word), _) => format!("0x{word:04X}"),
+        (VARIANT, Some(word), _) => {
             format!("{number} ({})", words::variant(Variant::new(word)).terminal())
         }
-        (186, Some(255), _) => "255 (no time-out)".to_owned(),
+        (TIMEOUT, Some(word), _) if i64::from(word) == NO_TIMEOUT => "255 (no time-out)".to_owned(),
         // Of 32 bits.
         (.., Some(whole)) => format!("{number} × {unit} = {:.1} {whole}", number as f64 / 10.0),
         (.., None) if unit.is_empty() => number.to_string(),
@@ -238,17 +242,14 @@ fn number_text(item: Item, number: i64) -> String {
     }
 }
 
-/// Speed in scaled units, by the parameter number of drive 1.
-const SPEED: u16 = 106;
-
-/// Returns the speed scale of a drive (162, 164); `None` if it contains a 0.
+/// The speed scale of a drive (162, 164); `None` if it contains a 0.
 fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedScale>> {
     let mut part = |base| match ParameterNumber::of_drive(base, drive).map(|number| value(runner, number)) {
         Some(Ok(Value::Number(number))) => Ok(u16::try_from(number).unwrap_or(0)),
         Some(Err(why)) => Err(why),
         Some(Ok(Value::Text(_))) | None => Ok(0),
     };
-    Ok(SpeedScale::new(part(162)?, part(164)?).ok())
+    Ok(SpeedScale::new(part(SPEED_NUMERATOR)?, part(SPEED_DENOMINATOR)?).ok())
 }
 
 /// Returns a text of a parameter as shown, with the number in it if there is one.

@@ -5,6 +5,9 @@ use serde_json::{Value as Json, json};
 use super::image::direction_json;
 use crate::bits::hex;
 use crate::cli::args::Direction;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    CONTROL, NEWEST_ERROR, OLDEST_ERROR, SERVICE, STATUS, VARIANT,
+};
 use crate::devices::hiperdrive::protocol::{
     Access, ByteOrder, ControlBit, ControlWord, ErrorCode, ParameterNumber, ParameterRow, StatusBit, StatusWord,
     Travel, Value, Variant,
@@ -147,21 +150,21 @@ pub(super) fn parameter_name(own: u16) -> String {
 pub(super) fn number_words(row: &ParameterRow, number: i64) -> String {
     let word = u16::try_from(number).ok();
     match (row.number, word) {
-        (101, Some(word)) => ControlWord::parse(word).map_or_else(
+        (CONTROL, Some(word)) => ControlWord::parse(word).map_or_else(
             |why| format!("{word:04X} ({why})"),
             |control| format!("{word:04X} ({})", control_words(control)),
         ),
-        (105, Some(word)) => format!("{word:04X} ({})", status_words(StatusWord::new(word))),
-        (108..=115, Some(0)) => "no error".to_owned(),
-        (108..=115, Some(word)) => {
+        (STATUS, Some(word)) => format!("{word:04X} ({})", status_words(StatusWord::new(word))),
+        (NEWEST_ERROR..=OLDEST_ERROR, Some(0)) => "no error".to_owned(),
+        (NEWEST_ERROR..=OLDEST_ERROR, Some(word)) => {
             let code = ErrorCode::new(word);
             code.row().map_or_else(|| code.to_string(), |row| format!("{code}: {}; {}", row.cause, row.remedy))
         }
-        (120, Some(word)) => {
+        (VARIANT, Some(word)) => {
             let name = Variant::new(word).row().map_or("in no table", |row| row.name);
             format!("{word} ({name})")
         }
-        (47, _) => format!("{number}{}", save_words(number)),
+        (SERVICE, _) => format!("{number}{}", save_words(number)),
         _ => match row.unit {
             "0.1 rpm" => format!("{number} ({} rpm)", number as f64 / 10.0),
             "0.1 V" => format!("{number} ({} V)", number as f64 / 10.0),

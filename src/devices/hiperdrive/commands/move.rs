@@ -4,6 +4,9 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    DENOMINATOR, LOWER, NEWEST_ERROR, NUMERATOR, REQUESTED, TIMEOUT, UPPER,
+};
 use crate::devices::hiperdrive::state::TEXTS;
 
 use serde_json::json;
@@ -90,7 +93,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
 
 /// Reads the error for which the drive has stopped, if it still reports one.
 fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
-    let newest = value(runner, ParameterNumber::of_drive(108, drive)?).ok()?;
+    let newest = value(runner, ParameterNumber::of_drive(NEWEST_ERROR, drive)?).ok()?;
     let Value::Number(code) = newest else { return None };
     u16::try_from(code).ok().map(ErrorCode::new).filter(|code| *code != ErrorCode::NONE)
 }
@@ -108,7 +111,7 @@ fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option
 fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Result<(Permit, Option<PositionScale>)> {
     let variant = identity.named(drive).map_err(|error| failed(&words::device(&error)))?.variant;
     let mut values = Vec::new();
-    for base in [152, 154, 156, 158, 160, 186] {
+    for base in [REQUESTED, NUMERATOR, DENOMINATOR, LOWER, UPPER, TIMEOUT] {
         let Some(number) = ParameterNumber::of_drive(base, drive) else { continue };
         if let Value::Number(value) = value(runner, number)? {
             values.push((base, value));

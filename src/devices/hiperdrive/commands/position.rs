@@ -10,6 +10,7 @@ use crate::cli::output::Output;
 use crate::cli::positions::readings;
 use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::DriveReading;
+use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, NUMERATOR};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, PositionScale, StatusBit, Value};
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::result_of;
@@ -18,7 +19,7 @@ use crate::result_of;
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let drive = drive(&position.own.read()?);
-    let (numerator, denominator) = (part(&mut runner, 154, drive)?, part(&mut runner, 156, drive)?);
+    let (numerator, denominator) = (part(&mut runner, NUMERATOR, drive)?, part(&mut runner, DENOMINATOR, drive)?);
     let scale = numerator.zip(denominator).and_then(|(one, other)| PositionScale::new(one, other).ok());
     if position.csv {
         output.print("t_s,raw,turns,steps,degrees,valid\n")?;

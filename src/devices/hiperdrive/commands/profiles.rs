@@ -10,6 +10,7 @@ use crate::cli::profiles::{Unrestored, restore_options, save_profile, to_restore
 use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
+use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::profile::Body;
 use crate::result_of;
@@ -72,7 +73,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     }
     for item in &prepared.mounting_left {
         let how = match item.0.base() {
-            198 => "a reference is never restored; set it with \"do hiperdrive set-position\"",
+            REFERENCE => "a reference is never restored; set it with \"do hiperdrive set-position\"",
             _ => "use --with-mounting to restore it",
         };
         output.remark(&format!("{item} belongs to the mounting and is not restored: {how}"));

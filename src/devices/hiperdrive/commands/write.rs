@@ -13,7 +13,7 @@ use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::{Image, Item, PlanError, Service};
-use crate::devices::hiperdrive::protocol::drive_parameter::{ACKNOWLEDGE, REFERENCE, RESET};
+use crate::devices::hiperdrive::protocol::drive_parameter::{ACKNOWLEDGE, CONTROL, REFERENCE, RESET, SERVICE, TARGET};
 use crate::devices::hiperdrive::protocol::{Access, Travel};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
@@ -50,13 +50,13 @@ fn change(item: Item, text: &str) -> Result<Change> {
     let refused = |error: PlanError| failed(&words::plan(&error));
     let row = number.row().ok_or_else(|| refused(PlanError::NotRead { item }))?;
     match (row.number, row.access) {
-        (101..=104, ..) => return Err(refused(PlanError::Moves { item })),
+        (CONTROL..=TARGET, ..) => return Err(refused(PlanError::Moves { item })),
         (RESET, ..) => return Err(failed(&TEXTS.text("hd_cli.resets").with("number", number))),
         (_, Access::Read) => return Err(refused(PlanError::ReadOnly { item })),
         _ => {}
     }
     let value = parse_number(text).ok_or_else(|| Failure::Usage(format!("{item}: {text:?} is not a number")))?;
-    if (row.number, value) == (47, 0) {
+    if (row.number, value) == (SERVICE, 0) {
         return Err(failed(&TEXTS.text("hd_cli.no_service")));
     }
     // The plan checks travel: it needs the scale to name both limits.
@@ -66,7 +66,7 @@ fn change(item: Item, text: &str) -> Result<Change> {
     match (row.number, number.drive()) {
         // 0 clears the errors, which is what an acknowledgement is (manual 6.2).
         (ACKNOWLEDGE, Some(drive)) => Ok(Change::Do(Service::Acknowledge(drive))),
-        (47, _) => Service::of_code(value).map(Change::Do).ok_or_else(|| refused(PlanError::Acts { item })),
+        (SERVICE, _) => Service::of_code(value).map(Change::Do).ok_or_else(|| refused(PlanError::Acts { item })),
         (REFERENCE, Some(drive)) => {
             // Of 32 bits.
             let position = i32::try_from(value).map_err(|_| refused(PlanError::Acts { item }))?;

@@ -2,10 +2,10 @@
 
 use super::{ChangeKind, Commit, Committed, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::hiperdrive::procedures::write::DeviceWrite;
-use crate::devices::hiperdrive::profile::{Base, HiperdrivePlan, HiperdriveProfile, Op};
+use crate::devices::hiperdrive::profile::{Base, HiperdriveProfile, Op};
 use crate::profile::Body;
 use crate::store::DeviceKey;
-use crate::worker::commit::{Planned, backup_of, write_plan};
+use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
 use crate::worker::{JobReport, SessionContext};
 
 pub(super) fn commit(
@@ -26,26 +26,13 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn plan(&self) -> &HiperdrivePlan {
-        &self.plan
-    }
-
-    fn kind(&self) -> ChangeKind {
-        self.kind
+    fn head(&self) -> PlanHead<'_, Self> {
+        // No limit is known (`U`). Saves are counted and reported, and refused only if they cannot counted.
+        PlanHead { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: u64::MAX }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
         device_key(&self.identity, is_virtual)
-    }
-
-    fn cycles_seen(&self) -> Option<u64> {
-        self.cycles_seen
-    }
-
-    /// Returns no limit, since none is known (`U`). Saves are counted and reported, and refused only if they cannot be
-    /// counted.
-    fn wear_limit(&self) -> u64 {
-        u64::MAX
     }
 
     fn note(&self, op: &Op) -> String {

@@ -10,6 +10,7 @@ use super::network::network;
 use super::{DriveIdentity, DriveStatus, Error, Identity, Master, Network};
 use crate::analysis::check;
 use crate::buses::ethernet_ip::protocol::AddressSource;
+use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, POSITION, TIMEOUT, UPPER};
 use crate::devices::hiperdrive::protocol::{
     AddressSwitch, DriveNumber, ErrorCode, ParameterNumber, PositionScale, Reach, State, StatusBit, Topology, Travel,
     Variant,
@@ -293,7 +294,7 @@ fn check_drive(
         0 => (Verdict::Good, CheckFinding::LineGood),
         other => (Verdict::Bad, CheckFinding::LineWord(other)),
     };
-    let timeout = match master.read_number(of(186, number)?)? {
+    let timeout = match master.read_number(of(TIMEOUT, number)?)? {
         tenths if ends_by_itself(tenths) => (Verdict::Good, CheckFinding::Timeout(tenths)),
         _ => (Verdict::Bad, CheckFinding::NoTimeout),
     };
@@ -329,8 +330,8 @@ fn errors(status: &DriveStatus) -> Vec<(Verdict, CheckFinding)> {
 
 fn range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict, CheckFinding)>, Error> {
     let mut read = |base| master.read_number(of(base, drive.number)?);
-    let (numerator, denominator) = (read(154)?, read(156)?);
-    let (lower, upper, position) = (read(158)?, read(160)?, read(107)?);
+    let (numerator, denominator) = (read(NUMERATOR)?, read(DENOMINATOR)?);
+    let (lower, upper, position) = (read(LOWER)?, read(UPPER)?, read(POSITION)?);
     let mut findings = vec![(Verdict::Good, CheckFinding::Range { numerator, denominator, lower, upper })];
     if upper <= lower {
         findings.push((Verdict::Bad, CheckFinding::LimitsCrossed { lower, upper }));

@@ -279,11 +279,7 @@ fn named(number: ParameterNumber) -> &'static str {
 
 impl From<LineError> for Error {
     fn from(error: LineError) -> Self {
-        match error {
-            LineError::Cancelled => Error::Cancelled,
-            LineError::NeverSilent => Error::NeverSilent,
-            LineError::Link(error) => Error::Link(error),
-        }
+        error.at_device(Error::Cancelled, Error::NeverSilent, Error::Link)
     }
 }
 

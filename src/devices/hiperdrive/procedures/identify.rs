@@ -4,6 +4,9 @@ use std::collections::BTreeMap;
 
 use super::network::{Network, network};
 use super::{Error, Master, WrongLength};
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    ACKNOWLEDGE, NEWEST_ERROR, OLDEST_ERROR, POSITION, REQUESTED, SPEED, STATUS, VARIANT,
+};
 use crate::devices::hiperdrive::protocol::{
     Access, Actual, DriveNumber, ErrorCode, PARAMETERS, ParameterNumber, StatusWord, Topology, Value, Variant,
 };
@@ -153,7 +156,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
     let mut steps = Steps { done: 0, total: DRIVE * u64::from(topology.drives()) + DEVICE, progress };
     let mut drives = Vec::new();
     for number in DriveNumber::of(topology) {
-        let variant = master.read_number(steps.next(of(120, number)?))?;
+        let variant = master.read_number(steps.next(of(VARIANT, number)?))?;
         let variant = Variant::new(u16::try_from(variant).unwrap_or(Variant::OTHER.number()));
         if variant == Variant::NONE {
             steps.skip(DRIVE - 1);
@@ -164,7 +167,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
             drive_text(master, base, number)
         };
         let (name, article_number, serial_number, version) = (text(121)?, text(122)?, text(123)?, text(125)?);
-        steps.next(of(152, number)?);
+        steps.next(of(REQUESTED, number)?);
         let requested = is_requested(master, number)?;
         drives.push(DriveIdentity { number, variant, name, article_number, serial_number, version, requested });
     }
@@ -242,7 +245,7 @@ pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> R
     let mut steps = Steps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, progress };
     let mut drives = Vec::new();
     for number in DriveNumber::of(topology) {
-        if master.read_number(steps.next(of(120, number)?))? == i64::from(Variant::NONE.number()) {
+        if master.read_number(steps.next(of(VARIANT, number)?))? == i64::from(Variant::NONE.number()) {
             steps.skip(OF_STATUS);
         } else {
             drives.push(status_of(master, number, &mut steps)?);
@@ -262,20 +265,20 @@ fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>
     // A number of 16 bits, as bits.
     let mut word = |base| Ok::<_, Error>(read(base)? as u16);
     let mut buffer = Vec::new();
-    for error in 108..=115 {
+    for error in NEWEST_ERROR..=OLDEST_ERROR {
         let code = word(error)?;
         buffer.extend((code != 0).then_some(ErrorCode::new(code)));
     }
-    let status = StatusWord::new(word(105)?);
+    let status = StatusWord::new(word(STATUS)?);
     let words = [word(116)?, word(117)?, word(118)?];
     Ok(DriveStatus {
         number,
         status,
         buffer,
         words,
-        faults: u8::try_from(read(197)?).unwrap_or(u8::MAX),
+        faults: u8::try_from(read(ACKNOWLEDGE)?).unwrap_or(u8::MAX),
         temperature: read(119)?,
-        requested: read(152)? != 0,
+        requested: read(REQUESTED)? != 0,
     })
 }
 
@@ -284,10 +287,10 @@ fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>
 /// # Errors
 /// [`Error::NoPlace`], [`Error::NoDrive`]; errors of the exchange.
 pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<DriveReading, Error> {
-    let status = StatusWord::new(word(master, 105, drive)?);
+    let status = StatusWord::new(word(master, STATUS, drive)?);
     // Both have this width.
-    let speed = master.read_number(of(106, drive)?)? as i16;
-    let position = master.read_number(of(107, drive)?)? as i32;
+    let speed = master.read_number(of(SPEED, drive)?)? as i16;
+    let position = master.read_number(of(POSITION, drive)?)? as i32;
     Ok(DriveReading { at: master.now(), drive, actual: Actual { status, speed, position } })
 }
 
@@ -303,7 +306,7 @@ pub(super) fn topology(master: &mut Master<'_>) -> Result<Topology, Error> {
 }
 
 fn is_requested(master: &mut Master<'_>, drive: DriveNumber) -> Result<bool, Error> {
-    Ok(master.read_number(of(152, drive)?)? != 0)
+    Ok(master.read_number(of(REQUESTED, drive)?)? != 0)
 }
 
 /// Returns a number of 16 bits, as bits.

@@ -18,6 +18,7 @@ use crate::buses::ethernet_ip::protocol::{
     Body, Command, EncapsulationStatus, Frame, GeneralStatus, Identity as IdentityObject, Item, Items, Receiver, Reply,
     Request,
 };
+use crate::devices::hiperdrive::protocol::drive_parameter::{ACKNOWLEDGE, CONTROL, REFERENCE, RESET, SERVICE, TARGET};
 use crate::devices::hiperdrive::protocol::{
     Access, ParameterNumber, ParameterRow, STORES, Topology, Travel, Value, ValueError,
 };
@@ -406,14 +407,14 @@ fn settable(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     let row = number.row().ok_or(Error::Unknown(number))?;
     match (row.access, row.number) {
         (Access::Read, _) => Err(Error::ReadOnly { number, name: row.name }),
-        (_, 101..=104) => Err(Error::Motion { number, name: row.name }),
+        (_, CONTROL..=TARGET) => Err(Error::Motion { number, name: row.name }),
         _ => Ok(row),
     }
 }
 
 /// Returns whether setting it triggers an action, so that reading it back proves nothing.
 const fn does_something(row: &ParameterRow) -> bool {
-    matches!(row.number, 47 | 197 | 198 | 199)
+    matches!(row.number, SERVICE | ACKNOWLEDGE | REFERENCE | RESET)
 }
 
 impl Repeats {

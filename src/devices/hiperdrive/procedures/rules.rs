@@ -3,6 +3,9 @@
 use super::identify::of;
 use super::{Error, Master};
 use crate::devices::hiperdrive::protocol::DriveNumber;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    DENOMINATOR, LOWER, NUMERATOR, REFERENCE, REQUESTED, TIMEOUT, UPPER,
+};
 
 /// Parameters that limit a drive's motion; `None` for those not read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,11 +26,11 @@ impl Rules {
     /// Creates the rules from parameters; `read` takes their numbers of drive 1.
     pub fn by(read: impl Fn(u16) -> Option<i64>) -> Self {
         Rules {
-            requested: read(152),
-            scale: read(154).zip(read(156)),
-            limits: read(158).zip(read(160)),
-            timeout: read(186),
-            reference: read(198),
+            requested: read(REQUESTED),
+            scale: read(NUMERATOR).zip(read(DENOMINATOR)),
+            limits: read(LOWER).zip(read(UPPER)),
+            timeout: read(TIMEOUT),
+            reference: read(REFERENCE),
         }
     }
 }
@@ -38,7 +41,7 @@ impl Rules {
 /// Errors of the exchange.
 pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, Error> {
     let mut values = Vec::new();
-    for base in [152, 154, 156, 158, 160, 186, 198] {
+    for base in [REQUESTED, NUMERATOR, DENOMINATOR, LOWER, UPPER, TIMEOUT, REFERENCE] {
         match master.read_number(of(base, drive)?) {
             Ok(value) => values.push((base, value)),
             Err(error) if error.is_unsaid() => {}
@@ -62,9 +65,9 @@ pub fn read_rule(master: &mut Master<'_>, drive: DriveNumber, known: Rules, grou
         Err(error) => Err(error),
     };
     Ok(match group % GROUPS {
-        0 => Rules { requested: read(152)?, ..known },
-        1 => Rules { timeout: read(186)?, ..known },
-        2 => Rules { scale: read(154)?.zip(read(156)?), ..known },
-        _ => Rules { limits: read(158)?.zip(read(160)?), reference: read(198)?, ..known },
+        0 => Rules { requested: read(REQUESTED)?, ..known },
+        1 => Rules { timeout: read(TIMEOUT)?, ..known },
+        2 => Rules { scale: read(NUMERATOR)?.zip(read(DENOMINATOR)?), ..known },
+        _ => Rules { limits: read(LOWER)?.zip(read(UPPER)?), reference: read(REFERENCE)?, ..known },
     })
 }

@@ -5,6 +5,7 @@ use super::{DriveIdentity, Error, Identity, Master};
 use crate::devices::hiperdrive::profile::{
     DeviceState, HiperdriveProfile, Image, Positions, ProfileDrive, ProfileIdentity,
 };
+use crate::devices::hiperdrive::protocol::drive_parameter::POSITION;
 use crate::devices::hiperdrive::protocol::{PARAMETERS, ParameterNumber};
 use crate::profile::Unknown;
 
@@ -68,7 +69,7 @@ pub fn read_state(
     let image = read_image(master, numbers, progress)?;
     let mut positions = Positions::new();
     for drive in &identity.drives {
-        match master.read_number(of(107, drive.number)?) {
+        match master.read_number(of(POSITION, drive.number)?) {
             // Of 32 bits.
             Ok(position) => {
                 positions.insert(drive.number, position as i32);

@@ -11,7 +11,7 @@ use super::{Error, Identity, Master};
 use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration};
 use crate::devices::hiperdrive::profile::{Base, HiperdrivePlan, Item, NetworkSettings, Op, Service};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    ACKNOWLEDGE, DENOMINATOR, LOWER, NUMERATOR, POSITION, REFERENCE, UPPER,
+    ACKNOWLEDGE, DENOMINATOR, LOWER, NUMERATOR, POSITION, REFERENCE, STATUS, UPPER,
 };
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, nearest_reference,
@@ -62,7 +62,7 @@ impl Write for DeviceWrite<'_, '_> {
             {
                 return changed(format!("drive {}", drive.get()));
             }
-            let status = master.read_number(of(105, drive)?)?;
+            let status = master.read_number(of(STATUS, drive)?)?;
             // Of 16 bits.
             if StatusWord::new(status as u16).state() == State::Moving {
                 return Err(Error::Moving { drive });

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use super::{Base, DeviceState, HiperdrivePlan, Image, Item, Op, PlanError, Service};
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER, MAXIMUM_SPEED, NUMERATOR, REFERENCE, REQUESTED, RESET, SPEED_DENOMINATOR, SPEED_NUMERATOR,
-    UPPER,
+    CONTROL, DENOMINATOR, LOWER, MAXIMUM_SPEED, NUMERATOR, REFERENCE, REQUESTED, RESET, SERVICE, SPEED_DENOMINATOR,
+    SPEED_NUMERATOR, TARGET, UPPER,
 };
 use crate::devices::hiperdrive::protocol::{
     Access, DriveNumber, ParameterNumber, PositionScale, Travel, nearest_reference,
@@ -153,8 +153,8 @@ fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), Plan
     let item = Item(number);
     let row = number.row().ok_or(PlanError::NotRead { item })?;
     match (number.base(), row.access) {
-        (101..=104, _) => Err(PlanError::Moves { item }),
-        (47 | REFERENCE | RESET, _) => Err(PlanError::Acts { item }),
+        (CONTROL..=TARGET, _) => Err(PlanError::Moves { item }),
+        (SERVICE | REFERENCE | RESET, _) => Err(PlanError::Acts { item }),
         (_, Access::Read) => Err(PlanError::ReadOnly { item }),
         _ => Ok(row.check(number, value, travel).map(|_| ())?),
     }

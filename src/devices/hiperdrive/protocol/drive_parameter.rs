@@ -1,9 +1,27 @@
-//! Numbers of those parameters of drive 1 that the rules and the virtual drive use by name.
+//! Numbers of those parameters that are used by name: of drive 1, and the one of the device that saves and resets.
 
 use std::ops::RangeInclusive;
 
+/// Saves, recalls, resets: a parameter of the device.
+pub const SERVICE: u16 = 47;
+/// Control word; it and the three behind it move a drive.
+pub const CONTROL: u16 = 101;
+/// Speed, in percent of the maximum speed.
+pub const SPEED_SHARE: u16 = 102;
+/// Torque, in percent of the nominal torque.
+pub const TORQUE_SHARE: u16 = 103;
+/// Target position, in steps.
+pub const TARGET: u16 = 104;
+/// Status word.
+pub const STATUS: u16 = 105;
+/// Actual speed.
+pub const SPEED: u16 = 106;
 /// Actual position, in steps.
 pub const POSITION: u16 = 107;
+/// The latest of the eight errors that a drive keeps.
+pub const NEWEST_ERROR: u16 = 108;
+/// The earliest of them.
+pub const OLDEST_ERROR: u16 = 115;
 /// Variant of the drive; 0 where there is none.
 pub const VARIANT: u16 = 120;
 /// Drive is requested by the bus.

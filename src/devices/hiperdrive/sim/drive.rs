@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use super::axis::{Axis, AxisDemand, Defect, SpindleLoad, TICK, TURN, TickOutcome};
 use super::memory::Memory;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
-    DENOMINATOR, LOWER, NUMERATOR, SPEED_DENOMINATOR, SPEED_NUMERATOR, UPPER,
+    DENOMINATOR, LOWER, MAXIMUM_SPEED, NUMERATOR, REQUESTED, SPEED_DENOMINATOR, SPEED_NUMERATOR, UPPER,
 };
 use crate::devices::hiperdrive::protocol::{
     Actual, ControlBit, ControlWord, ErrorCode, Family, MotionStart, OutData, PositionScale, SpeedScale, State,
@@ -86,7 +86,7 @@ impl Drive {
         let family = variant.row().map_or(Family::Short, |row| row.family);
         Drive {
             variant,
-            memory: Memory::new(topology, family, |row| row.number >= 152),
+            memory: Memory::new(topology, family, |row| row.number >= REQUESTED),
             axis: Axis::default(),
             offset: 0.0,
             out: OutData { speed: 100, torque: 100, ..OutData::default() },
@@ -273,7 +273,7 @@ impl Drive {
 
     /// Returns whether it is requested, and S3 does not point to a drive.
     fn may_move(&self) -> bool {
-        self.allowed && self.memory.get(152) == Some(1)
+        self.allowed && self.memory.get(REQUESTED) == Some(1)
     }
 
     fn tick(&mut self, ticks: u32) {
@@ -303,7 +303,7 @@ impl Drive {
     }
 
     fn wanted(&self) -> AxisDemand {
-        let rpm = f64::from(self.word(166)) / 10.0 * f64::from(self.percents().0.min(100)) / 100.0;
+        let rpm = f64::from(self.word(MAXIMUM_SPEED)) / 10.0 * f64::from(self.percents().0.min(100)) / 100.0;
         let speed = rpm / 60.0 * TURN;
         let wanted = match self.motion {
             Motion::Rest | Motion::Paused { .. } => AxisDemand::Rest,

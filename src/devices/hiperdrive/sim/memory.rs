@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
+use crate::devices::hiperdrive::protocol::drive_parameter::{REFERENCE, RS485_COMPLETE};
 use crate::devices::hiperdrive::protocol::{Family, PARAMETERS, ParameterRow, Topology};
 
 /// By the number of drive 1, or of the device.
@@ -20,7 +20,7 @@ impl Memory {
     /// Creates the memory with factory settings, for the parameters that `holds` selects.
     pub(super) fn new(topology: Topology, family: Family, holds: fn(&ParameterRow) -> bool) -> Self {
         let value = |row: &ParameterRow| {
-            let found = (row.number == 192).then_some(COMPLETE_TIME_MS);
+            let found = (row.number == RS485_COMPLETE).then_some(COMPLETE_TIME_MS);
             row.factory_value(topology, family).or(found).map(|value| (row.number, value))
         };
         let factory: BTreeMap<u16, i64> = PARAMETERS.iter().filter(|row| holds(row)).filter_map(value).collect();

@@ -6,6 +6,10 @@
 use super::axis::TURN;
 use super::drive::Drive;
 use crate::buses::ethernet_ip::protocol::GeneralStatus;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    ACKNOWLEDGE, CONTROL, LOWER, NEWEST_ERROR, OLDEST_ERROR, POSITION, REFERENCE, REQUESTED, RESET, SPEED, SPEED_SHARE,
+    STATUS, TARGET, TORQUE_SHARE, UPPER, VARIANT,
+};
 use crate::devices::hiperdrive::protocol::{ErrorCode, PkwError, Value, nearest_reference};
 use crate::units::Moment;
 
@@ -50,18 +54,20 @@ impl Drive {
         let actual = self.actual(now);
         let text = |text: &str| Some(Value::Text(text.to_owned()));
         let value = match number {
-            101 => self.out.control.into(),
-            102 => self.out.speed.into(),
-            103 => self.out.torque.into(),
-            104 => self.out.target.into(),
-            105 => actual.status.word().into(),
-            106 => actual.speed.into(),
-            107 => actual.position.into(),
-            108..=115 => self.errors.get(usize::from(number - 108)).map_or(0, |code| code.code().into()),
+            CONTROL => self.out.control.into(),
+            SPEED_SHARE => self.out.speed.into(),
+            TORQUE_SHARE => self.out.torque.into(),
+            TARGET => self.out.target.into(),
+            STATUS => actual.status.word().into(),
+            SPEED => actual.speed.into(),
+            POSITION => actual.position.into(),
+            NEWEST_ERROR..=OLDEST_ERROR => {
+                self.errors.get(usize::from(number - NEWEST_ERROR)).map_or(0, |code| code.code().into())
+            }
             116..=118 => 0,
             // Between −273 and a few hundred.
             119 => self.celsius.round() as i64,
-            120 => self.variant.number().into(),
+            VARIANT => self.variant.number().into(),
             121 => return text(self.variant.row().map_or("", |row| row.name)),
             122 => return text("7800.0001"),
             123 => return text("4711"),
@@ -71,8 +77,8 @@ impl Drive {
             127 => return text("A25"),
             128 => return text("A20"),
             129 => return text("35"),
-            197 => self.faults.into(),
-            199 => 0,
+            ACKNOWLEDGE => self.faults.into(),
+            RESET => 0,
             _ => self.memory.get(number)?,
         };
         Some(Value::Number(value))
@@ -80,7 +86,7 @@ impl Drive {
 
     /// Returns whether writing this restarts the drive: 0 → 1 of 152, and 199.
     pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
-        number == 199 || (number, value) == (152, 1) && self.memory.get(152) == Some(0)
+        number == RESET || (number, value) == (REQUESTED, 1) && self.memory.get(REQUESTED) == Some(0)
     }
 
     /// Writes a parameter by the number of drive 1; its range has been checked.
@@ -88,17 +94,17 @@ impl Drive {
         self.advance(now);
         let mut out = self.out;
         match number {
-            101 => out.control = u16::try_from(value).map_err(|_| Refused::Value)?,
-            102 => out.speed = u8::try_from(value).map_err(|_| Refused::Value)?,
-            103 => out.torque = u8::try_from(value).map_err(|_| Refused::Value)?,
-            104 => out.target = i32::try_from(value).map_err(|_| Refused::Value)?,
-            158 | 160 => return self.write_limit(number, value),
-            197 => {
+            CONTROL => out.control = u16::try_from(value).map_err(|_| Refused::Value)?,
+            SPEED_SHARE => out.speed = u8::try_from(value).map_err(|_| Refused::Value)?,
+            TORQUE_SHARE => out.torque = u8::try_from(value).map_err(|_| Refused::Value)?,
+            TARGET => out.target = i32::try_from(value).map_err(|_| Refused::Value)?,
+            LOWER | UPPER => return self.write_limit(number, value),
+            ACKNOWLEDGE => {
                 self.forgive();
                 return Ok(());
             }
-            198 => return self.write_position(value),
-            199 => {
+            REFERENCE => return self.write_position(value),
+            RESET => {
                 if value == 1 {
                     self.memory.forget();
                     self.forget_place();
@@ -124,7 +130,7 @@ impl Drive {
     /// 160 is above 158, and the position between them.
     fn write_limit(&mut self, number: u16, value: i64) -> Result<(), Refused> {
         let (low, high) = self.limits();
-        let (low, high) = if number == 158 { (value, high.into()) } else { (low.into(), value) };
+        let (low, high) = if number == LOWER { (value, high.into()) } else { (low.into(), value) };
         if low >= high || !(low..=high).contains(&self.position().into()) {
             return Err(self.refuses());
         }
@@ -142,7 +148,7 @@ impl Drive {
             return Err(Refused::State);
         }
         self.offset = f64::from(position) / self.scale().steps_per_turn() * TURN - self.axis.place();
-        self.memory.set(198, position.into());
+        self.memory.set(REFERENCE, position.into());
         Ok(())
     }
 

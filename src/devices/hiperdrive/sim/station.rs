@@ -13,6 +13,7 @@ use super::drive::Drive;
 use super::memory::Memory;
 use super::parameters::Refused;
 use super::write_fault::{ActiveWriteFault, WriteFault};
+use crate::devices::hiperdrive::protocol::drive_parameter::{MAXIMUM_SPEED, REQUESTED, SERVICE, VARIANT};
 use crate::devices::hiperdrive::protocol::{
     Access, Actual, DriveNumber, Family, InImage, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Topology,
     Travel, Value, Variant,
@@ -130,8 +131,8 @@ impl Station {
         station.resets = config.resets;
         for drive in station.present() {
             drive.axis = Axis::at(config.position.into());
-            config.requested.iter().for_each(|requested| drive.memory.preset(152, i64::from(*requested)));
-            config.speed.iter().for_each(|speed| drive.memory.preset(166, i64::from(*speed)));
+            config.requested.iter().for_each(|requested| drive.memory.preset(REQUESTED, i64::from(*requested)));
+            config.speed.iter().for_each(|speed| drive.memory.preset(MAXIMUM_SPEED, i64::from(*speed)));
         }
         station.turn_s3(Moment::START, config.s3);
         station
@@ -254,7 +255,7 @@ impl Station {
         }
         match (self.drive(drive), row.number) {
             (Some(drive), own) => drive.read(now, own).ok_or(Refused::Unknown),
-            (None, 120 | 152) => Ok(Value::Number(0)),
+            (None, VARIANT | REQUESTED) => Ok(Value::Number(0)),
             (None, _) => Err(Refused::State),
         }
     }
@@ -367,7 +368,7 @@ impl Station {
             17 => self.setup.serial_number.into(),
             18 => return text("14/2024"),
             19 => return text("1.02"),
-            47 => i64::from(now < self.busy_until),
+            SERVICE => i64::from(now < self.busy_until),
             number => self.memory.get(number)?,
         };
         Some(Value::Number(number))

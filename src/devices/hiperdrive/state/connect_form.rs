@@ -164,9 +164,7 @@ impl HiperdriveForm {
         if self.big_endian {
             parameters.set(BIG_ENDIAN.0, BIG_ENDIAN.1);
         }
-        // Parameters of a virtual device are dropped.
-        let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !Config::KEYS.contains(&name);
-        parameters.rest(&self.rest, belongs);
+        parameters.rest_of(&self.rest, is_virtual, (LinkParameters::KEYS, Config::KEYS));
         parameters
     }
 }

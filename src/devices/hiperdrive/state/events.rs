@@ -74,10 +74,8 @@ impl Kind for Hiperdrive {
     }
 
     fn result_texts(output: &HiperdriveOutput) -> Option<(Severity, Vec<Text>)> {
-        match output {
-            HiperdriveOutput::Committed(committed) => Some(written_texts::<Hiperdrive>(committed)),
-            _ => None,
-        }
+        let HiperdriveOutput::Committed(committed) = output else { return None };
+        Some(written_texts::<Hiperdrive>(committed))
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {

@@ -6,10 +6,13 @@ use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
 use crate::devices::hiperdrive::jobs::{Hiperdrive, check};
+use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::devices::hiperdrive::protocol::DriveNumber;
+use crate::devices::hiperdrive::sim::Config;
 use crate::devices::hiperdrive::state::explain;
 use crate::link::LinkUrl;
+use crate::parameter::Parameters as _;
 use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
@@ -39,5 +42,9 @@ impl DeviceType for Unit {
             unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
         }
         unit
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [LinkParameters::SECRETS, Config::SECRETS].concat()
     }
 }

@@ -9,6 +9,7 @@ use crate::app::session::Phase;
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::procedures::DriveLimits;
 use crate::devices::hiperdrive::procedures::dead_man::{Goal, Lock, MotionRequest, Phase as Doing};
+use crate::devices::hiperdrive::protocol::drive_parameter::MAXIMUM_SPEED;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Percent, RunEnd, State, effective_torque};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
@@ -242,7 +243,7 @@ impl Unit {
 
     /// Returns the speed of a percentage, by parameter 166.
     pub fn speed_of(&self, percent: Percent) -> Option<Text> {
-        let most = self.number(self.drive(), 166)?;
+        let most = self.number(self.drive(), MAXIMUM_SPEED)?;
         // Tenths of rpm, and percent.
         let rpm = most as f64 * f64::from(percent.get()) / 1000.0;
         Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))

@@ -11,6 +11,7 @@ use crate::app::{Text, explain};
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, Prepared};
 use crate::devices::hiperdrive::procedures::write::Written;
 use crate::devices::hiperdrive::profile::{self, Base, Image, Op, Service, warnings};
+use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, REFERENCE, UPPER};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, Length, ParameterNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
@@ -80,7 +81,7 @@ impl Reviewed for Hiperdrive {
     fn cost(prepared: &Prepared) -> Text {
         let saves = prepared.plan.write_cycles();
         if saves == 0 {
-            let sets = |op: &Op| matches!(op, Op::Write { number, .. } if number.base() == 198);
+            let sets = |op: &Op| matches!(op, Op::Write { number, .. } if number.base() == REFERENCE);
             let position = prepared.plan.ops.iter().any(sets);
             return TEXTS.text(if position { "hd_review.cost_position" } else { "hd_review.cost_nothing" });
         }
@@ -118,7 +119,7 @@ pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber)
 /// time.
 fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
     match (number.base(), number.drive()) {
-        (158 | 160 | 170 | 176 | 198, Some(drive)) => {
+        (LOWER | UPPER | 170 | 176 | REFERENCE, Some(drive)) => {
             let scale = image.scale(drive)?;
             if pitch.is_some() {
                 return Some(millimetres(Some(Ruler { scale, pitch }), value));

@@ -7,6 +7,10 @@ use super::words;
 use crate::app::Text;
 use crate::app::number::decimals_of;
 use crate::devices::hiperdrive::profile::Image;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    CONTROL, DENOMINATOR, LOWER, NEWEST_ERROR, NUMERATOR, OLDEST_ERROR, POSITION, REFERENCE, SPEED, SPEED_SHARE,
+    STATUS, TARGET, TORQUE_SHARE, UPPER,
+};
 use crate::devices::hiperdrive::protocol::{
     Access, DriveNumber, Family, PARAMETERS, ParameterNumber, ParameterRow, Topology, Travel, Value,
 };
@@ -107,14 +111,16 @@ impl Unit {
     fn said_since(&self, number: ParameterNumber) -> Option<Value> {
         let drive = number.drive()?;
         let value = match number.base() {
-            101 => self.moves.sent(drive)?.control.word().into(),
-            102 => self.moves.sent(drive)?.speed.get().into(),
-            103 => self.moves.sent(drive)?.torque.get().into(),
-            104 => self.moves.sent(drive)?.target.into(),
-            105 => self.actual(drive)?.status.word().into(),
-            106 => self.actual(drive)?.speed.into(),
-            107 => self.actual(drive)?.position.into(),
-            base @ 108..=115 => self.drive_status(drive)?.buffer.get(usize::from(base - 108))?.code().into(),
+            CONTROL => self.moves.sent(drive)?.control.word().into(),
+            SPEED_SHARE => self.moves.sent(drive)?.speed.get().into(),
+            TORQUE_SHARE => self.moves.sent(drive)?.torque.get().into(),
+            TARGET => self.moves.sent(drive)?.target.into(),
+            STATUS => self.actual(drive)?.status.word().into(),
+            SPEED => self.actual(drive)?.speed.into(),
+            POSITION => self.actual(drive)?.position.into(),
+            base @ NEWEST_ERROR..=OLDEST_ERROR => {
+                self.drive_status(drive)?.buffer.get(usize::from(base - NEWEST_ERROR))?.code().into()
+            }
             _ => return None,
         };
         Some(Value::Number(value))
@@ -152,7 +158,7 @@ impl Unit {
         let drive = number.drive();
         match (number.base(), drive) {
             // Positions in the edited scale.
-            (158 | 160 | 198 | 104 | 107 | 170 | 176, Some(drive)) => {
+            (LOWER | UPPER | REFERENCE | TARGET | POSITION | 170 | 176, Some(drive)) => {
                 let ruler = self.wanted_ruler(drive);
                 let measure = if ruler.pitch.is_some() { Measure::Millimetres } else { Measure::Turns };
                 let place = ruler.of(*value, measure)?;
@@ -163,11 +169,11 @@ impl Unit {
                 );
                 Some(text.with_text("unit", TEXTS.text(measure.unit())))
             }
-            (154 | 156, Some(drive)) => {
+            (NUMERATOR | DENOMINATOR, Some(drive)) => {
                 let steps = self.wanted_ruler(drive).scale.steps_per_turn();
                 Some(TEXTS.text("hd_meaning.steps_a_turn").with_number("steps", steps, decimals_of(steps, 3)))
             }
-            (106, Some(drive)) => {
+            (SPEED, Some(drive)) => {
                 let rpm = self.speed_scale(drive).rpm(i16::try_from(*value).ok()?);
                 Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))
             }

@@ -13,13 +13,14 @@ use crate::app::{DeviceFile, FileQuestion, Language, Severity, Text};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob};
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest};
 use crate::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
+use crate::devices::hiperdrive::protocol::drive_parameter::{NUMERATOR, REFERENCE, REQUESTED};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::store::write_atomically;
 
 /// Parameters of a drive that a set-up uses, by the numbers of drive 1.
-const AXIS: std::ops::RangeInclusive<u16> = 152..=198;
+const AXIS: std::ops::RangeInclusive<u16> = 152..=REFERENCE;
 
 impl Unit {
     /// Returns the set-up of the selected drive; `None` if none has begun.
@@ -35,7 +36,7 @@ impl Unit {
         match self.session.why_not_ready() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
-            None if self.survey.is_none() || self.number(self.drive(), 154).is_none() => {
+            None if self.survey.is_none() || self.number(self.drive(), NUMERATOR).is_none() => {
                 Err(TEXTS.text("hd_axis.unread"))
             }
             None => Ok(()),
@@ -72,7 +73,7 @@ impl Unit {
             values: AXIS.filter_map(|number| Some((number, self.number(drive, number)?))).collect(),
             unsaved: self.unsaved_of(drive),
             times_set: self.times_set(drive),
-            requested: self.number(drive, 152).map(|value| value == 1),
+            requested: self.number(drive, REQUESTED).map(|value| value == 1),
             scale: self.scale(drive),
             pitch: self.pitch(drive),
             limits: self.limits(drive),

@@ -17,8 +17,8 @@ use serde::{Deserialize, Serialize};
 pub use edit::{Edit, EditError, LimitsPolicy};
 pub use mark::Mark;
 
-use crate::app::PendingEdits;
 use crate::app::history::History;
+use crate::app::{Stepped, SteppedParts};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, ParameterNumber, ParameterRow, Travel};
 
@@ -221,37 +221,23 @@ impl Staged {
     }
 }
 
-impl PendingEdits for Staged {
-    fn count(&self) -> usize {
+impl Stepped for Staged {
+    type Values = Image;
+
+    fn differences_count(&self) -> usize {
         self.differences().len()
     }
 
-    fn is_dirty(&self) -> bool {
+    fn is_edited(&self) -> bool {
         self.base != self.wanted
     }
 
-    fn can_undo(&self) -> bool {
-        self.history.can_undo()
+    fn history(&self) -> &History<Image> {
+        &self.history
     }
 
-    fn can_redo(&self) -> bool {
-        self.history.can_redo()
-    }
-
-    fn undo(&mut self) -> bool {
-        self.wanted.as_mut().is_some_and(|wanted| self.history.undo(wanted))
-    }
-
-    fn redo(&mut self) -> bool {
-        self.wanted.as_mut().is_some_and(|wanted| self.history.redo(wanted))
-    }
-
-    fn revert(&mut self) -> bool {
-        self.base.clone().is_some_and(|base| self.step(base))
-    }
-
-    fn forget_steps(&mut self) {
-        self.history.forget();
+    fn parts(&mut self) -> Option<SteppedParts<'_, Image>> {
+        Some((self.base.as_ref()?, self.wanted.as_mut()?, &mut self.history))
     }
 }
 

@@ -8,6 +8,7 @@ use crate::app::{SettingsReadState, Severity, Text};
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::procedures::{DriveLimits, DriveReading, Identity, LimitsSeen, Survey};
 use crate::devices::hiperdrive::profile::Image;
+use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, NUMERATOR, REFERENCE};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, State, Value};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
@@ -79,11 +80,12 @@ impl Unit {
         let held = self.drive_limits(drive).filter(|_| self.moves.is_open());
         held.and_then(DriveLimits::seen).is_some_and(|own| {
             let shown = self.staged.base();
-            let scale = shown.and_then(|image| image.of_drive(drive, 154).zip(image.of_drive(drive, 156)));
+            let scale =
+                shown.and_then(|image| image.of_drive(drive, NUMERATOR).zip(image.of_drive(drive, DENOMINATOR)));
             Some(own.limits) != shown.and_then(|image| image.limits(drive)) || Some(own.scale) != scale
         }) || held
             .and_then(|own| own.rules().reference)
-            .zip(self.number(drive, 198))
+            .zip(self.number(drive, REFERENCE))
             .is_some_and(|(own, shown)| own != shown)
     }
 

@@ -21,6 +21,9 @@ use crate::devices::hiperdrive::procedures::{
     DriveIdentity, DriveLimits, DriveReading, DriveStatus, Identity, Network, Status, Survey,
 };
 use crate::devices::hiperdrive::profile::{HiperdriveProfile, Image, ProfileIdentity};
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    POSITION, SPEED, SPEED_DENOMINATOR, SPEED_NUMERATOR, STATUS,
+};
 use crate::devices::hiperdrive::protocol::{
     Actual, DriveNumber, Length, ParameterNumber, PositionScale, SpeedScale, State, StatusWord, Value,
 };
@@ -221,9 +224,9 @@ impl Unit {
 
     fn surveyed(&self, drive: DriveNumber) -> Option<Actual> {
         Some(Actual {
-            status: StatusWord::new(u16::try_from(self.number(drive, 105)?).ok()?),
-            speed: i16::try_from(self.number(drive, 106)?).ok()?,
-            position: i32::try_from(self.number(drive, 107)?).ok()?,
+            status: StatusWord::new(u16::try_from(self.number(drive, STATUS)?).ok()?),
+            speed: i16::try_from(self.number(drive, SPEED)?).ok()?,
+            position: i32::try_from(self.number(drive, POSITION)?).ok()?,
         })
     }
 
@@ -263,7 +266,9 @@ impl Unit {
     /// Returns the scale of a drive's speed.
     pub fn speed_scale(&self, drive: DriveNumber) -> SpeedScale {
         let part = |number| self.number(drive, number).and_then(|value| u16::try_from(value).ok());
-        let scale = part(162).zip(part(164)).and_then(|(above, below)| SpeedScale::new(above, below).ok());
+        let scale = part(SPEED_NUMERATOR)
+            .zip(part(SPEED_DENOMINATOR))
+            .and_then(|(above, below)| SpeedScale::new(above, below).ok());
         scale.unwrap_or(SpeedScale::FACTORY)
     }
 

@@ -3,6 +3,9 @@
 use super::staged::{EditError, Mark};
 use crate::app::Text;
 use crate::app::explain::plain;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    CONTROL, MAXIMUM_SPEED, NEWEST_ERROR, NO_TIMEOUT, OLDEST_ERROR, REQUESTED, SERVICE, STATUS, TIMEOUT, VARIANT,
+};
 use crate::devices::hiperdrive::protocol::{
     self, AddressSwitch, ErrorCode, Kind, ParameterNumber, ParameterRow, StatusWord, Value, Variant,
 };
@@ -14,7 +17,7 @@ use crate::devices::hiperdrive::state::explain as words;
 pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     match value {
         Value::Text(text) => text.clone(),
-        Value::Number(value) if matches!(number.base(), 101 | 105 | 108..=118) => format!("0x{value:04X}"),
+        Value::Number(value) if matches!(number.base(), CONTROL | STATUS | 108..=118) => format!("0x{value:04X}"),
         Value::Number(value) => value.to_string(),
     }
 }
@@ -49,20 +52,20 @@ pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
             Some(switch) => hiperdrive::switch(switch),
             None => TEXTS.text("hd_check.unknown_switch").with("number", value),
         },
-        47 => TEXTS.text(if value == 0 { "hd_meaning.saved" } else { "hd_meaning.not_saved" }),
-        105 => hiperdrive::state(StatusWord::new(word()?).state()),
-        108..=115 if value == 0 => TEXTS.text("hd_meaning.no_error"),
-        108..=115 => hiperdrive::error(ErrorCode::new(word()?)).name,
+        SERVICE => TEXTS.text(if value == 0 { "hd_meaning.saved" } else { "hd_meaning.not_saved" }),
+        STATUS => hiperdrive::state(StatusWord::new(word()?).state()),
+        NEWEST_ERROR..=OLDEST_ERROR if value == 0 => TEXTS.text("hd_meaning.no_error"),
+        NEWEST_ERROR..=OLDEST_ERROR => hiperdrive::error(ErrorCode::new(word()?)).name,
         116..=118 => TEXTS.text(match value {
             0 => "hd_meaning.word_well",
             0xFFFF => "hd_meaning.word_none",
             _ => "hd_meaning.word_error",
         }),
-        120 => hiperdrive::variant(Variant::new(word()?)),
-        152 => TEXTS.text(if value == 0 { "hd_meaning.not_requested" } else { "hd_meaning.requested" }),
-        166 => tenths("hd_entry.rpm", "rpm"),
-        186 if value == 255 => TEXTS.text("hd_meaning.no_timeout"),
-        186 => tenths("hd_check.timeout", "seconds"),
+        VARIANT => hiperdrive::variant(Variant::new(word()?)),
+        REQUESTED => TEXTS.text(if value == 0 { "hd_meaning.not_requested" } else { "hd_meaning.requested" }),
+        MAXIMUM_SPEED => tenths("hd_entry.rpm", "rpm"),
+        TIMEOUT if value == NO_TIMEOUT => TEXTS.text("hd_meaning.no_timeout"),
+        TIMEOUT => tenths("hd_check.timeout", "seconds"),
         _ => return None,
     })
 }

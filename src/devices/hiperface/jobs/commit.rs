@@ -3,11 +3,11 @@
 use super::{ChangeKind, Commit, Committed, Hiperface, JobError, JobStep, Prepared, WEAR_LIMIT};
 use crate::devices::hiperface::procedures::write::EncoderWrite;
 use crate::devices::hiperface::procedures::{Identity, profile_of};
-use crate::devices::hiperface::profile::{Base, HiperfacePlan, Op, Recorded, Scalar, created_by};
+use crate::devices::hiperface::profile::{Base, Op, Recorded, Scalar, created_by};
 use crate::devices::hiperface::protocol::KIND;
 use crate::profile::Body;
 use crate::store::DeviceKey;
-use crate::worker::commit::{Planned, backup_of, write_plan};
+use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
 use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
@@ -32,24 +32,12 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn plan(&self) -> &HiperfacePlan {
-        &self.plan
-    }
-
-    fn kind(&self) -> ChangeKind {
-        self.kind
+    fn head(&self) -> PlanHead<'_, Self> {
+        PlanHead { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: WEAR_LIMIT }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
         device_key(&self.identity, is_virtual)
-    }
-
-    fn cycles_seen(&self) -> Option<u64> {
-        self.cycles_seen
-    }
-
-    fn wear_limit(&self) -> u64 {
-        WEAR_LIMIT
     }
 
     fn note(&self, op: &Op) -> String {

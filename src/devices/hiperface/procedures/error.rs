@@ -169,11 +169,7 @@ pub enum Damage {
 
 impl From<LineError> for Error {
     fn from(error: LineError) -> Self {
-        match error {
-            LineError::Cancelled => Error::Cancelled,
-            LineError::NeverSilent => Error::NeverSilent,
-            LineError::Link(error) => Error::Link(error),
-        }
+        error.at_device(Error::Cancelled, Error::NeverSilent, Error::Link)
     }
 }
 

@@ -27,7 +27,7 @@ parameters! {
         pub(super) echo: bool = false, "echo" => SWITCH;
         pub(super) encoders: u8 = 1, "encoders" => Whole(Quantity::Number, 1..=8);
         pub(super) pace: Pace = Pace::Typical, "pace" => Words(&[("typical", Pace::Typical), ("worst", Pace::Worst)]);
-        pub(super) codes: [AccessCode; 4] = [AccessCode::FACTORY; 4], "codes" => Codes;
+        pub(super) codes: [AccessCode; 4] = [AccessCode::FACTORY; 4], secret "codes" => Codes;
     }
 }
 
@@ -130,11 +130,6 @@ impl Values for Codes {
 
     fn allowed(&self) -> Expected {
         Expected::AccessCodes
-    }
-
-    // The text is not repeated in the error: it contains access codes.
-    fn take(&self, key: &str, value: &str) -> Result<Self::Value, Refused> {
-        self.read(value).ok_or_else(|| Refused::new(key, "**", self.allowed()))
     }
 }
 

@@ -1,20 +1,19 @@
 //! The connection form and its link. Nothing is opened here; allowed values come from the station and the virtual
 //! encoder.
 
-use std::time::Duration;
-
 use super::search::SearchFinder;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
-use crate::app::connect::parameters::{Parameters, without_entry};
+use crate::app::connect::parameters::{Parameters, Typed, without_entry};
 use crate::app::connect::target::{entered, filled, host_and_port, parted, refused};
 use crate::devices::hiperface::jobs::check;
-use crate::devices::hiperface::procedures::{Echo, LinkParameters, MOST_PERIODS, Station};
+use crate::devices::hiperface::procedures::{Echo, LinkParameters, MOST_PERIODS};
 use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
 use crate::devices::hiperface::sim::{Config, MODELS};
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::forms::with_addresses;
-use crate::link::{LinkUrl, Query, Scheme, UrlError};
+use crate::link::{LinkUrl, Scheme, UrlError};
+use crate::parameter::{Entry, Parameters as _, Values as _, chosen};
 use crate::sim::ConfigError;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
@@ -54,18 +53,10 @@ pub struct LinkForm {
     pub echo: Echo,
     /// If set, the encoder's time-out is 44 bits, else 11.
     pub long_timeout: bool,
-    /// Milliseconds that a reply may come later than the protocol's worst case.
-    pub margin: String,
-    /// Periods in a revolution, for a type that is not in the table.
-    pub periods: String,
-    /// Turns, for a type that is not in the table.
-    pub turns: String,
     /// Model of the virtual encoder.
     pub model: String,
-    /// Its speed in revolutions per minute.
-    pub rpm: String,
-    /// Injected faults.
-    pub fault: String,
+    /// Text of other parameters.
+    pub typed: Typed,
     /// Parameters of the link that have no entry, or a value that their entry cannot show.
     pub rest: Vec<(String, String)>,
 }
@@ -86,12 +77,8 @@ impl Default for LinkForm {
             address: address_words(DeviceAddress::FACTORY.byte()),
             echo: Echo::Unknown,
             long_timeout: true,
-            margin: String::new(),
-            periods: String::new(),
-            turns: String::new(),
             model: model.name.to_owned(),
-            rpm: String::new(),
-            fault: String::new(),
+            typed: Typed::default(),
             rest: Vec::new(),
         }
     }
@@ -144,33 +131,40 @@ impl LinkForm {
         MODELS.iter().map(|model| model.name)
     }
 
+    /// Returns the entries of the virtual encoder that are typed.
+    pub fn of_the_virtual() -> Vec<Entry> {
+        chosen(&Config::entries(), &["rpm", "fault"])
+    }
+
+    /// Returns the entries of the link that are typed.
+    pub fn of_the_link() -> Vec<Entry> {
+        LinkParameters::entries()
+    }
+
+    /// The parameters that are typed: those of the virtual encoder, where it is one, and those of the link.
+    fn entries(&self) -> Vec<Entry> {
+        let own = if self.kind == LinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
+        [own, Self::of_the_link()].concat()
+    }
+
     /// Fills in the entry of a parameter; returns false if no entry can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
-        let entry = match name {
-            "margin" => &mut self.margin,
-            "periods" => &mut self.periods,
-            "turns" => &mut self.turns,
-            "model" if self.kind == LinkKind::Virtual => &mut self.model,
-            "rpm" if self.kind == LinkKind::Virtual => &mut self.rpm,
-            "fault" if self.kind == LinkKind::Virtual => &mut self.fault,
-            _ => return self.take_choice(name, value),
-        };
-        value.clone_into(entry);
-        true
+        if (name, self.kind) == ("model", LinkKind::Virtual) {
+            value.clone_into(&mut self.model);
+            return true;
+        }
+        self.typed.take(&self.entries(), name, value) || self.take_choice(name, value)
     }
 
     fn take_choice(&mut self, name: &str, value: &str) -> bool {
-        let Ok(query) = format!("{name}={value}").parse::<Query>() else { return false };
-        let Ok(station) = Station::from_query(&query, Duration::ZERO) else { return false };
-        match name {
-            "baud" => self.baud = station.format.baud,
-            "parity" => self.parity = station.format.parity,
-            "address" => self.address = address_words(station.address),
-            "echo" => self.echo = station.line.echo,
-            "timeout" => self.long_timeout = station.long_timeout,
-            _ => return false,
+        let (baud, parity, echo, long_timeout) = (self.baud, self.parity, self.echo, self.long_timeout);
+        let mut link = LinkParameters { baud, parity, echo, long_timeout, ..LinkParameters::default() };
+        let is_taken = link.set(name, value).unwrap_or(false);
+        (self.baud, self.parity, self.echo, self.long_timeout) = (link.baud, link.parity, link.echo, link.long_timeout);
+        if is_taken && name == "address" {
+            self.address = address_words(link.address);
         }
-        true
+        is_taken
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
@@ -189,8 +183,7 @@ impl LinkForm {
             if filled(&self.model).is_some_and(|model| model != usual.model) {
                 parameters.entry("model", &self.model);
             }
-            parameters.decimal("rpm", &self.rpm);
-            parameters.entry("fault", &self.fault);
+            parameters.typed(&Self::of_the_virtual(), &self.typed);
         }
         if self.baud != usual.baud {
             parameters.set("baud", &self.baud.to_string());
@@ -202,19 +195,14 @@ impl LinkForm {
         if address != DeviceAddress::FACTORY.byte() {
             parameters.set("address", &format!("0x{address:02X}"));
         }
-        match self.echo {
-            Echo::Unknown => {}
-            Echo::On => parameters.set("echo", "on"),
-            Echo::Off => parameters.set("echo", "off"),
+        if self.echo != Echo::Unknown {
+            parameters.set("echo", &Echo::WORDS.print(&self.echo));
         }
         if !self.long_timeout {
             parameters.set("timeout", "11");
         }
-        parameters.entry("margin", &self.margin);
-        parameters.entry("periods", &self.periods);
-        parameters.entry("turns", &self.turns);
-        // Parameters of a virtual encoder do not apply to the others.
-        parameters.rest(&self.rest, |name| self.kind == LinkKind::Virtual || !virtual_only(name));
+        parameters.typed(&Self::of_the_link(), &self.typed);
+        parameters.rest_of(&self.rest, self.kind == LinkKind::Virtual, (LinkParameters::KEYS, Config::KEYS));
         Ok(parameters)
     }
 
@@ -248,7 +236,7 @@ impl LinkForm {
                 return TEXTS.text("form.model").with("value", value).with("models", models);
             }
             "periods" => "form.periods",
-            "turns" if self.periods.trim().is_empty() => "form.turns_alone",
+            "turns" if self.typed.get("periods").trim().is_empty() => "form.turns_alone",
             "turns" => "form.turns",
             _ => return refused(url, error),
         };
@@ -258,10 +246,6 @@ impl LinkForm {
 
 fn address_words(address: u8) -> String {
     if address == BROADCAST { BROADCAST_WORD.to_owned() } else { format!("{address:02X}") }
-}
-
-fn virtual_only(name: &str) -> bool {
-    Config::KEYS.contains(&name) && !LinkParameters::KEYS.contains(&name)
 }
 
 #[cfg(test)]

@@ -54,10 +54,8 @@ impl Kind for Hiperface {
     }
 
     fn result_texts(output: &HiperfaceOutput) -> Option<(Severity, Vec<Text>)> {
-        match output {
-            HiperfaceOutput::Committed(committed) => Some(written_texts::<Hiperface>(committed)),
-            _ => None,
-        }
+        let HiperfaceOutput::Committed(committed) = output else { return None };
+        Some(written_texts::<Hiperface>(committed))
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {

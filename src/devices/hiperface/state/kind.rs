@@ -5,11 +5,13 @@ use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Severity, Text};
 use crate::devices::hiperface::jobs::{self, Hiperface, check, encoder_types};
-use crate::devices::hiperface::procedures::identity_of;
+use crate::devices::hiperface::procedures::{LinkParameters, identity_of};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::EncoderTypes;
+use crate::devices::hiperface::sim::Config;
 use crate::devices::hiperface::state::explain as words;
 use crate::link::LinkUrl;
+use crate::parameter::Parameters as _;
 use crate::profile::Cause;
 use crate::store::{Store, StoreError};
 use crate::worker::OpenError;
@@ -52,5 +54,9 @@ impl DeviceType for Encoder {
             encoder.staged.refresh(profile.fields.clone());
         }
         encoder
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [LinkParameters::SECRETS, Config::SECRETS].concat()
     }
 }

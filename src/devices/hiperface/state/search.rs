@@ -210,7 +210,7 @@ impl Finder for SearchFinder {
     fn end(&mut self, services: &mut Services) -> Option<Receiver<()>> {
         let search = self.search.take()?;
         if let Some(line) = search.line {
-            let (session, about) = (SessionId(search.number), search.url.to_string());
+            let (session, about) = (SessionId(search.number), services.world.kinds.shown_link(&search.url));
             let who = ClosingSessionInfo { session, about, url: search.url, write: None };
             services.leave(line.into_worker(), who, None);
         }

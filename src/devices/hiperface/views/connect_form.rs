@@ -13,9 +13,9 @@ use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::protocol::BAUDS;
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{LinkForm, LinkKind, Search, SearchAction, SearchFinder};
-use crate::ui::controls::{allowed_button, button, choice, entry, fill, name, paragraph, spinner, text_entry};
+use crate::ui::controls::{allowed_button, button, choice, entry, fill, paragraph, spinner, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{echo, margin, network, parity, recording, serial, unfolded};
+use crate::ui::dialogs::connect::entries::{echo, network, parity, recording, segments, serial, typed, unfolded};
 use crate::ui::{Theme, icons};
 
 /// The state of the search options between frames.
@@ -43,7 +43,13 @@ impl TypedConnectForm for HiperfaceConnectForm {
         (view, open): (&mut SearchView, &mut bool),
         actions: &mut Vec<Action>,
     ) {
-        kinds(ui, theme, form);
+        let kinds = [
+            (LinkKind::Virtual, "connect.virtual"),
+            (LinkKind::Serial, "connect.serial"),
+            (LinkKind::Tcp, "connect.tcp"),
+            (LinkKind::Replay, "connect.replay"),
+        ];
+        segments(ui, theme, &mut form.kind, kinds);
         ui.add_space(theme.space.between);
         match form.kind {
             LinkKind::Virtual => simulated(ui, theme, form),
@@ -62,24 +68,6 @@ impl TypedConnectForm for HiperfaceConnectForm {
     }
 }
 
-fn kinds(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
-    ui.horizontal(|ui| {
-        let kinds = [
-            (LinkKind::Virtual, "connect.virtual"),
-            (LinkKind::Serial, "connect.serial"),
-            (LinkKind::Tcp, "connect.tcp"),
-            (LinkKind::Replay, "connect.replay"),
-        ];
-        for (kind, id) in kinds {
-            let word = say(theme, id);
-            let response = ui.add(egui::Button::selectable(form.kind == kind, &word));
-            if name(response, true, &word).clicked() {
-                form.kind = kind;
-            }
-        }
-    });
-}
-
 fn simulated(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
     entry(ui, theme, &say(theme, "connect.model"), |ui| {
         let mut at = LinkForm::models().position(|model| model == form.model).unwrap_or(0);
@@ -90,12 +78,7 @@ fn simulated(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
             model.clone_into(&mut form.model);
         }
     });
-    entry(ui, theme, &theme.say("connect.rpm"), |ui| {
-        text_entry(ui, &mut form.rpm, 96.0, &theme.say("connect.rpm"), "0")
-    });
-    entry(ui, theme, &theme.say("connect.fault"), |ui| {
-        text_entry(ui, &mut form.fault, 200.0, &theme.say("connect.fault"), "drop:0.01");
-    });
+    typed(ui, theme, say, LinkForm::of_the_virtual(), &mut form.typed);
 }
 
 fn line(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
@@ -120,12 +103,7 @@ fn more(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut bool) {
         let times = times.map(|(long, id)| (long, say(theme, id)));
         choice(ui, &say(theme, "settings_card.timeout"), &mut form.long_timeout, times);
     });
-    margin(ui, theme, &mut form.margin);
-    entry(ui, theme, &say(theme, "connect.periods"), |ui| {
-        text_entry(ui, &mut form.periods, 72.0, &say(theme, "connect.periods"), "128");
-        ui.label(theme.label(say(theme, "connect.turns")));
-        text_entry(ui, &mut form.turns, 72.0, &say(theme, "connect.turns"), "4096");
-    });
+    typed(ui, theme, say, LinkForm::of_the_link(), &mut form.typed);
 }
 
 fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchView, actions: &mut Vec<Action>) {

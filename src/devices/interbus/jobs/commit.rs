@@ -5,10 +5,10 @@ use super::{
     wear_limit,
 };
 use crate::devices::interbus::procedures::write::EncoderWrite;
-use crate::devices::interbus::profile::{Base, Image, InterbusPlan, InterbusProfile, Op, Recorded};
+use crate::devices::interbus::profile::{Base, Image, InterbusProfile, Op, Recorded};
 use crate::profile::Body;
 use crate::store::DeviceKey;
-use crate::worker::commit::{Planned, backup_of, write_plan};
+use crate::worker::commit::{PlanHead, Planned, backup_of, write_plan};
 use crate::worker::{JobReport, SessionContext};
 
 pub(super) fn commit(
@@ -31,24 +31,13 @@ impl Planned for Prepared {
     type Op = Op;
     type Kind = ChangeKind;
 
-    fn plan(&self) -> &InterbusPlan {
-        &self.plan
-    }
-
-    fn kind(&self) -> ChangeKind {
-        self.kind
+    fn head(&self) -> PlanHead<'_, Self> {
+        let wear_limit = wear_limit(self.plan.write_cycles());
+        PlanHead { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit }
     }
 
     fn device(&self, is_virtual: bool) -> DeviceKey {
         device_key(&self.identity, is_virtual)
-    }
-
-    fn cycles_seen(&self) -> Option<u64> {
-        self.cycles_seen
-    }
-
-    fn wear_limit(&self) -> u64 {
-        wear_limit(self.plan.write_cycles())
     }
 
     fn note(&self, op: &Op) -> String {

@@ -8,15 +8,17 @@ use crate::devices::interbus::procedures::{Error, Handshake, Identity, Status, S
 use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Item, ItemValue, OtherType, Parameters, PlanError, RestoreOptions,
 };
-use crate::devices::interbus::protocol::{KIND, Program, ProgramNumber, ReadOut, StartupMode, Value, WindowShift};
+use crate::devices::interbus::protocol::{
+    GUARANTEED_STORES, KIND, NOMINAL_STORES, Program, ProgramNumber, ReadOut, StartupMode, Value, WindowShift,
+};
 use crate::store::DeviceKey;
 
 /// Number of stores from which the user is warned of wear (reference 3: some 200, at most 500).
 pub const WEAR_WARNING: u64 = 150;
 /// Number of stores beyond which the user has to confirm once more.
-pub const WEAR_ASK: u64 = 200;
+pub const WEAR_ASK: u64 = NOMINAL_STORES as u64;
 /// Stores that the maker guarantees at the very most.
-pub const WEAR_LAST: u64 = 500;
+pub const WEAR_LAST: u64 = GUARANTEED_STORES as u64;
 /// Stores at which the EEPROM counts as worn.
 pub const WEAR_LIMIT: u64 = 450;
 

@@ -33,6 +33,11 @@ mod word_order;
 /// The word for this kind of device: on the command line, in profiles, and in stored data.
 pub const KIND: &str = "interbus";
 
+/// Stores that the EEPROM is made for (reference 3).
+pub const NOMINAL_STORES: u32 = 200;
+/// Stores that the maker guarantees at the very most (reference 3).
+pub const GUARANTEED_STORES: u32 = 500;
+
 pub use cam::{Cam, CamNumber, Program, ProgramNumber};
 pub use cam_output::{CamBit, CamOutput, CamOutputError, WindowShift};
 pub use class::{Class, Interface, Single, class_of_id, id_code};

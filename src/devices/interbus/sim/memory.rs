@@ -1,7 +1,7 @@
 //! The settings of an encoder, and the EEPROM that stores them: about 200 stores, guaranteed up to 500 (reference 3).
 
 use crate::devices::interbus::protocol::{
-    Cam, CamNumber, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
+    Cam, CamNumber, GUARANTEED_STORES, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
 };
 
 /// The settings, all of which a store saves.
@@ -139,9 +139,6 @@ pub(super) enum Ended {
 }
 
 impl Eeprom {
-    /// Stores that are guaranteed.
-    pub(super) const LIFE: u32 = 500;
-
     pub(super) const fn new(kept: Memory, stores: u32, die_in_store: Option<u32>) -> Self {
         Eeprom { kept, lost: false, stores, begun: 0, die_in_store }
     }
@@ -159,7 +156,7 @@ impl Eeprom {
         self.stores = self.stores.saturating_add(1);
         self.begun = self.begun.saturating_add(1);
         let died = self.die_in_store == Some(self.begun);
-        if !died && self.stores <= Self::LIFE {
+        if !died && self.stores <= GUARANTEED_STORES {
             (self.kept, self.lost) = (memory.clone(), false);
             return Ended::Kept;
         }

@@ -128,9 +128,7 @@ impl InterbusForm {
         if self.low_first {
             parameters.set(LOW_FIRST.0, LOW_FIRST.1);
         }
-        // Parameters of a virtual encoder are dropped.
-        let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !Config::KEYS.contains(&name);
-        parameters.rest(&self.rest, belongs);
+        parameters.rest_of(&self.rest, is_virtual, (LinkParameters::KEYS, Config::KEYS));
         parameters
     }
 }

@@ -51,10 +51,8 @@ impl Kind for Interbus {
     }
 
     fn result_texts(output: &InterbusOutput) -> Option<(Severity, Vec<Text>)> {
-        match output {
-            InterbusOutput::Committed(committed) => Some(written_texts::<Interbus>(committed)),
-            _ => None,
-        }
+        let InterbusOutput::Committed(committed) = output else { return None };
+        Some(written_texts::<Interbus>(committed))
     }
 
     fn error_texts(error: &JobError) -> Vec<Text> {

@@ -6,9 +6,12 @@ use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
 use crate::devices::interbus::jobs::{Interbus, check};
+use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::profile::InterbusProfile;
+use crate::devices::interbus::sim::Config;
 use crate::devices::interbus::state::explain;
 use crate::link::LinkUrl;
+use crate::parameter::Parameters as _;
 use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
@@ -32,5 +35,9 @@ impl DeviceType for Encoder {
     fn begin(session: Session<Interbus>, profile: Option<(&InterbusProfile, ())>, _: &mut Services) -> Self {
         let staged = profile.map(|(profile, ())| Staged::of_profile(profile.image.clone(), profile.names.clone()));
         Encoder::with(session, staged.unwrap_or_default())
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [LinkParameters::SECRETS, Config::SECRETS].concat()
     }
 }

@@ -3,7 +3,7 @@
 use crate::app::explain::plain;
 use crate::app::review::{self, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
-use crate::devices::interbus::jobs::{Change, Interbus, Prepared, Wear};
+use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_ASK, WEAR_LAST, Wear};
 use crate::devices::interbus::procedures::write::Written;
 use crate::devices::interbus::profile::Op;
 use crate::devices::interbus::state::TEXTS;
@@ -76,6 +76,8 @@ impl Reviewed for Interbus {
             Some(seen) => TEXTS.text("ib_review.cost").with("stores", stores).with("seen", seen),
             None => TEXTS.text("ib_review.cost_unknown").with("stores", stores),
         }
+        .with("nominal", WEAR_ASK)
+        .with("last", WEAR_LAST)
     }
 
     fn is_worn(prepared: &Prepared) -> bool {

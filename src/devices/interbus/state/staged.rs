@@ -21,8 +21,8 @@ pub use draft::SavedEdit;
 pub use edit::{Edit, EditError};
 pub use mark::Mark;
 
-use crate::app::PendingEdits;
 use crate::app::history::History;
+use crate::app::{Stepped, SteppedParts};
 use crate::devices::interbus::profile::{Image, Names, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
 
@@ -197,37 +197,23 @@ impl Staged {
     }
 }
 
-impl PendingEdits for Staged {
-    fn count(&self) -> usize {
+impl Stepped for Staged {
+    type Values = EditedValues;
+
+    fn differences_count(&self) -> usize {
         self.differences().len()
     }
 
-    fn is_dirty(&self) -> bool {
+    fn is_edited(&self) -> bool {
         let (Some(base), Some(wanted)) = (&self.base, &self.wanted) else { return false };
         base.image != wanted.image || self.base_source == BaseSource::Profile && base.names != wanted.names
     }
 
-    fn can_undo(&self) -> bool {
-        self.history.can_undo()
+    fn history(&self) -> &History<EditedValues> {
+        &self.history
     }
 
-    fn can_redo(&self) -> bool {
-        self.history.can_redo()
-    }
-
-    fn undo(&mut self) -> bool {
-        self.wanted.as_mut().is_some_and(|wanted| self.history.undo(wanted))
-    }
-
-    fn redo(&mut self) -> bool {
-        self.wanted.as_mut().is_some_and(|wanted| self.history.redo(wanted))
-    }
-
-    fn revert(&mut self) -> bool {
-        self.base.clone().is_some_and(|base| self.step(base))
-    }
-
-    fn forget_steps(&mut self) {
-        self.history.forget();
+    fn parts(&mut self) -> Option<SteppedParts<'_, EditedValues>> {
+        Some((self.base.as_ref()?, self.wanted.as_mut()?, &mut self.history))
     }
 }

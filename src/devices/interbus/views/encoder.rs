@@ -7,35 +7,29 @@ use crate::devices::interbus::protocol::{ProgramNumber, ReadOutValue, Reply, Sta
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, word_meaning, words};
 use crate::devices::interbus::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card, card_with, choice, empty, enabled_button, entry, paragraph, row, two_columns};
+use crate::ui::controls::{card, card_with, choice, empty, enabled_button, encoder_page, entry, paragraph, row};
 use crate::ui::{Theme, icons, motor};
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let is_profile = encoder.profile().is_some();
-    two_columns(
+    encoder_page(
         ui,
         theme,
         &mut *actions,
-        |ui, actions| {
-            identity(ui, theme, encoder, actions);
-            if !is_profile {
-                ui.add_space(theme.space.groups);
-                check(ui, theme, encoder, actions);
-            }
-        },
-        |ui, actions| {
-            if is_profile {
-                wiring(ui, theme);
-                return;
-            }
-            sends(ui, theme, encoder, actions);
-            if let Some(motor) = &encoder.motor {
-                ui.add_space(theme.space.groups);
-                motor::card_ui(ui, theme, motor.rpm(), |rpm| {
-                    actions.push(Action::device(encoder.session.id, Interbus::Turn(rpm)))
-                });
-            }
-        },
+        is_profile,
+        (|ui, actions| identity(ui, theme, encoder, actions), |ui, actions| check(ui, theme, encoder, actions)),
+        (
+            |ui| wiring(ui, theme),
+            |ui, actions| {
+                sends(ui, theme, encoder, actions);
+                if let Some(motor) = &encoder.motor {
+                    ui.add_space(theme.space.groups);
+                    motor::card_ui(ui, theme, motor.rpm(), |rpm| {
+                        actions.push(Action::device(encoder.session.id, Interbus::Turn(rpm)))
+                    });
+                }
+            },
+        ),
     );
     if !is_profile {
         ui.add_space(theme.space.groups);

@@ -12,6 +12,7 @@ use std::time::Duration;
 pub use families::families;
 pub use open::{check, open};
 
+use crate::buses::bridge::procedures::warn_of_supply;
 use crate::devices::ssi::procedures::{Asking, Error, Identity, Master, Station, Words, check};
 use crate::devices::ssi::protocol::Layout;
 use crate::link::{ByteLink, Clock, LinkError};
@@ -172,8 +173,6 @@ impl Device for Ssi {
     }
 
     fn leave(&mut self, context: &mut SessionContext) {
-        if let Err(error) = self.master(context).leave_supply() {
-            tracing::warn!("the encoder's supply could not be switched off: {error}");
-        }
+        warn_of_supply(self.master(context).leave_supply());
     }
 }

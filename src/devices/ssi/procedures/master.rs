@@ -127,10 +127,9 @@ impl<'a> Master<'a> {
         let shielded = self.line.shield(true);
         let ended = flow.end(&mut self.adapter());
         self.line.shield(shielded);
-        match ended {
-            Ok(()) => Ok(()),
-            // The adapter knows of no stream: it was reset, and must be configured again.
-            Err(Failure::Adapter(AdapterError::Refused { .. })) => {
+        match Flow::ended(ended) {
+            Ok(true) => Ok(()),
+            Ok(false) => {
                 self.station.forget_settings();
                 Ok(())
             }

@@ -132,16 +132,9 @@ impl SsiForm {
         if self.leave_supply {
             parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
         }
-        // Parameters of a virtual encoder are dropped.
-        let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !is_of_the_virtual(name);
-        parameters.rest(&self.rest, belongs);
+        parameters.rest_of(&self.rest, is_virtual, (LinkParameters::KEYS, &bridge::keys(at_adapter())));
         parameters
     }
-}
-
-/// Returns whether it is a setting of the virtual encoder or of the virtual adapter before it.
-fn is_of_the_virtual(name: &str) -> bool {
-    bridge::keys(at_adapter()).contains(&name)
 }
 
 #[cfg(test)]

@@ -10,9 +10,12 @@ use crate::app::session::{Drafted, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{DeviceType, Text};
 use crate::devices::ssi::jobs::{Ssi, check};
+use crate::devices::ssi::procedures::LinkParameters;
 use crate::devices::ssi::profile::SsiProfile;
+use crate::devices::ssi::sim::Settings;
 use crate::devices::ssi::state::explain;
 use crate::link::LinkUrl;
+use crate::parameter::Parameters as _;
 use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
@@ -53,5 +56,9 @@ impl DeviceType for Encoder {
         let mut encoder = Self::begin(Session::of_nothing(id, suggested), None, services);
         encoder.load_draft(services);
         Some(encoder)
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [LinkParameters::SECRETS, Settings::SECRETS].concat()
     }
 }

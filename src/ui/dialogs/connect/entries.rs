@@ -102,33 +102,46 @@ pub(crate) fn echo(ui: &mut Ui, theme: &Theme, echo: &mut Echo) {
     });
 }
 
-pub(crate) fn margin(ui: &mut Ui, theme: &Theme, margin: &mut String) {
-    entry(ui, theme, &theme.say("connect.margin"), |ui| {
-        text_entry(ui, margin, 72.0, &theme.say("connect.margin"), "50");
-        ui.label(theme.label("ms"));
-    });
-}
+/// The texts of a device.
+type Say = fn(&Theme, &'static str) -> String;
 
 /// Draws entries of parameters; `say` gives the device's texts.
-pub(crate) fn typed(
+pub(crate) fn typed(ui: &mut Ui, theme: &Theme, say: Say, entries: impl IntoIterator<Item = Entry>, typed: &mut Typed) {
+    for own in entries {
+        let word = say(theme, own.label);
+        entry(ui, theme, &word, |ui| field(ui, theme, &word, &own, typed));
+    }
+}
+
+/// Entries of parameters side by side, each before its name.
+pub(crate) fn typed_in_a_row(
     ui: &mut Ui,
     theme: &Theme,
-    say: fn(&Theme, &'static str) -> String,
+    say: Say,
     entries: impl IntoIterator<Item = Entry>,
     typed: &mut Typed,
 ) {
     for own in entries {
-        let (word, mut text) = (say(theme, own.label), typed.get(own.key).to_owned());
-        // A number needs less space than a list of faults.
-        let width = if own.hint.parse::<f64>().is_ok() { 96.0 } else { 200.0 };
-        entry(ui, theme, &word, |ui| {
-            if text_entry(ui, &mut text, width, &word, &own.hint).changed() {
-                typed.set(own.key, text);
-            }
-            if !own.unit.is_empty() {
-                ui.label(theme.label(own.unit));
-            }
-        });
+        let word = say(theme, own.label);
+        field(ui, theme, &word, &own, typed);
+        ui.label(theme.label(word));
+    }
+}
+
+/// The entry of a parameter, with its unit.
+pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: &mut Typed) {
+    let mut text = typed.get(own.key).to_owned();
+    // A number needs less room than a list of faults.
+    let width = match own.hint.len() {
+        1..=4 => 56.0,
+        _ if own.hint.parse::<f64>().is_ok() => 96.0,
+        _ => 200.0,
+    };
+    if text_entry(ui, &mut text, width, word, &own.hint).changed() {
+        typed.set(own.key, text);
+    }
+    if !own.unit.is_empty() {
+        ui.label(theme.label(own.unit));
     }
 }
 

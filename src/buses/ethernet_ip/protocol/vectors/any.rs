@@ -38,7 +38,7 @@ fn what_is_cut_is_refused() {
     assert!(Frame::parse(&[frame, vec![0]].concat()).is_err());
     assert_eq!(
         ForwardOpen::parse(&[forward, vec![0, 0]].concat()),
-        Err(PacketError::Long { what: "ForwardOpen", left: 2 })
+        Err(PacketError::Long { what: Structure::ForwardOpen, left: 2 })
     );
 }
 

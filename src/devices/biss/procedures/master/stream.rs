@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::Master;
+use crate::buses::bridge::procedures::Adapter;
 use crate::buses::bridge::procedures::flow::{Flow, Streamed};
-use crate::buses::bridge::procedures::{Adapter, AdapterError, Failure};
 use crate::buses::bridge::protocol::Data;
 use crate::devices::biss::procedures::frames::{FrameRun, frames};
 use crate::devices::biss::procedures::station::Transport;
@@ -60,10 +60,9 @@ impl Master<'_> {
     pub fn end_frames(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
-        match self.shielded(|master| flow.end(&mut master.adapter())) {
-            Ok(()) => Ok(()),
-            // The adapter knows of no stream: it was reset, and must be configured again.
-            Err(Failure::Adapter(AdapterError::Refused { .. })) => {
+        match Flow::ended(self.shielded(|master| flow.end(&mut master.adapter()))) {
+            Ok(true) => Ok(()),
+            Ok(false) => {
                 self.station.forget_settings();
                 Ok(())
             }

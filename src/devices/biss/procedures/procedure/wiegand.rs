@@ -7,9 +7,6 @@ use super::{Activity, Failure, Motion, Outcome, ProcedureStep, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, WiegandResult, WiegandStatus};
 
-/// Manual 6.3.
-const REVOLUTIONS: f64 = 515.0;
-
 /// A Wiegand test that is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiegandReport {
@@ -62,7 +59,7 @@ impl Guide<'_, '_> {
         };
         // The slowest motor with which a start is allowed takes 62 s.
         let rpm = motion.map_or(run.allowed().least, |motion| motion.rpm.abs()).max(run.allowed().least / 2.0);
-        let expected = Duration::from_secs_f64(REVOLUTIONS / rpm * 60.0);
+        let expected = Duration::from_secs_f64(f64::from(WiegandResult::REVOLUTIONS) / rpm * 60.0);
         let course = RunCourse {
             run,
             command: command.byte(),

@@ -4,8 +4,8 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use ron::error::SpannedError;
-use serde::de::{Error, SeqAccess, Visitor};
+use ron::error::{Position, SpannedError};
+use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::super::address::RegisterAddress;
@@ -13,14 +13,22 @@ use super::super::crc::Crc;
 use super::super::procedure::ProcedureKind;
 use super::super::single_cycle::{Layout, LayoutError};
 use super::super::status::{Firmware, ProfileId};
+use super::codes::CodeTable;
+use super::flaw::{self, Claim, Flaw};
 use super::german::GermanTexts;
 use super::name::Name;
 use super::register::{Access, Area, Decoding, Register, Role};
 use super::{Description, Identity, Lock, Procedure};
 use crate::bits::ByteOrder;
 
-pub(super) fn parse(text: &str) -> Result<Description, SpannedError> {
-    let mut file: File = ron::from_str(text)?;
+/// # Errors
+/// The flaw, and where it is.
+pub(super) fn parse(text: &str) -> Result<Description, (Position, Flaw)> {
+    flaw::take();
+    let read: Result<File, SpannedError> = ron::from_str(text);
+    let mut file = read.map_err(|SpannedError { code, span }| {
+        (span.start, flaw::take().unwrap_or_else(|| Flaw::Form(code.to_string())))
+    })?;
     std::mem::take(&mut file.german).translate(file.names(), text)?;
     Ok(Description {
         name: file.name,
@@ -133,6 +141,8 @@ struct RegisterRow {
     #[serde(default)]
     decode: Decoding,
     #[serde(default)]
+    codes: Option<CodeTable>,
+    #[serde(default)]
     unit: String,
     #[serde(default)]
     saves: Vec<u8>,
@@ -175,14 +185,14 @@ fn one() -> u8 {
 }
 
 impl TryFrom<RegisterLocation> for RegisterAddress {
-    type Error = String;
+    type Error = Flaw;
 
-    fn try_from(place: RegisterLocation) -> Result<Self, String> {
+    fn try_from(place: RegisterLocation) -> Result<Self, Flaw> {
         match place {
-            RegisterLocation::Direct(address) => RegisterAddress::direct(address)
-                .ok_or_else(|| format!("direct(0x{address:02X}): a direct register is from 0x40 to 0x7F")),
-            RegisterLocation::Bank(bank, offset) => RegisterAddress::banked(bank, offset)
-                .ok_or_else(|| format!("bank(0x{bank:02X}, 0x{offset:02X}): a bank has registers from 0x00 to 0x3F")),
+            RegisterLocation::Direct(address) => RegisterAddress::direct(address).ok_or(Flaw::Direct(address)),
+            RegisterLocation::Bank(bank, offset) => {
+                RegisterAddress::banked(bank, offset).ok_or(Flaw::Banked { bank, offset })
+            }
         }
     }
 }
@@ -192,7 +202,7 @@ macro_rules! checked {
     ($($row:ident => $own:ty,)*) => {$(
         impl<'de> Deserialize<'de> for $own {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                $row::deserialize(deserializer)?.check().map_err(D::Error::custom)
+                $row::deserialize(deserializer)?.check().map_err(flaw::found)
             }
         }
     )*};
@@ -208,7 +218,7 @@ checked! {
 }
 
 impl IdentityRow {
-    fn check(self) -> Result<Identity, String> {
+    fn check(self) -> Result<Identity, Flaw> {
         let IdentityRow { profile, manufacturer, device_id } = self;
         Ok(Identity { profile: ProfileId::new(profile), manufacturer, device_id })
     }
@@ -222,37 +232,43 @@ impl LayoutRow {
 }
 
 impl LockRow {
-    fn check(self) -> Result<Lock, String> {
+    fn check(self) -> Result<Lock, Flaw> {
         let (password_at, mode_at) = (self.password_at.try_into()?, self.mode_at.try_into()?);
         Ok(Lock { password_at, password: self.password, mode_at })
     }
 }
 
 impl RegisterRow {
-    fn check(self) -> Result<Register, String> {
+    fn check(self) -> Result<Register, Flaw> {
         let address: RegisterAddress = self.at.try_into()?;
         let (name, width) = (self.name, self.width);
         if !(1..=Register::MAX_WIDTH).contains(&width) {
-            return Err(format!("\"{name}\": a register has 1 to {} bytes, not {width}", Register::MAX_WIDTH));
+            return Err(Flaw::Width { name: name.to_string(), width });
         }
         if address.plus(width - 1).is_none() {
-            return Err(format!("\"{name}\": {width} bytes from {address} on do not fit into the bank"));
+            return Err(Flaw::BeyondBank { name: name.to_string(), width, address });
         }
         if !self.default.is_empty() && self.default.len() != usize::from(width) {
-            return Err(format!("\"{name}\": {} default bytes for a width of {width}", self.default.len()));
+            return Err(Flaw::Default { name: name.to_string(), bytes: self.default.len(), width });
         }
-        if let Decoding::Bits(bits) = &self.decode
+        let decoding = match self.codes {
+            Some(table) => {
+                Decoding::Choice(table.rows().iter().map(|(code, name)| ((*code).into(), Name::new(*name))).collect())
+            }
+            None => self.decode,
+        };
+        if let Decoding::Bits(bits) = &decoding
             && let Some((bit, _)) = bits.iter().find(|(bit, _)| *bit >= width * 8)
         {
-            return Err(format!("\"{name}\": there is no bit {bit} in a width of {width}"));
+            return Err(Flaw::Bit { name: name.to_string(), bit: *bit, width });
         }
-        if let Decoding::Scaled { factor, offset } = self.decode
+        if let Decoding::Scaled { factor, offset } = decoding
             && !(factor.is_finite() && offset.is_finite())
         {
-            return Err(format!("\"{name}\": factor and offset must be finite numbers"));
+            return Err(Flaw::Endless(name.to_string()));
         }
         if !self.access.writes() && !self.saves.is_empty() {
-            return Err(format!("\"{name}\": a register that is not written saves nothing"));
+            return Err(Flaw::SavesNothing(name.to_string()));
         }
         Ok(Register {
             address,
@@ -262,7 +278,7 @@ impl RegisterRow {
             access: self.access,
             order: self.order,
             default: self.default,
-            decoding: self.decode,
+            decoding,
             unit: self.unit,
             saves: self.saves,
             since: firmware(self.since),
@@ -271,17 +287,17 @@ impl RegisterRow {
 }
 
 impl AreaRow {
-    fn check(self) -> Result<Area, String> {
+    fn check(self) -> Result<Area, Flaw> {
         let (first, last) = self.banks;
         if first > last {
-            return Err(format!("\"{}\": bank 0x{first:02X} comes after bank 0x{last:02X}", self.name));
+            return Err(Flaw::Banks { name: self.name.to_string(), first, last });
         }
         Ok(Area { name: self.name, first, last, access: self.access, open: self.open })
     }
 }
 
 impl ProcedureRow {
-    fn check(self) -> Result<Procedure, String> {
+    fn check(self) -> Result<Procedure, Flaw> {
         Ok(Procedure {
             kind: self.kind,
             mode: self.mode,
@@ -299,33 +315,33 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
 
 /// A row that must not be duplicated.
 trait Row {
-    /// Returns the unique keys that it takes, as named in messages.
-    fn claims(&self) -> Vec<String>;
+    /// Returns what it takes for itself.
+    fn claims(&self) -> Vec<Claim>;
 }
 
 impl Row for Register {
-    fn claims(&self) -> Vec<String> {
-        let bytes = (0..self.width).filter_map(|at| self.address.plus(at)).map(|place| format!("register {place}"));
-        let role = self.role.map(|role| format!("role {role:?}"));
+    fn claims(&self) -> Vec<Claim> {
+        let bytes = (0..self.width).filter_map(|at| self.address.plus(at)).map(Claim::Register);
+        let role = self.role.map(Claim::Role);
         bytes.chain(role).collect()
     }
 }
 
 impl Row for BankRow {
-    fn claims(&self) -> Vec<String> {
-        vec![format!("bank 0x{:02X}", self.bank)]
+    fn claims(&self) -> Vec<Claim> {
+        vec![Claim::Bank(self.bank)]
     }
 }
 
 impl Row for Area {
-    fn claims(&self) -> Vec<String> {
-        (self.first..=self.last).map(|bank| format!("bank 0x{bank:02X}")).collect()
+    fn claims(&self) -> Vec<Claim> {
+        (self.first..=self.last).map(Claim::Bank).collect()
     }
 }
 
 impl Row for Procedure {
-    fn claims(&self) -> Vec<String> {
-        vec![format!("procedure {:?}", self.kind)]
+    fn claims(&self) -> Vec<Claim> {
+        vec![Claim::Procedure(self.kind)]
     }
 }
 
@@ -359,7 +375,7 @@ impl<'de, T: Deserialize<'de> + Row> Visitor<'de> for RowsVisitor<T> {
         while let Some(row) = list.next_element::<T>()? {
             for claim in row.claims() {
                 if claimed.contains(&claim) {
-                    return Err(A::Error::custom(format!("{claim} stands here for the second time")));
+                    return Err(flaw::found(Flaw::Twice(claim)));
                 }
                 claimed.insert(claim);
             }

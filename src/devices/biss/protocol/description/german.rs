@@ -4,10 +4,11 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use ron::error::{Position, Span, SpannedError};
-use serde::de::{Error, MapAccess, Visitor};
+use ron::error::Position;
+use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
+use super::flaw::{self, Claim, Flaw};
 use super::name::Name;
 
 /// English names with their German ones.
@@ -20,7 +21,7 @@ impl GermanTexts {
         mut self,
         names: impl Iterator<Item = &'a mut Name>,
         text: &str,
-    ) -> Result<(), SpannedError> {
+    ) -> Result<(), (Position, Flaw)> {
         let mut used = BTreeMap::new();
         for name in names {
             if let Some((english, german)) = self.0.remove_entry(name.english()) {
@@ -32,11 +33,7 @@ impl GermanTexts {
         }
         match self.0.into_keys().next() {
             None => Ok(()),
-            Some(english) => {
-                let start = place_of(&english, text);
-                let code = ron::Error::Message(format!("german: nothing is called \"{english}\" here"));
-                Err(SpannedError { code, span: Span { start, end: start } })
-            }
+            Some(english) => Err((place_of(&english, text), Flaw::GermanNeedless(english))),
         }
     }
 }
@@ -75,10 +72,10 @@ impl<'de> Visitor<'de> for Entries {
         let mut entries = BTreeMap::new();
         while let Some((english, german)) = map.next_entry::<String, String>()? {
             if german.trim().is_empty() {
-                return Err(A::Error::custom(format!("\"{english}\": the German name is empty")));
+                return Err(flaw::found(Flaw::GermanEmpty(english)));
             }
             if entries.contains_key(&english) {
-                return Err(A::Error::custom(format!("\"{english}\" stands here for the second time")));
+                return Err(flaw::found(Flaw::Twice(Claim::Name(english))));
             }
             entries.insert(english, german);
         }

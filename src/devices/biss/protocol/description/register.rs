@@ -33,7 +33,7 @@ pub struct Register {
 }
 
 /// The role of a register.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// Selects the bank of 00h…3Fh.
@@ -148,7 +148,7 @@ impl Access {
 
 impl Register {
     /// Widest register.
-    pub(super) const MAX_WIDTH: u8 = 8;
+    pub const MAX_WIDTH: u8 = 8;
 
     /// Returns whether it contains a byte at this address.
     pub fn contains(&self, address: RegisterAddress) -> bool {

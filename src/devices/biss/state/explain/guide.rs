@@ -5,7 +5,7 @@ use crate::devices::biss::procedures::procedure::{
     Advice, Blocker, CalibrationReport, Demand, Motion, Outcome, ProcedureStep, Run, SpeedRange, Task, WiegandReport,
 };
 use crate::devices::biss::profile::{Op, PresetParts};
-use crate::devices::biss::protocol::{DeviceMode, PulseVoltage};
+use crate::devices::biss::protocol::{DeviceMode, PulseVoltage, WiegandResult};
 use crate::devices::biss::state::TEXTS;
 
 /// Returns the heading of an operation.
@@ -24,12 +24,12 @@ pub fn procedure(op: &Op) -> Text {
 pub fn step(step: ProcedureStep) -> Text {
     match step {
         ProcedureStep::Await(task) => self::task(task),
-        ProcedureStep::Run(run) => TEXTS.text(match run {
-            Run::CalibrationCounterclockwise => "guide.run_calibration_ccw",
-            Run::CalibrationClockwise => "guide.run_calibration_cw",
-            Run::WiegandClockwise => "guide.run_wiegand_cw",
-            Run::WiegandCounterclockwise => "guide.run_wiegand_ccw",
-        }),
+        ProcedureStep::Run(run) => match run {
+            Run::CalibrationCounterclockwise => TEXTS.text("guide.run_calibration_ccw"),
+            Run::CalibrationClockwise => TEXTS.text("guide.run_calibration_cw"),
+            Run::WiegandClockwise => revolutions(TEXTS.text("guide.run_wiegand_cw")),
+            Run::WiegandCounterclockwise => revolutions(TEXTS.text("guide.run_wiegand_ccw")),
+        },
         ProcedureStep::Enter(mode) => TEXTS.text("guide.enter").with_text("mode", self::mode(mode)),
         ProcedureStep::Conditions => TEXTS.text("guide.conditions"),
         ProcedureStep::Open => TEXTS.text("guide.open"),
@@ -108,7 +108,12 @@ pub fn calibration_needs() -> Text {
 
 /// Returns the requirements of a Wiegand test on the motor.
 pub fn wiegand_needs() -> Text {
-    speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed())
+    revolutions(speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed()))
+}
+
+/// Adds the revolutions of a Wiegand test in each direction.
+fn revolutions(text: Text) -> Text {
+    text.with("revolutions", WiegandResult::REVOLUTIONS)
 }
 
 /// Adds the temperatures of a calibration.

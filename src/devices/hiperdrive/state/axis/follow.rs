@@ -6,6 +6,7 @@ use super::supply::Power;
 use super::{
     Axis, AxisChange, AxisStep, Confirmed, DriveFacts, DriveRequest, End, Outcome, RunSummary, TestTarget, Travel,
 };
+use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, REFERENCE, UPPER};
 
 impl Axis {
     /// Changes the entries.
@@ -149,7 +150,7 @@ impl Axis {
             let (_, value) = values.iter().find(|(number, _)| *number == own)?;
             i32::try_from(*value).ok()
         };
-        match (&mut self.confirmed, value(158).zip(value(160))) {
+        match (&mut self.confirmed, value(LOWER).zip(value(UPPER))) {
             (Some(confirmed), Some(limits)) if self.step == AxisStep::Upper => match whole {
                 true => (confirmed.agreed, confirmed.begun) = (limits, None),
                 false => confirmed.begun = Some(limits),
@@ -233,7 +234,7 @@ impl Axis {
         if let Some(step) = self.chain.fall(&self.basis(seen)) {
             self.undo_from(step, false);
         }
-        let is_set = |position: &i32| seen.values.get(&198) == Some(&i64::from(*position));
+        let is_set = |position: &i32| seen.values.get(&REFERENCE) == Some(&i64::from(*position));
         if let Some(position) = self.sets.filter(is_set) {
             (self.sets, self.reference) = (None, Some((position, self.origin(seen))));
         }

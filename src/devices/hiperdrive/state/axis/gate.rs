@@ -7,6 +7,7 @@ use super::{Axis, AxisStep, Button, DriveFacts, DriveRequest, TestTarget, differ
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::protocol::State;
+use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, REQUESTED, UPPER};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 
@@ -56,7 +57,7 @@ impl Axis {
             },
             Button::Widen => {
                 let preview = self.entries.preview(seen)?;
-                stands().map(|()| DriveRequest::Try(vec![(158, preview.lower.into()), (160, preview.upper.into())]))
+                stands().map(|()| DriveRequest::Try(vec![(LOWER, preview.lower.into()), (UPPER, preview.upper.into())]))
             }
             Button::Go(place) => {
                 self.may_move(seen)?;
@@ -77,7 +78,7 @@ impl Axis {
     fn ask_of_step(&self, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         match self.step {
             AxisStep::Request if seen.requested == Some(true) => Err(TEXTS.text("hd_axis.already")),
-            AxisStep::Request => Ok(DriveRequest::Try(vec![(152, 1)])),
+            AxisStep::Request => Ok(DriveRequest::Try(vec![(REQUESTED, 1)])),
             AxisStep::Scale => {
                 let preview = self.entries.preview(seen)?;
                 if seen.scale == Some(preview.scale) {
@@ -85,7 +86,12 @@ impl Axis {
                 }
                 let (numerator, denominator) = (preview.scale.numerator(), preview.scale.denominator());
                 let (low, high) = (preview.lower, preview.upper);
-                let all = [(154, numerator.into()), (156, denominator.into()), (158, low.into()), (160, high.into())];
+                let all = [
+                    (NUMERATOR, numerator.into()),
+                    (DENOMINATOR, denominator.into()),
+                    (LOWER, low.into()),
+                    (UPPER, high.into()),
+                ];
                 Ok(DriveRequest::Try(all.to_vec()))
             }
             AxisStep::Reference => {
@@ -97,7 +103,7 @@ impl Axis {
                 if seen.limits == Some((low, high)) {
                     return Err(TEXTS.text("hd_axis.already"));
                 }
-                Ok(DriveRequest::Try(vec![(158, low.into()), (160, high.into())]))
+                Ok(DriveRequest::Try(vec![(LOWER, low.into()), (UPPER, high.into())]))
             }
             AxisStep::Save => Ok(DriveRequest::Save),
             AxisStep::PowerCycle => match (self.power, is_marked(seen), mark()) {

@@ -2,6 +2,7 @@
 
 use crate::app::Text;
 use crate::app::explain::plain;
+use crate::devices::hiperdrive::protocol::drive_parameter::{NEWEST_ERROR, OLDEST_ERROR};
 use crate::devices::hiperdrive::protocol::{ControlBit, ErrorCode, ParameterNumber, State, StatusBit, Variant};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -99,7 +100,9 @@ pub fn error(code: ErrorCode) -> ErrorWords {
 pub fn parameter(number: ParameterNumber) -> Text {
     match number.base() {
         base @ (24..=42) if base % 2 == 0 => TEXTS.text("hd_parameter.register").with("number", (base - 22) / 2),
-        base @ (108..=115) => TEXTS.text("hd_parameter.error").with("number", base - 107),
+        base @ (NEWEST_ERROR..=OLDEST_ERROR) => {
+            TEXTS.text("hd_parameter.error").with("number", base - NEWEST_ERROR + 1)
+        }
         base => match TEXTS.numbered("hd_parameter", base) {
             Some(name) => name,
             None => TEXTS.text("hd_parameter.other").with("number", number),

@@ -2,7 +2,7 @@
 
 use crate::app::Text;
 use crate::app::explain::plain;
-use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus, PacketError};
+use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus, PacketError, PacketField, Structure};
 use crate::devices::hiperdrive::procedures::Refusal;
 use crate::devices::hiperdrive::protocol::ValueError;
 use crate::devices::hiperdrive::state::TEXTS;
@@ -106,12 +106,56 @@ fn coded(code: String, name: &'static str) -> Text {
 /// Returns why the bytes of a packet cannot be read.
 pub(super) fn packet(error: &PacketError) -> Text {
     match *error {
-        PacketError::Short { what, got } => TEXTS.text("hd_packet.short").with("what", what).with("got", got),
-        PacketError::Long { what, left } => TEXTS.text("hd_packet.long").with("what", what).with("left", left),
-        PacketError::Value { what, field, got } => {
-            TEXTS.text("hd_packet.value").with("what", what).with("field", field).with("got", format!("0x{got:X}"))
+        PacketError::Short { what, got } => {
+            TEXTS.text("hd_packet.short").with_text("what", structure(what)).with("got", got)
         }
+        PacketError::Long { what, left } => {
+            TEXTS.text("hd_packet.long").with_text("what", structure(what)).with("left", left)
+        }
+        PacketError::Value { what, field, got } => TEXTS
+            .text("hd_packet.value")
+            .with_text("what", structure(what))
+            .with_text("field", self::field(field))
+            .with("got", format!("0x{got:X}")),
     }
+}
+
+/// The name of a structure of EtherNet/IP.
+fn structure(structure: Structure) -> Text {
+    TEXTS.text(match structure {
+        Structure::ConfigurationControl => "hd_structure.configuration_control",
+        Structure::InterfaceConfiguration => "hd_structure.interface_configuration",
+        Structure::CipRequest => "hd_structure.cip_request",
+        Structure::CipReply => "hd_structure.cip_reply",
+        Structure::RegisterSession => "hd_structure.register_session",
+        Structure::SendRRData => "hd_structure.send_rr_data",
+        Structure::IdentityObject => "hd_structure.identity_object",
+        Structure::IdentityItem => "hd_structure.identity_item",
+        Structure::ForwardOpen => "hd_structure.forward_open",
+        Structure::ForwardOpenReply => "hd_structure.forward_open_reply",
+        Structure::Refusal => "hd_structure.refusal",
+        Structure::ForwardClose => "hd_structure.forward_close",
+        Structure::ForwardCloseReply => "hd_structure.forward_close_reply",
+        Structure::Items => "hd_structure.items",
+        Structure::NullAddress => "hd_structure.null_address",
+        Structure::ConnectedAddress => "hd_structure.connected_address",
+        Structure::SequencedAddress => "hd_structure.sequenced_address",
+        Structure::SocketAddress => "hd_structure.socket_address",
+        Structure::Encapsulation => "hd_structure.encapsulation",
+        Structure::CyclicPacket => "hd_structure.cyclic_packet",
+        Structure::Path => "hd_structure.path",
+    })
+}
+
+/// The name of a field of such a structure.
+fn field(field: PacketField) -> Text {
+    TEXTS.text(match field {
+        PacketField::Service => "hd_field.service",
+        PacketField::Length => "hd_field.length",
+        PacketField::Items => "hd_field.items",
+        PacketField::WidePrefix => "hd_field.wide_prefix",
+        PacketField::TimeoutMultiplier => "hd_field.timeout_multiplier",
+    })
 }
 
 /// Returns why a value does not fit the type of its parameter.
@@ -170,9 +214,9 @@ mod tests {
     #[test]
     fn damage_is_explained_in_both_languages() {
         let packets = [
-            PacketError::Short { what: "ForwardOpen", got: 3 },
-            PacketError::Long { what: "ForwardOpen", left: 2 },
-            PacketError::Value { what: "the path", field: "length", got: 0xFFFF },
+            PacketError::Short { what: Structure::ForwardOpen, got: 3 },
+            PacketError::Long { what: Structure::ForwardOpen, left: 2 },
+            PacketError::Value { what: Structure::Path, field: PacketField::Length, got: 0xFFFF },
         ];
         for error in packets {
             in_both_languages(&packet(&error), &error);

@@ -2,6 +2,7 @@
 
 use super::{BaseSource, Families, is_editable, travel};
 use crate::devices::hiperdrive::profile::Image;
+use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, UPPER};
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
@@ -94,15 +95,15 @@ pub(super) fn edited(
             if lower >= upper {
                 return Err(EditError::Crossed { lower, upper });
             }
-            put(&mut after, drive, [(158, lower), (160, upper)], ground, families)?;
+            put(&mut after, drive, [(LOWER, lower), (UPPER, upper)], ground, families)?;
         }
         Edit::Scale { drive, scale, limits } => {
             let before = wanted.scale(drive).unwrap_or(PositionScale::FACTORY);
-            let parts = [(154, i64::from(scale.numerator())), (156, i64::from(scale.denominator()))];
+            let parts = [(NUMERATOR, i64::from(scale.numerator())), (DENOMINATOR, i64::from(scale.denominator()))];
             put(&mut after, drive, parts, ground, families)?;
             if let (LimitsPolicy::InPlace, Some((lower, upper))) = (limits, wanted.limits(drive)) {
                 let ruler = Ruler { scale: before, pitch: None };
-                let moved = [(158, ruler.rescaled(lower, scale)), (160, ruler.rescaled(upper, scale))];
+                let moved = [(LOWER, ruler.rescaled(lower, scale)), (UPPER, ruler.rescaled(upper, scale))];
                 put(&mut after, drive, moved, ground, families)?;
             }
         }

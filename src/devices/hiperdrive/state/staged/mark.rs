@@ -2,6 +2,9 @@
 
 use super::{Staged, travel};
 use crate::devices::hiperdrive::profile::Image;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    DENOMINATOR, LOWER, NO_TIMEOUT, NUMERATOR, TIMEOUT, UPPER,
+};
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale, Travel};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
@@ -54,9 +57,9 @@ impl Mark {
         };
         match self {
             Mark::OutOfRange(error) => vec![error.number],
-            Mark::Crossed { drive, .. } | Mark::Outside { drive, .. } => of(*drive, &[158, 160]),
-            Mark::LimitsMove { drive, .. } => of(*drive, &[154, 156, 158, 160]),
-            Mark::NoTimeout { drive } => of(*drive, &[186]),
+            Mark::Crossed { drive, .. } | Mark::Outside { drive, .. } => of(*drive, &[LOWER, UPPER]),
+            Mark::LimitsMove { drive, .. } => of(*drive, &[NUMERATOR, DENOMINATOR, LOWER, UPPER]),
+            Mark::NoTimeout { drive } => of(*drive, &[TIMEOUT]),
         }
     }
 }
@@ -98,7 +101,7 @@ fn mark_drive(base: &Image, wanted: &Image, drive: DriveNumber, position: Option
             marks.push(Mark::LimitsMove { drive, lower: turns(lower), upper: turns(upper) });
         }
     }
-    if wanted.of_drive(drive, 186) == Some(255) {
+    if wanted.of_drive(drive, TIMEOUT) == Some(NO_TIMEOUT) {
         marks.push(Mark::NoTimeout { drive });
     }
 }

@@ -63,7 +63,8 @@ fn entries_are_taken_as_people_write_them() {
     assert_eq!(empty.url().unwrap().to_string(), "serial:COM3");
     let six = LinkForm { host: "::1".to_owned(), ..form("tcp:x:4001") };
     assert_eq!(six.url().unwrap().to_string(), "tcp:[::1]:4001");
-    let comma = LinkForm { rpm: "12,5".to_owned(), ..form("sim:") };
+    let mut comma = form("sim:");
+    comma.typed.set("rpm", "12,5");
     assert_eq!(comma.url().unwrap().to_string(), "sim:?rpm=12.5");
 }
 
@@ -97,14 +98,14 @@ fn what_cannot_be_used_is_named_with_what_could() {
         ("serial:x", |f| f.address = "0x10".to_owned(), "form.address", "0x10 is not a valid address. Enter 40 to 5F"),
         ("serial:x", |f| f.address = "forty".to_owned(), "form.address", "forty"),
         ("sim:", |f| f.address = "broadcast".to_owned(), "form.address_virtual", "40 to 5F"),
-        ("serial:x", |f| f.margin = "2001".to_owned(), "form.margin", "0 to 2000"),
-        ("serial:x", |f| f.periods = "0".to_owned(), "form.periods", "134217728"),
-        ("serial:x", |f| f.turns = "4096".to_owned(), "form.turns_alone", "4096"),
-        ("serial:x?periods=134217728", |f| f.turns = "2".to_owned(), "form.turns", "2 is not a valid number of turns"),
+        ("serial:x", |f| f.typed.set("margin", "2001"), "form.margin", "0 to 2000"),
+        ("serial:x", |f| f.typed.set("periods", "0"), "form.periods", "134217728"),
+        ("serial:x", |f| f.typed.set("turns", "4096"), "form.turns_alone", "4096"),
+        ("serial:x?periods=134217728", |f| f.typed.set("turns", "2"), "form.turns", "2 is not a valid number of turns"),
         ("sim:", |f| f.model = "skm".to_owned(), "form.model", "skm36, sks36, sel37"),
-        ("sim:", |f| f.rpm = "fast".to_owned(), "form.rpm", "-12000 to 12000"),
-        ("sim:", |f| f.fault = "drop:2".to_owned(), "form.fault", "drop:2"),
-        ("sim:", |f| f.fault = "drop:1&x=1".to_owned(), "form.characters", "drop:1&x=1"),
+        ("sim:", |f| f.typed.set("rpm", "fast"), "form.rpm", "-12000 to 12000"),
+        ("sim:", |f| f.typed.set("fault", "drop:2"), "form.fault", "drop:2"),
+        ("sim:", |f| f.typed.set("fault", "drop:1&x=1"), "form.characters", "drop:1&x=1"),
         ("serial:x?baud=115200", |_| (), "form.parameter", "baud=115200 is not valid (allowed: one of 600"),
         ("sim:?encoders=9", |_| (), "form.parameter", "encoders=9"),
         ("sim:?colour=green", |_| (), "form.other", "colour"),

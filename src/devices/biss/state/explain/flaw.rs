@@ -1,0 +1,87 @@
+//! The words for mistakes in a description's file.
+
+use super::layout;
+use crate::app::{Text, explain as general};
+use crate::devices::biss::protocol::{Claim, Flaw, Register};
+use crate::devices::biss::state::TEXTS;
+
+/// A mistake in a description.
+pub(super) fn flaw(flaw: &Flaw) -> Text {
+    match flaw {
+        Flaw::Form(words) => general::plain(words),
+        Flaw::Direct(address) => TEXTS.text("biss_flaw.direct").with("address", byte(*address)),
+        Flaw::Banked { bank, offset } => {
+            TEXTS.text("biss_flaw.banked").with("bank", byte(*bank)).with("offset", byte(*offset))
+        }
+        Flaw::Width { name, width } => {
+            let text = TEXTS.text("biss_flaw.width").with("name", name).with("width", width);
+            text.with("most", Register::MAX_WIDTH)
+        }
+        Flaw::BeyondBank { name, width, address } => {
+            TEXTS.text("biss_flaw.beyond_bank").with("name", name).with("width", width).with("address", address)
+        }
+        Flaw::Default { name, bytes, width } => {
+            TEXTS.text("biss_flaw.default").with("name", name).with("bytes", bytes).with("width", width)
+        }
+        Flaw::Bit { name, bit, width } => {
+            TEXTS.text("biss_flaw.bit").with("name", name).with("bit", bit).with("width", width)
+        }
+        Flaw::Endless(name) => TEXTS.text("biss_flaw.endless").with("name", name),
+        Flaw::SavesNothing(name) => TEXTS.text("biss_flaw.saves_nothing").with("name", name),
+        Flaw::Banks { name, first, last } => {
+            TEXTS.text("biss_flaw.banks").with("name", name).with("first", byte(*first)).with("last", byte(*last))
+        }
+        Flaw::Layout(error) => layout(error),
+        Flaw::Twice(claim) => TEXTS.text("biss_flaw.twice").with_text("claim", self::claim(claim)),
+        Flaw::GermanEmpty(name) => TEXTS.text("biss_flaw.german_empty").with("name", name),
+        Flaw::GermanNeedless(name) => TEXTS.text("biss_flaw.german_needless").with("name", name),
+    }
+}
+
+fn claim(claim: &Claim) -> Text {
+    match claim {
+        Claim::Register(address) => TEXTS.text("biss_flaw.register").with("address", address),
+        Claim::Role(role) => TEXTS.text("biss_flaw.role").with("role", format!("{role:?}")),
+        Claim::Bank(bank) => TEXTS.text("biss_flaw.bank").with("bank", byte(*bank)),
+        Claim::Procedure(kind) => TEXTS.text("biss_flaw.procedure").with("procedure", format!("{kind:?}")),
+        Claim::Name(name) => TEXTS.text("biss_flaw.name").with("name", name),
+    }
+}
+
+fn byte(byte: u8) -> String {
+    format!("0x{byte:02X}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::explain::in_both_languages;
+    use crate::devices::biss::protocol::{LayoutError, ProcedureKind, Role};
+
+    #[test]
+    fn flaws_are_explained_in_both_languages() {
+        let (name, address) = ("y".to_owned(), "0x7F".parse().unwrap());
+        let flaws = [
+            Flaw::Direct(0x3F),
+            Flaw::Banked { bank: 1, offset: 0x40 },
+            Flaw::Width { name: name.clone(), width: 9 },
+            Flaw::BeyondBank { name: name.clone(), width: 2, address },
+            Flaw::Default { name: name.clone(), bytes: 2, width: 1 },
+            Flaw::Bit { name: name.clone(), bit: 8, width: 1 },
+            Flaw::Endless(name.clone()),
+            Flaw::SavesNothing(name.clone()),
+            Flaw::Banks { name: name.clone(), first: 5, last: 4 },
+            Flaw::Layout(LayoutError::Empty),
+            Flaw::Twice(Claim::Register(address)),
+            Flaw::Twice(Claim::Role(Role::Mode)),
+            Flaw::Twice(Claim::Bank(5)),
+            Flaw::Twice(Claim::Procedure(ProcedureKind::Preset)),
+            Flaw::Twice(Claim::Name(name.clone())),
+            Flaw::GermanEmpty(name.clone()),
+            Flaw::GermanNeedless(name),
+        ];
+        for own in flaws {
+            in_both_languages(&flaw(&own), &own);
+        }
+    }
+}
