@@ -271,7 +271,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn hex_is_read_in_every_usual_form() {
+    fn hex_is_parsed_in_every_usual_form() {
         for text in ["40 4E 0E", "404e0e", "0x40,0x4E,0x0E", "40h 4Eh 0Eh", "40:4E:0E", " 40-4E-E "] {
             assert_eq!(parse_hex(text).unwrap(), [0x40, 0x4E, 0x0E], "{text}");
         }
@@ -279,14 +279,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_hex_is_refused() {
+    fn invalid_hex_is_refused() {
         assert_eq!(parse_hex("4G"), Err(HexError::Digit('G')));
         assert_eq!(parse_hex("404"), Err(HexError::Odd("404".into())));
         assert_eq!(parse_hex("0x"), Err(HexError::Odd("0x".into())));
     }
 
     #[test]
-    fn masked_bytes_match_anything_in_their_place() {
+    fn masked_bytes_match_any_value() {
         let masked = MaskedBytes::masked(&[0x40, 0x4F, 0x02, 0x55, 0x66, 0x3E], &[3, 4, 5]);
         assert_eq!(masked.to_string(), "40 4F 02 ** ** **");
         assert_eq!("40 4f 02 ** ** **".parse(), Ok(masked.clone()));
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_are_read_as_python_reads_them() {
+    fn bytes_decode_as_in_python() {
         type Rows = [(&'static str, &'static str); 9];
         // Expected values from struct.unpack with "<" and ">" and b, B, h, H, i, I, f.
         let table: [(&[u8], Rows); 4] = [
@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn special_floats_say_what_they_are() {
+    fn special_floats_are_named() {
         let big = |bytes: [u8; 4]| typed(&bytes)[6].big.clone().unwrap();
         assert_eq!(big([0x7F, 0x80, 0, 0]), "inf");
         assert_eq!(big([0x7F, 0xC0, 0, 0]), "NaN");
@@ -365,7 +365,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read(bytes in proptest::collection::vec(any::<u8>(), 0..64)) {
+        fn emitted_hex_parses_back(bytes in proptest::collection::vec(any::<u8>(), 0..64)) {
             prop_assert_eq!(parse_hex(&hex(&bytes)).unwrap(), bytes.clone());
             prop_assert_eq!(parse_hex(&hex_compact(&bytes)).unwrap(), bytes);
         }

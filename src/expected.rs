@@ -356,7 +356,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_and_limits_are_told() {
+    fn words_and_limits_are_printed() {
         let cases = [
             (Expected::words(&["on"]), "on"),
             (Expected::words(&["auto", "on", "off"]), "auto, on or off"),

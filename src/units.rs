@@ -160,7 +160,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bits_take_time_on_the_line() {
+    fn bit_durations_are_computed() {
         assert_eq!(Baud::B9600.time_of_bits(44), Duration::from_nanos(4_583_333));
         assert_eq!(Baud::new(600).unwrap().time_of_bits(11), Duration::from_nanos(18_333_333));
         assert_eq!(Baud::new(0), None);

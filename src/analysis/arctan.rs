@@ -125,7 +125,7 @@ mod tests {
     ];
 
     #[test]
-    fn golden_angles_of_section_3() {
+    fn angles_match_section_3() {
         let table = OctantTable::default();
         for (sine, cosine, degrees, by_table, phase, five, sixteen) in GOLDEN {
             let told = exact(sine, cosine).unwrap();
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_is_as_good_as_section_3_says() {
+    fn the_table_is_as_accurate_as_section_3_states() {
         for (intervals, error, fraction) in [(16, 3.17e-4, 19_830.0), (32, 7.93e-5, 79_255.0), (64, 1.98e-5, 317_064.0)]
         {
             let table = OctantTable::new(intervals);
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_phase_stays_below_one() {
+    fn a_phase_is_always_below_one() {
         assert_eq!(Phase::of_periods(-1e-20), Phase::of_periods(0.0));
         assert_eq!(Phase::of_periods(3.25).unwrap().periods(), 0.25);
         assert_eq!(Phase::of_periods(-0.25).unwrap().degrees(), 270.0);

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn method_1_of_section_5() {
+    fn method_1_matches_section_5() {
         let motor = Motor::new(1024, 4).unwrap();
         let offset = motor.offset(339.02).unwrap();
         assert_eq!(offset.bits(), 0x5305_1EB8);
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn method_2_of_section_5() {
+    fn method_2_matches_section_5() {
         assert_eq!(position_to_set(0, phase(0.47)), Some(0x0F));
         assert_eq!(position_to_set(3, phase(0.47)), Some(0x6F));
         assert_eq!(position_to_set(0, phase(0.02)), Some(0));
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_vector_tells_pole_pairs_and_order_of_the_phases() {
+    fn a_second_vector_yields_pole_pairs_and_phase_order() {
         // A quarter of an electrical turn of four pole pairs is 1/16 revolution: 64 of 1024 periods.
         let motor = Motor::new(1024, 4).unwrap();
         assert_eq!(motor.second_vector(64.0, 0.25), Some(SecondVector { pole_pairs: 4, ratio: 1.0 }));

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_that_goes_back_is_told_with_its_sample() {
+    fn a_backward_time_step_is_reported_with_its_sample() {
         // Two recordings in one file.
         let capture = times(2000, |at| (at % 1000.0) * 1e-5);
         let told = Continuity::of(&capture);
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn few_digits_are_no_gaps() {
+    fn rounded_times_are_not_gaps() {
         for (label, step, digit) in [
             ("two and three digits", 2.5e-6, 1e-6),
             ("one and two", 1.5e-6, 1e-6),
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn without_times_nothing_is_told() {
+    fn without_times_nothing_is_reported() {
         for nothing in [&[][..], &[1.0], &[1.0, 1.0, 1.0], &[f64::NAN, f64::NAN, f64::NAN]] {
             assert_eq!(Continuity::of(nothing), Continuity::default(), "{nothing:?}");
         }

@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn there_and_back_is_covered_once() {
+    fn travel_forth_and_back_is_covered_once() {
         let told = coverage((0..1000).map(|at| 0.2 + 1.5 * (TAU * f64::from(at) / 1000.0).sin()));
         assert!((told.periods - 3.0).abs() < 1e-4 && told.travel_periods.abs() < 0.02, "{told:?}");
         // Up by 1.5, down by 3, up by 1.5 except for the last step.
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn what_happened_in_a_gap_is_not_counted() {
+    fn motion_within_a_gap_is_not_counted() {
         // 2.7 periods, a jump by 40.4, 1.1 periods back with a sample left out where they begin.
         let angles =
             (0..100).map(|at| 0.1 + 0.027 * f64::from(at)).chain((0..100).map(|at| 43.2 - 0.011 * f64::from(at)));
@@ -309,7 +309,7 @@ mod tests {
 
     /// Section 7: r runs from 0.44595 to 0.53764 V.
     #[test]
-    fn the_amplitude_vector_of_section_7() {
+    fn the_amplitude_vector_matches_section_7() {
         let reference = Ellipse { phase_error_rad: 3.0_f64.to_radians(), ..ELLIPSE };
         let (sine, cosine): (Vec<f64>, Vec<f64>) =
             (0..360).map(|degree| reference.at(f64::to_radians(f64::from(degree)))).unzip();

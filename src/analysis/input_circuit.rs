@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn filters_of_section_1() {
+    fn filters_match_section_1() {
         let rows = [
             (100e3, 22e-12, 7.870, 0.700, 0.99058),
             (100e3, 47e-12, 16.452, 1.462, 0.95906),
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn frequencies_of_sections_1_and_8() {
+    fn frequencies_match_sections_1_and_8() {
         let rows =
             [(512, 12_000.0, 102_400.0), (1024, 6000.0, 102_400.0), (128, 12_000.0, 25_600.0), (16, 12_000.0, 3200.0)];
         for (periods, rpm, hertz) in rows {

@@ -200,7 +200,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_sample_lies_in_the_cell_of_its_voltages() {
+    fn a_sample_is_counted_in_the_cell_of_its_voltages() {
         // Cells of 0.25 V from −0.5 to 0.5 V.
         let mut density = Density::new(Square::centred(0.5), 4).unwrap();
         let samples = [
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_are_those_of_the_samples_in_their_direction() {
+    fn lengths_are_those_of_the_samples_in_each_direction() {
         let mut density = Density::new(Square::centred(0.7), 256).unwrap();
         for degree in 0..3_600 {
             let (y, x) = (f64::from(degree) / 10.0).to_radians().sin_cos();
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn a_square_is_laid_around_the_samples() {
+    fn a_square_is_fitted_around_the_samples() {
         let square = Square::around(&[2.0, 3.0, f64::NAN], &[-0.1, 0.1, 0.0]).unwrap();
         assert!((square.sine_v - 2.5).abs() < 1e-12 && square.cosine_v.abs() < 1e-12);
         assert!((square.half_v - 0.525).abs() < 1e-12);
@@ -266,7 +266,7 @@ mod tests {
     proptest! {
         /// However they come, none is missing, and with a square around them none is outside.
         #[test]
-        fn no_sample_is_missing(samples in proptest::collection::vec((any::<f32>(), any::<f32>()), 1..300), cut in 0_usize..300) {
+        fn every_sample_is_counted(samples in proptest::collection::vec((any::<f32>(), any::<f32>()), 1..300), cut in 0_usize..300) {
             let (sine, cosine): (Vec<f64>, Vec<f64>) =
                 samples.iter().map(|(sine, cosine)| (f64::from(*sine), f64::from(*cosine))).unzip();
             let cut = cut.min(sine.len());

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_steady_speed_is_exact_whatever_the_rate() {
+    fn a_steady_speed_is_exact_at_any_rate() {
         for (label, period) in [("slow", 250), ("as the window", 100), ("fast", 1)] {
             let mut motion = Motion::over(100 * MILLISECOND);
             let days = 10 * 86_400_000;
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_said_before_a_window_is_over_or_across_a_break() {
+    fn there_is_no_speed_in_the_first_window_or_across_a_break() {
         let mut motion = Motion::over(10 * MILLISECOND);
         assert_eq!(motion.next(at(0), 0).speed, None);
         assert_eq!(motion.next(at(9), 9).speed, None);

@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn the_two_parts_are_told_apart_in_both_directions() {
+    fn integral_and_differential_parts_are_separated_in_both_directions() {
         let (values, reference) = measured(40_000, 1.1, 128.0);
         let back = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<_>>();
         for (values, reference) in [(values.clone(), reference.clone()), (back(&values), back(&reference))] {
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_is_refused() {
+    fn insufficient_data_is_refused() {
         let (values, mut reference) = measured(1000, 1.0, 16.0);
         assert_eq!(nonlinearity(&values[..100], &reference[..100], 16), Err(NonlinearityError::TooLittle));
         assert_eq!(nonlinearity(&values, &reference, 512), Err(NonlinearityError::TooLittle));

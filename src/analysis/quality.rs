@@ -171,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn amplitudes_of_section_8() {
+    fn amplitudes_match_section_8() {
         let limits = Limits::HIPERFACE;
         let cases = [
             (0.45, 0.0, Some(Verdict::Ok)),

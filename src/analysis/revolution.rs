@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn both_parts_are_found_whatever_the_direction() {
+    fn both_parts_are_found_in_either_direction() {
         let spike = std::iter::once(7_777..7_778).collect::<Vec<_>>();
         for sign in [1.0, -1.0] {
             let (mut sine, cosine, reference) = made(sign);
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn another_number_of_periods_is_told() {
+    fn a_wrong_number_of_periods_is_reported() {
         let (sine, cosine, reference) = made(1.0);
         let told = Revolution::of(&sine, &cosine, &reference, &[], &ELLIPSE, 100);
         let Err(RevolutionError::Periods { found, given: 100 }) = told else { panic!("{told:?}") };
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reference_of_few_steps_will_do_and_one_that_stands_will_not() {
+    fn a_coarse_reference_works_and_a_constant_one_fails() {
         let (sine, cosine, mut reference) = made(1.0);
         let standing = vec![12.0; reference.len()];
         let told = Revolution::of(&sine, &cosine, &standing, &[], &ELLIPSE, 128);

@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_spectrum_is_refused() {
+    fn data_without_a_spectrum_is_refused() {
         assert_eq!(Spectrum::of(&[0.0; 7], 1.0), Err(SpectrumError::TooFew { samples: 7 }));
         assert_eq!(Spectrum::of(&[f64::NAN; 8], 1.0), Err(SpectrumError::NotFinite));
         assert_eq!(Spectrum::of(&[0.0; 8], 0.0), Err(SpectrumError::NotFinite));

@@ -126,7 +126,7 @@ mod tests {
 
     /// The table of section 4: periods in the range, A, φ, k, fine position, residual, verdict.
     #[test]
-    fn cases_of_section_4() {
+    fn cases_match_section_4() {
         use Verdict::{Fault, Ok, Warn};
         let rows = [
             ("SKM36", 128 * 4096, 0x000E_0531, 0.5375, 0, 28_713.537_5, -0.0062, Ok),
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn sixteen_bits_of_interpolation() {
+    fn positions_interpolate_to_sixteen_bits() {
         let told = Synchroniser::new(1024).synchronise(0x2A5F, phase(0.02)).unwrap();
         assert_eq!(told.steps(16), 0x0153_051E);
         let degrees = told.steps(16) as f64 * 360.0 / (1024.0 * 65_536.0);
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn counters_of_section_4() {
+    fn counters_match_section_4() {
         let rows = [(43, 0.76, 10), (44, 0.98, 10), (43, 0.02, 11), (45, 0.26, 11), (45, 0.24, 11), (0, 0.98, 1023)];
         for (quarters, phi, period) in rows {
             assert_eq!(
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fixed_offset_is_measured_and_taken_out() {
+    fn a_fixed_offset_is_measured_and_corrected() {
         let pairs: Vec<(u64, Phase)> = (0..5000)
             .map(|step| {
                 let fine = f64::from(step) * 0.0127;

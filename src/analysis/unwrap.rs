@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrap_is_a_step_like_any_other() {
+    fn a_wrap_is_followed_like_any_step() {
         let multiturn = 4096 * 4096;
         let ring = Unwrap::rotary(multiturn).unwrap();
         let forward = follow(ring, &[multiturn - 2, multiturn - 1, 0, 1, multiturn - 1]);
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn half_the_range_may_be_either_way() {
+    fn a_step_of_half_the_range_is_ambiguous() {
         let ring = Unwrap::rotary(100).unwrap();
         assert_eq!(follow(ring, &[10, 59, 10]), [(10, false), (59, false), (10, false)]);
         assert_eq!(follow(ring, &[10, 60]), [(10, false), (60, true)]);
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn after_a_gap_the_way_is_not_known() {
+    fn after_a_gap_the_distance_is_unknown() {
         let mut ring = Unwrap::rotary(100).unwrap();
         ring.gap();
         assert_eq!(ring.next(98), Some(Unwrapped { steps: 98, broken: false }));
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_has_two_positions_at_least() {
+    fn a_range_has_at_least_two_positions() {
         assert!(Unwrap::rotary(1).is_none());
         assert!(Unwrap::rotary(i64::MIN).is_none());
     }
@@ -120,7 +120,7 @@ mod tests {
     proptest! {
         /// Any walk whose steps are below half the range is reproduced.
         #[test]
-        fn a_walk_is_followed(range in 3_i64..1 << 40, start in 0_i64..1 << 40, walk in proptest::collection::vec(-1.0..1.0, 1..200)) {
+        fn a_random_walk_is_followed(range in 3_i64..1 << 40, start in 0_i64..1 << 40, walk in proptest::collection::vec(-1.0..1.0, 1..200)) {
             let mut truth = start % range;
             let mut unwrap = Unwrap::rotary(range).unwrap();
             prop_assert_eq!(unwrap.next(truth).unwrap().steps, truth);

@@ -179,7 +179,7 @@ mod tests {
 
     /// Issue 21.11: limits confirmed here are locked again by another mark, and not by the confirmed one.
     #[test]
-    fn a_mark_of_the_same_number_is_the_same() {
+    fn marks_are_compared_by_number() {
         let of = |text: &str| ron::from_str::<RememberedDrives>(&format!("({text})")).unwrap();
         let cases: [(&str, &str, &[u8]); 7] = [
             ("unconfirmed: [1], marks: {1: 1}", "", &[1]),

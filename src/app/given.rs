@@ -69,7 +69,7 @@ mod tests {
     struct Secret(u8);
 
     #[test]
-    fn one_value_of_a_type_is_kept_and_none_is_printed() {
+    fn one_value_per_type_is_kept_and_none_is_printed() {
         let given = Given::default().with(Secret(0x9D)).with(String::from("first")).with(String::from("second"));
         assert_eq!(given.get::<Secret>(), Some(&Secret(0x9D)));
         assert_eq!(given.get::<String>().map(String::as_str), Some("second"));

@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_lead_back_and_forth_until_another_is_made() {
+    fn a_new_step_ends_redo() {
         let (mut history, mut now) = (History::default(), 1);
         assert!(history.step(&mut now, 2) && history.step(&mut now, 3) && !history.step(&mut now, 3));
         assert!(history.undo(&mut now) && now == 2 && history.can_redo());
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_that_the_ground_has_taken_away_are_none() {
+    fn steps_removed_by_a_rebase_cannot_be_undone() {
         let (mut history, mut now) = (History::default(), 1);
         for after in [2, 3, 14] {
             history.step(&mut now, after);

@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_went_well_does_not_push_away_what_somebody_has_to_read() {
+    fn success_notices_do_not_replace_warnings() {
         let notice = |severity| Notice {
             at: Zoned::now(),
             severity,
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn what_went_well_goes_by_itself_and_an_error_never() {
+    fn success_notices_expire_and_errors_never_do() {
         let left = |severity: Severity| severity.stands_for(Duration::from_millis(5_500));
         assert_eq!(left(Severity::Note), Some(Duration::from_millis(500)));
         assert_eq!(left(Severity::Good), left(Severity::Note));
@@ -176,7 +176,7 @@ mod tests {
 
     /// Issue 22.28: the error of a file ends with that file, and with no other.
     #[test]
-    fn a_file_settles_what_stood_in_its_way() {
+    fn saving_a_file_settles_its_own_errors() {
         let mut log = Log::default();
         let full = Text::new("file.disk_full").with("path", "/a/b.csv");
         let texts = vec![full, Text::new("session.not_saved")];
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_true_no_more_stands_no_more() {
+    fn a_settled_notice_is_removed() {
         let mut log = Log::default();
         let texts = vec![Text::new("session.not_connected")];
         log.add(Notice {

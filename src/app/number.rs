@@ -140,7 +140,7 @@ mod tests {
     use crate::app::Language;
 
     #[test]
-    fn numbers_have_a_point_or_a_comma_and_no_words() {
+    fn numbers_accept_a_point_or_a_comma_and_no_words() {
         for (text, value) in [
             ("1.5", 1.5),
             (" 1,5 ", 1.5),
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn quantities_are_read_as_they_stand_on_components() {
+    fn quantities_are_parsed_in_component_notation() {
         for (text, value) in [
             ("10k", 1e4),
             ("10 kΩ", 1e4),

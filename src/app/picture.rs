@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_picture_has_as_many_pixels_as_it_says() {
+    fn a_picture_has_as_many_pixels_as_its_size() {
         assert!(Picture::new(2, 1, vec![0; 5]).is_none());
         assert!(Picture::new(0, 7, Vec::new()).is_none());
         let pixels = vec![255, 0, 0, 0, 0, 255];
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_drawn_up_is_no_file() {
+    fn a_failed_encoding_leaves_no_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("picture.png");
         let short = Picture { width: 2, height: 2, bytes: vec![0; 5].into() };

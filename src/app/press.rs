@@ -137,7 +137,7 @@ mod tests {
 
     /// Issue 21.2: a press that the toolkit reports as the first is not fresh if the key was not seen up.
     #[test]
-    fn a_press_is_fresh_only_after_a_release_was_seen() {
+    fn a_press_is_fresh_only_after_a_release() {
         let mut keys = FreshKeys::default();
         assert!(!keys.is_armed(Space) && !keys.is_down(Space));
         for at in 0..40 {
@@ -160,7 +160,7 @@ mod tests {
 
     /// Issue 21.2: a repetition by release and press is a repetition, in one frame or in two, however far apart.
     #[test]
-    fn a_release_and_a_press_at_once_are_a_repetition() {
+    fn a_release_and_an_immediate_press_are_a_repeat() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
             let mut keys = FreshKeys::UP;
             assert!(keys.press(Enter));
@@ -180,7 +180,7 @@ mod tests {
 
     /// Issue 21.2: a user's press counts although nothing else happened after the release, because a frame was requested.
     #[test]
-    fn a_press_of_a_person_is_fresh_by_the_picture_that_was_asked_for() {
+    fn a_users_press_is_fresh_after_the_requested_frame() {
         for apart in [0.001, 0.016, 0.05, 1.0] {
             let mut keys = FreshKeys::UP;
             assert!(keys.press(Enter));
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn another_key_ends_the_repetitions_of_one_of_which_nothing_is_known() {
+    fn another_key_ends_the_repeats_of_an_unknown_key() {
         let mut keys = FreshKeys::default();
         keys.press_other(1.0);
         assert!(!keys.press(Enter), "at once");
@@ -214,7 +214,7 @@ mod tests {
 
     /// Issue 22.29: the input of a barcode scanner.
     #[test]
-    fn a_press_at_once_after_another_key_is_not_fresh() {
+    fn a_press_right_after_another_key_is_not_fresh() {
         let mut keys = FreshKeys::UP;
         keys.doubt(1.0);
         assert!(!keys.press(Enter), "in the same picture");

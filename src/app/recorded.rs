@@ -10,7 +10,7 @@ use super::{Settings, Tab};
 pub(crate) const SETTINGS: &str = include_str!("../../tests/fixtures/settings/settings.ron");
 
 #[test]
-fn settings_are_read_and_written_as_recorded() {
+fn settings_match_the_recorded_file() {
     let settings = Settings::parse(SETTINGS).unwrap();
     assert_eq!(settings.emit(), SETTINGS.trim_end());
     let tabs = [

@@ -272,7 +272,7 @@ mod tests {
     const BISS: Tab = Tab::named("Biss");
 
     #[test]
-    fn settings_come_back_and_unknown_ones_do_not_hurt() {
+    fn settings_round_trip_and_unknown_ones_are_ignored() {
         let mut settings = Settings { theme: ColorScheme::Light, language: Language::German, ..Settings::default() };
         settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
         settings.layout = Some("(tiles: {})".to_owned());
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_read_of_broken_settings_is_kept() {
+    fn readable_parts_of_broken_settings_are_kept() {
         let mut settings = Settings { theme: ColorScheme::Light, size: Some((1500, 900)), ..Settings::default() };
         settings.use_link(HIPERFACE, "serial:/dev/ttyUSB0");
         let broken = settings.emit().replace("tab: First", "tab: 7");
@@ -296,7 +296,7 @@ mod tests {
 
     /// A tab of another version is unknown here; its entries are kept.
     #[test]
-    fn links_of_a_tab_that_is_not_known_are_kept() {
+    fn links_of_an_unknown_tab_are_kept() {
         let text = "(tab: Gearbox, links: {Hiperface: [\"sim:\"], Gearbox: [\"tcp:host:1\"]})";
         let mut settings = Settings::parse(text).unwrap();
         settings.settle(Kinds::NONE);
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_set_since_the_start_stays() {
+    fn settings_changed_since_start_are_kept() {
         let mut found = Settings { theme: ColorScheme::Light, size: Some((1500, 900)), ..Settings::default() };
         found.use_link(HIPERFACE, "tcp:host:1");
         let mut settings = Settings { language: Language::German, ..Settings::default() };
@@ -390,7 +390,7 @@ mod tests {
 
     /// Issue 21.11: links that others have used meanwhile stay, after those that were used here.
     #[test]
-    fn links_of_two_windows_stand_together() {
+    fn links_of_two_windows_are_merged() {
         let of = |links: &[&str]| {
             let mut settings = Settings::default();
             links.iter().rev().for_each(|link| settings.use_link(BISS, link));
@@ -419,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn the_latest_link_comes_first_and_stands_once() {
+    fn the_latest_link_comes_first_without_duplicates() {
         let mut settings = Settings::default();
         for at in 0..20 {
             settings.use_link(HIPERFACE, &format!("tcp:host:{at}"));

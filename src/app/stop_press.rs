@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_second_press_within_half_a_second_is_meant_for_the_same_motion() {
+    fn a_second_press_within_half_a_second_counts_for_the_same_motion() {
         let mut presses = StopPresses::default();
         assert!(!presses.means_motion(false, 9.0, 9.0), "nothing moves, and nothing has");
         assert!(presses.means_motion(true, 10.0, 10.0));
@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn a_click_counts_from_when_the_button_went_down() {
+    fn a_click_counts_from_the_button_press() {
         let mut presses = StopPresses::default();
         presses.means_motion(true, 10.0, 10.0);
         presses.goes_down(10.25);

@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn both_languages_say_the_same_things() {
+    fn both_languages_have_the_same_texts_and_arguments() {
         for (file, source) in catalogues() {
             let table = rows(&source);
             assert!(!table.is_empty(), "{file}");
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn no_row_hides_another() {
+    fn text_ids_are_unique() {
         let (catalogues, mut names) = (catalogues(), std::collections::BTreeSet::new());
         for (file, source) in &catalogues {
             let own =
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_and_lists_are_said_in_the_language() {
+    fn numbers_and_lists_follow_the_language() {
         let text = Text::new("link.busy").with_number("target", 1.25, 1);
         assert!(text.words(Language::English).starts_with("1.2 is"));
         assert!(text.words(Language::German).starts_with("1,2 wird"));
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn the_command_line_has_hints_of_its_own() {
+    fn the_command_line_has_separate_hints() {
         let cause = Text::new("link.not_found").with("target", "COM3");
         let text = Text::new("link.other").with("target", "COM3").with_text("why", cause);
         assert!(text.terminal().contains("\"encoder-studio ports\" lists"), "{}", text.terminal());
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn the_window_says_nothing_about_the_command_line() {
+    fn window_texts_do_not_mention_the_command_line() {
         for source in catalogues().values() {
             for (id, row) in &rows(source) {
                 for hint in ["--", "encoder-studio ", "=HEX", "echo=", "do hiperface"] {

@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn contrast_is_that_of_the_standard() {
+    fn contrast_is_computed_as_in_wcag() {
         let rgb = |text: &str| Rgb::try_from(text.to_owned()).unwrap();
         assert!((rgb("#000000").contrast(rgb("#FFFFFF")) - 21.0).abs() < 1e-9);
         // A known pair: #767676 is the lightest grey that is legible on white.

@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn slow_replies_are_told_with_what_helps() {
+    fn slow_replies_are_reported_with_a_remedy() {
         assert_eq!(message(1000, &[3, 5, 4]), None, "what takes long does so for other reasons");
         assert_eq!(message(1000, &[299, 301]).unwrap(), "The device answers slowly: a reply takes 300 ms.");
         assert_eq!(
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_said_before_time_and_nothing_twice() {
+    fn the_notice_appears_late_and_only_once() {
         let replies = Replies::default();
         replies.note(Duration::from_millis(300));
         let pace = |replies| Pace { replies, timeout: Duration::from_secs(1), longest: Duration::from_secs(2) };

@@ -58,7 +58,7 @@ fn slips(name: &str) -> Vec<String> {
 
 /// Issue 22.17: of 393 misspelt names, 153 were accepted.
 #[test]
-fn no_name_of_a_ready_made_profile_is_misspelt_without_a_word() {
+fn misspelt_names_in_ready_made_profiles_are_reported() {
     let mut misspelt = 0;
     for (path, text) in profiles_in("profiles") {
         for (begin, end) in names(&text) {
@@ -94,7 +94,7 @@ fn profiles_of_schema_1_open() {
 }
 
 #[test]
-fn the_profiles_that_ship_are_read() {
+fn ready_made_profiles_parse() {
     for kind in program().studio.formats.kinds() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles").join(kind);
         let mut count = 0;
@@ -116,7 +116,7 @@ fn the_profiles_that_ship_are_read() {
 }
 
 #[test]
-fn a_kind_that_is_not_known_is_told_with_those_that_are() {
+fn an_unknown_kind_is_reported_with_the_known_ones() {
     let error = Document::parse("(schema: 1, device: \"sse\")", program().studio.formats).unwrap_err();
     let known = "\"hiperface\", \"biss\", \"ssi\", \"interbus\" and \"hiperdrive\"";
     assert_eq!(error.to_string(), format!("device \"sse\"; this program knows {known}"));
@@ -124,7 +124,7 @@ fn a_kind_that_is_not_known_is_told_with_those_that_are() {
 }
 
 #[test]
-fn the_tabs_stand_in_the_order_of_the_navigation() {
+fn tabs_are_in_navigation_order() {
     let tabs: Vec<_> = program().tabs.tabs().map(crate::app::Tab::name).collect();
     assert_eq!(tabs, ["Hiperface", "Biss", "Ssi", "Interbus", "Hiperdrive", "Signals"], "devices, then Signals");
     for tab in program().tabs.tabs() {

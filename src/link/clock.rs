@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn virtual_time_moves_only_forwards() {
+    fn virtual_time_only_moves_forward() {
         let clock = VirtualClock::default();
         clock.sleep_until(Moment::after_start(Duration::from_secs(3600)));
         clock.sleep_until(Moment::after_start(Duration::from_secs(1)));

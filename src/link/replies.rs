@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn replies_are_measured_for_all_who_look() {
+    fn reply_times_are_shared_by_all_clones() {
         let (replies, ms) = (Replies::default(), Duration::from_millis);
         let seen = replies.clone();
         assert_eq!((seen.usual(), seen.longest()), (None, Duration::ZERO));

@@ -247,7 +247,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_way_a_port_does_not_open_has_its_own_kind() {
+    fn every_open_failure_has_a_distinct_kind() {
         let error = |kind| serialport::Error::new(kind, "words of the system");
         let io = |kind| error(serialport::ErrorKind::Io(kind));
         assert_eq!(opening("/dev/nope", &io(ErrorKind::NotFound)), LinkErrorKind::NotFound);

@@ -118,7 +118,7 @@ mod tests {
 
     /// A tick of the system may be ten milliseconds: a hundred checks would take a second.
     #[test]
-    fn a_look_does_not_wait_and_a_short_wait_is_short() {
+    fn polling_does_not_wait_and_short_waits_are_short() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let clock = Arc::new(RealClock::start());
         let target = listener.local_addr().unwrap().to_string();

@@ -145,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_trace_is_read_as_it_was_written() {
+    fn traces_round_trip() {
         let text = "# encoder-studio trace 1\n0.031204 > 40 4F 02 ** ** **\n0.047511 < 40 4F 02 0D\n";
         let entries = read_trace(text).unwrap();
         assert_eq!(entries.len(), 2);

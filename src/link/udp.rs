@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn packets_go_where_they_are_aimed_and_come_back_to_the_port() {
+    fn packets_reach_their_target_and_replies_return_to_the_port() {
         let (target, mut packets, clock) = pair();
         packets.send(b"out").unwrap();
         let mut buffer = [0; 16];
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn what_others_send_is_dropped_and_a_closed_port_is_no_loss() {
+    fn packets_of_other_senders_are_dropped_and_a_closed_port_is_no_loss() {
         let (target, mut packets, clock) = pair();
         let to = ("127.0.0.1", packets.port());
         // All of 127/8 is this computer.
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn who_was_asked_answers() {
+    fn broadcast_replies_come_from_the_addressed_devices() {
         let target = UdpSocket::bind("127.0.0.1:0").unwrap();
         let SocketAddr::V4(address) = target.local_addr().unwrap() else { panic!() };
         let clock = Arc::new(RealClock::start());
@@ -344,7 +344,7 @@ mod tests {
     }
 
     #[test]
-    fn networks_are_read_from_the_table_of_routes() {
+    fn networks_are_read_from_the_routing_table() {
         let table = "Iface\tDestination\tGateway \tFlags\tRefCnt\tUse\tMetric\tMask\t\tMTU\tWindow\tIRTT\n\
             eth0\t00000000\t0101A8C0\t0003\t0\t0\t100\t00000000\t0\t0\t0\n\
             eth0\t0001A8C0\t00000000\t0001\t0\t0\t100\t00FFFFFF\t0\t0\t0\n\

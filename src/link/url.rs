@@ -287,7 +287,7 @@ mod tests {
     use crate::parameter::Whole;
 
     #[test]
-    fn links_are_taken_apart_and_written_as_they_were() {
+    fn links_round_trip() {
         for text in [
             "sim:",
             "sim:?seed=7&fault=drop:0.01",
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_link_is_told_why() {
+    fn invalid_links_are_refused_with_a_reason() {
         let cases = [
             ("", "\"\" is not a link: a link begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:"),
             (
@@ -347,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gateway_has_the_port_of_modbus_where_none_is_written() {
+    fn a_gateway_defaults_to_the_modbus_port() {
         for (text, whole) in [
             ("modbus:plc", "modbus:plc:502"),
             ("modbus:[::1]?unit=3", "modbus:[::1]:502?unit=3"),
@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn links_to_the_same_wire_are_known() {
+    fn links_to_the_same_wire_are_recognized() {
         let wire = |text: &str| format!("{:?}", text.parse::<LinkUrl>().unwrap().wire());
         assert_eq!(wire("bridge:/dev/ttyACM0?clock=1"), wire("serial:/dev/ttyACM0"));
         assert_eq!(wire("bridge:tcp:[::1]:4001"), wire("tcp:[::1]:4001"));
@@ -371,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_value_names_what_is_allowed() {
+    fn a_bad_value_names_the_allowed_ones() {
         let query: Query = "baud=fast".parse().unwrap();
         let speeds = Whole(Quantity::Number, 1..=9);
         let error = query.read("baud", &speeds).unwrap_err();

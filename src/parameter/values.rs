@@ -242,7 +242,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_is_read_printed_and_refused() {
+    fn values_parse_print_and_are_refused() {
         let told = |allowed: Expected| allowed.to_string();
         let unit = Whole::<u8>(Quantity::Unit, 1..=247);
         assert_eq!(

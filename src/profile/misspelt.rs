@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_slip_is_told_from_another_name() {
+    fn typos_are_distinguished_from_other_names() {
         let cases = [
             ("filtr", "filter", Some(1)),
             ("presett", "preset", Some(1)),

@@ -80,7 +80,7 @@ fn lamp(colour: &str) -> Body {
 }
 
 #[test]
-fn a_document_is_read_in_the_format_of_its_kind() {
+fn a_document_is_parsed_in_the_format_of_its_kind() {
     let document = parse(TEXT).unwrap();
     assert_eq!(document.device(), "lamp");
     assert_eq!(document.body.get::<Lamp>().unwrap().steps, [(10, Unknown::new()), (0x40, Unknown::new())]);
@@ -90,7 +90,7 @@ fn a_document_is_read_in_the_format_of_its_kind() {
 }
 
 #[test]
-fn bodies_are_the_same_where_kind_and_content_are() {
+fn bodies_are_equal_if_kind_and_content_are() {
     assert_eq!(lamp("red"), lamp("red"));
     assert_ne!(lamp("red"), lamp("blue"));
     assert_ne!(lamp("red"), Body::new(Fan));
@@ -101,7 +101,7 @@ fn bodies_are_the_same_where_kind_and_content_are() {
 }
 
 #[test]
-fn a_kind_that_is_not_in_the_list_is_told_with_those_that_are() {
+fn an_unknown_kind_is_reported_with_the_known_ones() {
     let told = |formats| Document::parse("(schema: 1, device: \"tap\")", formats).unwrap_err().to_string();
     let three = Formats::new(&[Lamp::FORMAT, Fan::FORMAT, Lamp::FORMAT]);
     assert_eq!(told(Lamp::FORMATS), "device \"tap\"; this program knows \"lamp\"");
@@ -118,7 +118,7 @@ fn a_profile_of_another_kind_names_both() {
 }
 
 #[test]
-fn entries_of_ones_own_and_of_a_newer_schema_are_kept() {
+fn user_entries_and_newer_schema_entries_are_kept() {
     let own = TEXT.replace("(level: 10)", "(level: 10, extra: {\"by\": \"CK\"})");
     let document = parse(&own).unwrap();
     assert!(document.beyond.is_empty() && document.emit().contains("extra: {\"by\": \"CK\"}"));
@@ -131,7 +131,7 @@ fn entries_of_ones_own_and_of_a_newer_schema_are_kept() {
 
 /// Issues 22.25 and 22.26: a document is saved over a user's text, and merged with the changes of another user.
 #[test]
-fn a_document_is_written_over_a_text_and_brought_together_with_another() {
+fn a_document_is_merged_into_text_and_with_another() {
     changed_in_place(TEXT, |own: &mut Lamp| own.colour = "blue".to_owned(), "\"red\"", "\"blue\"");
     let (_, carried) = edited(TEXT, |note, own: &mut Lamp| {
         *note = Some("as of today".to_owned());
@@ -155,7 +155,7 @@ fn a_document_is_written_over_a_text_and_brought_together_with_another() {
 }
 
 #[test]
-fn a_cause_reads_like_the_error_of_the_device_and_keeps_its_type() {
+fn a_cause_displays_the_device_error_and_keeps_its_type() {
     #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
     #[error("{0} lamps are too many")]
     struct TooMany(u32);

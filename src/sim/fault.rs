@@ -174,7 +174,7 @@ mod tests {
     use proptest::proptest;
 
     #[test]
-    fn a_specification_is_read() {
+    fn a_specification_parses() {
         let faults: Faults = "drop:0.01, flip:1,garbage:0,delay:25,silent-after:0,die-in-store:2".parse().unwrap();
         assert_eq!((faults.drop, faults.flip, faults.garbage), (0.01, 1.0, 0.0));
         assert_eq!(faults.delay(), Duration::from_millis(25));
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_in_a_sentence() {
+    fn invalid_faults_are_reported() {
         let cases = [
             ("drop:2", "fault `drop:2`: the probability must be a number from 0 to 1"),
             ("flip:NaN", "fault `flip:NaN`: the probability must be a number from 0 to 1"),
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_certain_always_happens_and_what_is_not_never() {
+    fn probability_one_always_happens_and_zero_never_does() {
         let mut rng = Rng::with_seed(1);
         let quiet = Faults::default();
         let lossy: Faults = "drop:1".parse().unwrap();

@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn many_of_one_second_are_all_kept() {
+    fn many_backups_in_one_second_are_all_kept() {
         let (_root, backups) = backups();
         let taken = at("2026-11-21T12:14:47Z");
         std::thread::scope(|scope| {
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn every_serial_number_has_a_folder_of_its_own() {
+    fn every_serial_number_has_a_separate_folder() {
         let cases = [
             ("12345678", "12345678"),
             ("AB-1_2.3", "AB-1_2.3"),
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_in_the_way_is_an_error() {
+    fn a_file_in_place_of_the_folder_is_an_error() {
         let (root, backups) = backups();
         fs::write(root.path().join("data"), "x").unwrap();
         let error = backups.save("hiperface", "1", at("2026-11-21T12:14:47Z"), "x").unwrap_err();

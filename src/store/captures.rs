@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_several_pieces_is_read_with_progress_until_given_up() {
+    fn a_large_file_is_read_with_progress_and_can_be_cancelled() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c.csv");
         let text: String = (0..100_000).map(|at| format!("{at}e-6,0.{at},-0.{at}\n")).collect();
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn the_head_is_the_beginning_of_the_file() {
+    fn the_head_is_the_start_of_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("c.csv");
         assert_eq!(capture_head(&path).unwrap_err().problem, FileProblem::NotFound);
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_file_is_told_as_the_system_does() {
+    fn unreadable_paths_report_the_system_error() {
         let folder = tempfile::tempdir().unwrap();
         let problem = |path: &Path| match read(path, false).0 {
             Err(ReadCaptureError::File(error)) => error.problem,

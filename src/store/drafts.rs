@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_has_a_draft_of_its_own_inside_the_folder() {
+    fn every_key_has_a_separate_draft_inside_the_folder() {
         let (root, drafts) = drafts();
         let keys = ["", "a", "A", ".", "..", "../x", "a/b", "NUL", "%none", "a.ron"];
         for key in keys {
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_in_the_way_is_told() {
+    fn blocked_drafts_are_reported() {
         let (root, drafts) = drafts();
         let path = root.path().join("data/drafts/hiperface/1.ron");
         fs::create_dir_all(&path).unwrap();

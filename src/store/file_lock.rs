@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn each_update_sees_the_one_before() {
+    fn each_update_sees_the_previous_one() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("config/a.ron");
         let writers: Vec<_> = (0..4)
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lock_that_another_one_keeps_is_waited_for_and_given_up() {
+    fn waiting_for_a_held_lock_times_out() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.ron");
         fs::write(&path, "old").unwrap();
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_in_the_way_names_the_file() {
+    fn a_blocked_lock_names_the_file() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.ron");
         fs::create_dir_all(lock_of(&path)).unwrap();
@@ -145,7 +145,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_lock_that_may_not_be_written_is_a_lock() {
+    fn a_read_only_lock_file_works_as_a_lock() {
         use std::os::unix::fs::PermissionsExt;
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.ron.lock");

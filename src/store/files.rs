@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_written_says_why() {
+    fn failed_writes_report_the_reason() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         fs::write(&file, "x").unwrap();
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+    fn a_failed_write_leaves_only_the_old_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.ron");
         write_new(&path, b"old").unwrap();
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_text_is_refused() {
+    fn files_that_are_not_text_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.ron");
         assert_eq!(problem(read_text(&path)), FileProblem::NotFound);
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_is_made_once_and_never_over_a_file() {
+    fn a_folder_is_created_once_and_never_over_a_file() {
         let folder = tempfile::tempdir().unwrap();
         let deep = folder.path().join("a/b");
         create_folder(&deep).unwrap();
@@ -327,7 +327,7 @@ mod tests {
         }
 
         #[test]
-        fn permissions_are_the_usual_ones_and_stay() {
+        fn permissions_are_default_and_preserved() {
             let folder = tempfile::tempdir().unwrap();
             let [ours, usual] = ["ours", "usual"].map(|name| folder.path().join(name));
             fs::write(&usual, "x").unwrap();
@@ -341,7 +341,7 @@ mod tests {
         }
 
         #[test]
-        fn a_link_stays_a_link() {
+        fn a_symlink_stays_a_symlink() {
             let folder = tempfile::tempdir().unwrap();
             let [link, second, target] = ["link", "second", "sub/target"].map(|name| folder.path().join(name));
             fs::create_dir(folder.path().join("sub")).unwrap();
@@ -357,7 +357,7 @@ mod tests {
         }
 
         #[test]
-        fn a_ring_of_links_is_an_error() {
+        fn a_symlink_loop_is_an_error() {
             let folder = tempfile::tempdir().unwrap();
             let link = folder.path().join("link");
             symlink("link", &link).unwrap();

@@ -54,7 +54,7 @@ mod tests {
 
     /// Issue 22.24: one rule applies to every path from the user.
     #[test]
-    fn a_path_leads_to_the_same_file_from_everywhere() {
+    fn paths_resolve_the_same_everywhere() {
         let root = std::env::temp_dir();
         let (working, home) = (root.join("work"), root.join("home"));
         let folders = Folders::at(&working, &home);

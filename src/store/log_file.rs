@@ -167,7 +167,7 @@ mod tests {
     use std::sync::Mutex;
 
     #[test]
-    fn lines_come_into_the_file_and_a_later_start_adds_to_them() {
+    fn lines_are_appended_to_the_file_of_earlier_starts() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("data").join("own.log");
         for line in ["one\n", "two\n"] {
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_has_become_large_begins_anew_while_it_is_written() {
+    fn a_large_file_is_rotated_while_writing() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("own.log");
         let own = path.clone();
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disk_that_hangs_stops_nobody_and_what_is_missing_is_counted() {
+    fn a_hanging_disk_blocks_no_thread_and_lost_lines_are_counted() {
         let (release, lock) = bounded::<()>(0);
         let written = Arc::new(Mutex::new(Vec::new()));
         let log = LogFile::writing_into(

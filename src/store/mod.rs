@@ -116,7 +116,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn looking_makes_no_folder() {
+    fn reading_creates_no_folder() {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at(root.path());
         assert_eq!(read_folder(&store.device_folder("biss"), "ron"), (Vec::new(), Vec::new()));

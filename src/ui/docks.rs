@@ -256,7 +256,7 @@ mod tests {
 
     /// Names of panels are stored in users' settings.
     #[test]
-    fn panels_stand_as_recorded() {
+    fn recorded_panel_layouts_load() {
         let layout = Settings::parse(SETTINGS).unwrap().layout.unwrap();
         let tree: Tree<Pane> = ron::from_str(&layout).unwrap();
         assert!(is_complete(&tree));

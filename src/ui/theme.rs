@@ -218,7 +218,7 @@ mod tests {
 
     /// An address is read off and typed into a script: no font may show 0x40 as 0×40, which contextual alternates do.
     #[test]
-    fn no_font_puts_other_characters_in_the_place_of_those_written() {
+    fn no_font_substitutes_other_characters() {
         for (name, bytes) in FONTS {
             let tables = usize::from(u16::from_be_bytes([bytes[4], bytes[5]]));
             let tags: Vec<&[u8]> = bytes[12..].chunks(16).take(tables).map(|entry| &entry[..4]).collect();

@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn progress_never_overtakes_the_start_of_its_job_and_late_events_wake() {
+    fn progress_follows_the_start_of_its_job_and_late_events_wake() {
         let (sender, events) = bounded(CAPACITY);
         let wakes = Arc::new(AtomicUsize::new(0));
         let counter = wakes.clone();

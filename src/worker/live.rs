@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_fails_ends_its_own_wish_and_no_later_one() {
+    fn a_failure_ends_only_its_own_request() {
         let (live, _changes) = Live::new();
         live.poll(Some(Duration::from_millis(50)));
         let earlier = live.number();
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_refused_is_asked_for_again_once_it_left_the_list() {
+    fn a_refused_watch_is_requested_again_after_removal() {
         let second = Duration::from_secs(1);
         let watches = Watches::new(Live::new().0);
         let mut known = 0;

@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_sample_is_followed_by_one_and_not_by_a_burst() {
+    fn a_late_sample_is_not_followed_by_a_burst() {
         let (step, start) = (ms(100), Instant::now());
         let mut pace = Pace::default();
         assert_eq!(pace.due(None, start), None);
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn watched_values_come_between_samples_at_their_own_pace() {
+    fn watched_values_are_read_between_samples_at_their_own_interval() {
         for (polling, watches, end, expected) in [
             (100, vec![], 250, ".0 .100 .200"),
             (100, vec![('a', 200)], 450, ".0 a25 .100 .200 a225 .300 .400 a425"),
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn watching_rests_with_polling_and_goes_on_through_a_new_list() {
+    fn watching_pauses_with_polling_and_continues_with_a_new_list() {
         let start = Instant::now();
         let mut agenda = PollScheduler::default();
         agenda.watch(vec![('a', ms(200))]);

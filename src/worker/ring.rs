@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_went_in_comes_out_in_order_and_once() {
+    fn items_are_drained_in_order_and_once() {
         let ring = Ring::new(3);
         assert_eq!(ring.drain(), (vec![], 0));
         ring.push(1);
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_for_nothing_keeps_the_newest() {
+    fn a_ring_of_capacity_zero_keeps_the_newest() {
         let ring = Ring::new(0);
         ring.push('a');
         ring.push('b');
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_lost_uncounted_between_threads() {
+    fn losses_between_threads_are_counted() {
         let ring = Ring::new(16);
         let (mut taken, mut dropped) = (0, 0);
         std::thread::scope(|scope| {

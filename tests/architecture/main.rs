@@ -88,7 +88,7 @@ fn is_at_adapter(path: &[String]) -> bool {
 }
 
 #[test]
-fn floors_point_down_only() {
+fn layers_use_only_lower_layers() {
     for source in sources() {
         for (used, place) in source.uses(source.without_tests()) {
             let up = place.floor() > source.place.floor() && !is_at_adapter(&used.path);
@@ -99,7 +99,7 @@ fn floors_point_down_only() {
 
 /// Layers on one level use each other only where this list allows it.
 #[test]
-fn neighbours_are_known_only_where_it_is_allowed() {
+fn modules_of_one_layer_use_each_other_only_where_allowed() {
     const ALLOWED: [(&str, &str); 4] =
         [("profile", "protocol"), ("link", "sim"), ("worker", "procedures"), ("cli", "app")];
     for source in sources().iter().filter(|source| source.place.floor() < 6) {
@@ -138,7 +138,7 @@ fn no_two_folders_of_the_core_use_each_other() {
 /// A device is used only by itself and by the list of kinds, a bus by its users: devices, and Signals at an adapter's
 /// inputs. Signals is used by the list only.
 #[test]
-fn devices_and_buses_are_known_only_where_it_is_allowed() {
+fn devices_and_buses_are_used_only_where_allowed() {
     for source in sources() {
         let lists = source.path == LIST_OF_KINDS || source.path.starts_with("src/kinds/");
         for (used, place) in source.uses(&source.text) {
@@ -153,7 +153,7 @@ fn devices_and_buses_are_known_only_where_it_is_allowed() {
 }
 
 #[test]
-fn the_lower_floors_are_pure() {
+fn the_lower_layers_are_pure() {
     const FORBIDDEN: [&str; 12] = [
         "std::net",
         "std::fs",
@@ -177,7 +177,7 @@ fn the_lower_floors_are_pure() {
 }
 
 #[test]
-fn simulators_have_no_clock_and_know_no_procedure() {
+fn simulators_use_no_clock_and_no_procedures() {
     for source in sources().iter().filter(|source| source.place.layer == "sim") {
         for (line, code) in source.code() {
             for word in ["std::thread", "Instant", "SystemTime"] {
@@ -201,14 +201,14 @@ fn only_the_window_and_the_command_line_give_consent() {
 
 /// No operation is carried out without a confirmed plan; the one function that confirms it keeps the before-image as well.
 #[test]
-fn only_the_one_way_to_write_confirms_a_plan() {
+fn only_write_plan_confirms_a_plan() {
     let confirms = |source: &Source| source.code().any(|(_, code)| code.contains("Confirmed::confirm("));
     let found: Vec<String> = sources().into_iter().filter(confirms).map(|source| source.path).collect();
     assert_eq!(found, ["src/worker/commit.rs"]);
 }
 
 #[test]
-fn every_module_says_what_it_is_and_none_is_long() {
+fn every_module_is_documented_and_short() {
     for source in sources() {
         assert!(source.text.starts_with("//!"), "{} does not open with //!", source.path);
         let length = source.text.lines().count();
@@ -300,7 +300,7 @@ fn only_the_window_draws() {
 /// The texts of the window come from the catalogues. A literal of a view may be the id of a text, or be invisible; a word
 /// has three letters or more that are not all capitals.
 #[test]
-fn no_view_holds_a_literal_text() {
+fn no_view_contains_a_literal_text() {
     /// Code before a literal that is a name for egui, for a position in a text, for the system or the compiler.
     const NAMES: [&str; 21] = [
         "Id::unique(",
@@ -355,7 +355,7 @@ fn no_view_holds_a_literal_text() {
 }
 
 #[test]
-fn every_text_that_is_asked_for_is_in_the_table() {
+fn every_used_text_is_in_the_table() {
     let sources = sources();
     let known = Known::read(&sources);
     for source in sources.iter().filter(|source| source.place.floor() >= 5 && !source.is_test()) {
@@ -446,7 +446,7 @@ fn unescaped(text: &str) -> String {
 }
 
 #[test]
-fn a_literal_text_would_be_seen() {
+fn literal_texts_are_detected() {
     let source =
         "fn a<'x>() { // \"no text\"\n  say(\"page.memory\"); b('\"', \"one \\\"two\\\"\");\n  c(\"{value:.3} mm\"); }";
     let found: Vec<(usize, String)> = literals(source).into_iter().map(|own| (own.line, own.text)).collect();

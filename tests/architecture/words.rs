@@ -49,7 +49,7 @@ fn texts(line: &str) -> impl Iterator<Item = (&'static str, &str)> {
 }
 
 #[test]
-fn no_text_has_a_word_that_was_given_up() {
+fn no_text_has_a_forbidden_word() {
     let mut found = Vec::new();
     let mut read = 0;
     for file in fs::read_dir("assets/texts").unwrap() {
@@ -87,7 +87,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 #[test]
-fn no_comment_has_a_word_that_was_given_up() {
+fn no_comment_has_a_forbidden_word() {
     let (mut files, mut found, mut read) = (Vec::new(), Vec::new(), 0);
     sources(Path::new("src"), &mut files);
     for path in files {
@@ -110,7 +110,7 @@ fn no_comment_has_a_word_that_was_given_up() {
 }
 
 #[test]
-fn a_word_is_found_as_a_word() {
+fn only_complete_words_match() {
     assert!(has("Nobody acknowledges.", "nobody") && has("as all the same", "all the same"));
     assert!(!has("Recommend it.", "mend") && !has("clamps", "lamps"));
     assert_eq!(comment("    /// Who comes."), Some((true, "Who comes.")));

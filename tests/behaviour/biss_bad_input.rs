@@ -4,7 +4,7 @@ use super::biss_profile::PROFILE;
 use super::support::Bench;
 
 #[test]
-fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
+fn a_broken_profile_is_refused_with_its_name_and_error() {
     let bench = Bench::new();
     let good = bench.write("good.ron", PROFILE);
     let edited = |from: &str, to: &str| {
@@ -35,7 +35,7 @@ fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
 
 /// Issue 22.17: a profile of a newer schema is compared, and the message says that nothing else is possible.
 #[test]
-fn a_profile_of_a_newer_schema_is_only_read() {
+fn a_profile_of_a_newer_schema_is_read_only() {
     let bench = Bench::new();
     let good = bench.write("good.ron", PROFILE);
     let newer = bench.write("newer.ron", PROFILE.replacen("schema: 1", "schema: 99", 1));
@@ -52,7 +52,7 @@ fn a_profile_of_a_newer_schema_is_only_read() {
 }
 
 #[test]
-fn a_link_is_needed_and_has_to_be_one() {
+fn a_valid_link_is_required() {
     let bench = Bench::new();
     let good = bench.write("good.ron", PROFILE);
     let commands: [&[&str]; 9] = [
@@ -95,7 +95,7 @@ fn a_link_is_needed_and_has_to_be_one() {
 }
 
 #[test]
-fn what_cannot_be_understood_is_wrong_usage() {
+fn invalid_arguments_are_usage_errors() {
     let bench = Bench::new();
     let cases: [&[&str]; 12] = [
         &["read", "biss", "colour"],

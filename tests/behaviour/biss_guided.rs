@@ -37,7 +37,7 @@ fn a_calibration_runs_both_ways() {
 }
 
 #[test]
-fn a_wiegand_test_runs_both_ways_and_is_saved_where_that_is_asked_for() {
+fn a_wiegand_test_runs_both_ways_and_is_saved_on_request() {
     let bench = Bench::new();
     let turning = ["--rpm", "600", "--reverse"];
     for save in [false, true] {
@@ -57,7 +57,7 @@ fn a_wiegand_test_runs_both_ways_and_is_saved_where_that_is_asked_for() {
 }
 
 #[test]
-fn a_motor_that_does_not_fit_is_told_with_what_was_measured() {
+fn an_unsuitable_motor_is_reported_with_the_measured_values() {
     let bench = Bench::new();
     let cases: [(&[&str], &str, &[&str]); 5] = [
         (&["--rpm", "0"], "calibrate", &["stands", "counterclockwise"]),
@@ -80,7 +80,7 @@ fn a_motor_that_does_not_fit_is_told_with_what_was_measured() {
 }
 
 #[test]
-fn a_dynamic_filter_is_no_filter_for_a_calibration() {
+fn a_dynamic_filter_prevents_a_calibration() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&["--rpm", "-500", "--filter", "4"]) else { return };
     let ran = ask(&bench, &encoder, &["do", "biss", "calibrate"]);
@@ -90,7 +90,7 @@ fn a_dynamic_filter_is_no_filter_for_a_calibration() {
 
 /// The second run fails: the encoder is in operation afterwards, and its table is lost.
 #[test]
-fn a_run_that_fails_leads_back_to_operation() {
+fn a_failed_run_leads_back_to_operation() {
     let bench = Bench::new();
     let failing = ["--rpm", "-500", "--reverse", "--calibration-fails", "0x33"];
     let (Some(kit), Some(adapter)) = (bench.kit(&failing), bench.adapter(&failing)) else { return };
@@ -104,7 +104,7 @@ fn a_run_that_fails_leads_back_to_operation() {
 /// Temperature → calibration → Wiegand test → preset → data, in one run. The motor stands still while the data are read,
 /// turns, and stops after the test.
 #[test]
-fn a_mounting_run_does_all_of_it() {
+fn a_mounting_run_performs_all_steps() {
     let bench = Bench::new();
     let file = bench.write("p.ron", PROFILE);
     let turning = ["--rpm", "-600", "--reverse", "--stops", "--rests", "12"];
@@ -128,7 +128,7 @@ fn a_mounting_run_does_all_of_it() {
 }
 
 #[test]
-fn what_is_no_part_of_a_mounting_is_told() {
+fn invalid_mounting_steps_are_usage_errors() {
     let bench = Bench::new();
     for words in [&["spin"][..], &["preset=1,2,3"], &["preset=x"], &["preset"], &["data"]] {
         let command = [&["do", "biss", "mounting"], words, &["--yes", "--link", "sim:"]].concat();
@@ -142,7 +142,7 @@ fn what_is_no_part_of_a_mounting_is_told() {
 /// The virtual encoder turns 515 times each way: 15.5 s at 2000 rpm. Issue 22.19: a failed test is no success; 5.2 V are
 /// less than 5.3 V (reference 4).
 #[test]
-fn our_own_encoder_is_led_through_as_well() {
+fn the_virtual_encoder_passes_the_guided_procedures() {
     let bench = Bench::new();
     let link = "sim:?rpm=-500&motor=reverse&calibration=0.2";
     let calibrated = bench.run(&["do", "biss", "calibrate", "--yes", "--json", "--link", link]).json();
@@ -158,7 +158,7 @@ fn our_own_encoder_is_led_through_as_well() {
 
 /// The first question is about the motor; a motor that needs this encoder is refused.
 #[test]
-fn on_a_terminal_somebody_says_what_turns_the_motor() {
+fn on_a_terminal_the_user_names_the_motor_source() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&["--rpm", "-500", "--reverse"]) else { return };
     let command = ["do", "biss", "calibrate", "--link", &encoder.url];

@@ -61,7 +61,7 @@ fn position_frames_are_checked() {
 
 /// UBICOM reference 6, turn 1234h at 270°: `position` prints a word that can be decoded, in either form.
 #[test]
-fn position_words_are_decoded_as_they_are_printed() {
+fn position_words_are_decoded_as_printed() {
     let bench = Bench::new();
     let table = bench.run(&["position", "biss", "--csv", "--count", "1", "--link", "sim:"]).out;
     let raw = format!("raw={}", table.lines().nth(1).unwrap().split(',').nth(1).unwrap());
@@ -79,7 +79,7 @@ fn position_words_are_decoded_as_they_are_printed() {
 }
 
 #[test]
-fn what_is_damaged_names_the_sum_that_does_not_fit() {
+fn damaged_frames_name_the_failed_checksum() {
     let bench = Bench::new();
     let cases: [(&str, &[&str]); 7] = [
         ("024698000CE", &["CRC-6", "0E", "0F"]),
@@ -110,7 +110,7 @@ fn what_is_damaged_names_the_sum_that_does_not_fit() {
 }
 
 #[test]
-fn a_recording_answers_as_the_encoder_did() {
+fn a_recording_replays_the_encoders_replies() {
     let bench = Bench::new();
     for (link, way) in [("sim:?temperature=25", ""), ("sim:?temperature=25&bridge=on", "?bridge=on")] {
         let trace = bench.file("t.trace");
@@ -150,7 +150,7 @@ fn two_profiles_are_compared_without_a_link() {
 /// Issue 22.17: a misspelt name stops a restore and is reported with its position, and a newer schema is compared but not
 /// restored.
 #[test]
-fn a_misspelt_name_is_told_and_a_newer_schema_is_only_looked_at() {
+fn a_misspelt_name_is_reported_and_a_newer_schema_is_read_only() {
     let bench = Bench::new();
     for (name, slip, place) in [("filter", "filtr", "line 14, column 5"), ("preset", "presett", "line 15, column 5")] {
         let file = bench.write("slip.ron", PROFILE.replace(&format!("    {name}:"), &format!("    {slip}:")));
@@ -165,7 +165,7 @@ fn a_misspelt_name_is_told_and_a_newer_schema_is_only_looked_at() {
     let text = PROFILE.replace("schema: 1", "schema: 9").replace("    filter:", "    motor: \"M1\", filter:");
     let newer = bench.write("newer.ron", &text);
     let ran = bench.run(&["diff", &newer, &newer, "--json"]);
-    ran.says(&["newer.ron", "schema 9", "motor"]);
+    ran.assert_stderr(&["newer.ron", "schema 9", "motor"]);
     assert_eq!(ran.json()["equal"], json!(true));
     bench.run(&["restore", &newer, "--yes", "--link", "sim:"]).fails(1, &["newer.ron", "schema 9", "up to 1"]);
     assert_eq!(bench.read("newer.ron"), text);

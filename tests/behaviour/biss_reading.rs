@@ -17,7 +17,7 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
 }
 
 #[test]
-fn identify_tells_every_key() {
+fn identify_prints_every_key() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--temperature", "-7", "--firmware", "1.6.2"]) else { return };
     for encoder in &encoders {
@@ -36,7 +36,7 @@ fn identify_tells_every_key() {
 }
 
 #[test]
-fn the_configuration_pin_may_echo_and_take_numbers_in_either_order() {
+fn the_configuration_pin_may_echo_and_use_either_byte_order() {
     let bench = Bench::new();
     let Some(echoing) = bench.kit(&["--echo", "--order", "big"]) else { return };
     for parameters in ["", "?echo=on&order=high-first", "?timeout=300&margin=20"] {
@@ -50,7 +50,7 @@ fn the_configuration_pin_may_echo_and_take_numbers_in_either_order() {
 
 /// BiSS reference 7: error register 12h is the multiturn and a field too low, warning 01h the temperature.
 #[test]
-fn status_names_what_is_set() {
+fn status_names_the_set_bits() {
     let bench = Bench::new();
     let Some(well) = both(&bench, &[]) else { return };
     let Some(ill) = both(&bench, &["--errors", "0x12", "--warnings", "1", "--filter", "4"]) else { return };
@@ -78,7 +78,7 @@ fn status_names_what_is_set() {
 /// factory settings, and one with the errors of reference 7 that is hotter than its data sheet allows (105 °C), at an
 /// adapter that measures its supply on a disturbed line.
 #[test]
-fn a_check_judges_what_the_encoder_says_of_itself() {
+fn a_check_judges_the_encoders_own_diagnostics() {
     let bench = Bench::new();
     let check = |link: &str| bench.run(&["do", "biss", "check", "--link", link, JSON]);
     let verdicts = |told: &Value| {
@@ -113,7 +113,7 @@ fn a_check_judges_what_the_encoder_says_of_itself() {
 /// Issue 22.20: if an encoder does not report its frame, the position is only the word, until the link names turns and
 /// steps: turn 1234h and 270°.
 #[test]
-fn a_position_that_nothing_explains_is_raw_until_the_link_explains_it() {
+fn a_position_is_raw_until_the_link_gives_the_frame() {
     let bench = Bench::new();
     let Some(adapter) = bench.adapter(&["--stranger"]) else { return };
     let read = |parameters: &str| {
@@ -157,7 +157,7 @@ fn the_position_has_turns_steps_and_degrees() {
 
 /// 360° per second counterclockwise.
 #[test]
-fn a_turning_shaft_is_followed() {
+fn positions_of_a_turning_shaft_are_printed() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--rpm", "-60"]) else { return };
     for encoder in &encoders {
@@ -178,7 +178,7 @@ fn a_turning_shaft_is_followed() {
 }
 
 #[test]
-fn a_frame_with_a_wrong_crc_gives_no_line_and_is_counted() {
+fn a_frame_with_a_wrong_crc_is_counted_and_not_printed() {
     let bench = Bench::new();
     let Some(encoder) = bench.adapter(&["--damage", "3"]) else { return };
     let ran = ask(&bench, &encoder, &["position", "biss", "--csv", "--count", "20", "--interval", "0"]);
@@ -193,7 +193,7 @@ fn a_frame_with_a_wrong_crc_gives_no_line_and_is_counted() {
 }
 
 #[test]
-fn registers_are_read_by_their_names() {
+fn registers_are_read_by_name() {
     let bench = Bench::new();
     let data = r#"{"0x24:0x10": "A1B2C3", "0x43:0x3F": "7E", "0x04:0x00": "0102"}"#;
     let Some(encoders) = both(&bench, &["--data", data, "--temperature", "25", "--preset", "008001340200"]) else {
@@ -222,7 +222,7 @@ fn registers_are_read_by_their_names() {
 }
 
 #[test]
-fn a_value_without_words_has_no_key_for_them() {
+fn a_value_without_a_meaning_has_no_meaning_key() {
     let bench = Bench::new();
     let read = |item: &str| bench.run(&["read", "biss", item, "--link", "sim:", JSON]).json();
     assert_eq!(read("0x24:0x10"), json!({"item": "0x24:0x10", "value": 0}));
@@ -257,7 +257,7 @@ fn reading_writes_nothing() {
 }
 
 #[test]
-fn what_is_wrong_with_wires_and_adapters_is_told_in_a_sentence() {
+fn wire_and_adapter_faults_are_reported() {
     let bench = Bench::new();
     let cases: [(&[&str], &[&str]); 6] = [
         (&["--line", "open"], &["acknowledges", "MA+"]),
@@ -278,7 +278,7 @@ fn what_is_wrong_with_wires_and_adapters_is_told_in_a_sentence() {
 }
 
 #[test]
-fn an_encoder_that_falls_silent_or_talks_nonsense_ends_in_an_error() {
+fn a_silent_or_garbled_encoder_is_an_error() {
     let bench = Bench::new();
     for arguments in [&["--silent-after", "0"][..], &["--silent-after", "40"], &["--silent-after", "2000"]] {
         let Some(encoders) = both(&bench, arguments) else { return };
@@ -296,7 +296,7 @@ fn an_encoder_that_falls_silent_or_talks_nonsense_ends_in_an_error() {
 }
 
 #[test]
-fn a_line_that_is_lost_in_the_middle_is_told() {
+fn a_line_lost_during_reading_is_reported() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &[]) else { return };
     for mut encoder in encoders {
@@ -306,7 +306,7 @@ fn a_line_that_is_lost_in_the_middle_is_told() {
         let ran = going.ended();
         assert_eq!(ran.status, Some(1), "{ran:?}");
         assert!(ran.out.lines().count() > 10 && ran.took.as_secs() < 10, "{ran:?}");
-        ran.says(&[]);
+        ran.assert_stderr(&[]);
     }
 }
 
@@ -329,7 +329,7 @@ fn ctrl_c_ends_a_stream_between_two_lines() {
 }
 
 #[test]
-fn access_codes_are_not_for_it() {
+fn access_codes_are_refused() {
     let bench = Bench::new();
     bench.run(&["identify", "biss", "--link", "sim:", "--code", "0=66"]).fails(2, &["--code"]);
     let mut command = bench.program(&["read", "biss", "0x66", "--link", "sim:", "--json"]);

@@ -71,7 +71,7 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
 /// The encoder has one speed (UBICOM reference 1); a line at another speed is set to it, and the encoder does not
 /// understand.
 #[test]
-fn the_speed_of_the_line_can_be_written_into_the_link() {
+fn the_baud_rate_can_be_set_in_the_link() {
     let bench = Bench::new();
     let terminal = Simulated::start(&bench, &[&["biss", "--pty", &bench.file("enc")], &WARM[..]].concat());
     let ask = |parameters: &str| {
@@ -87,7 +87,7 @@ fn the_speed_of_the_line_can_be_written_into_the_link() {
 
 /// Saving a preset restarts the encoder: it is silent for half a second, and in operation afterwards.
 #[test]
-fn a_restart_is_silent_and_faults_are_those_asked_for() {
+fn a_restart_is_silent_and_configured_faults_are_injected() {
     let bench = Bench::new();
     if python("ubicom_host.py").is_none() {
         return;
@@ -114,14 +114,14 @@ fn a_restart_is_silent_and_faults_are_those_asked_for() {
     assert_eq!(replies, ["80 01 01 01 00 00 7C", "-"]);
 }
 
-fn told(path: &str, actions: &[&str]) -> Vec<Value> {
+fn host_replies(path: &str, actions: &[&str]) -> Vec<Value> {
     let lines = foreign_host("bridge_host.py", path, actions);
     lines.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
 /// Checks a session with an adapter: bridge reference 2 to 4.
 fn examine_adapter(path: &str) {
-    let said = told(
+    let said = host_replies(
         path,
         &[
             "frame",
@@ -182,7 +182,7 @@ fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
     }
     let port = Simulated::start(&bench, &["biss", "--bridge", "--listen", "127.0.0.1:0", "--set", "rpm=600"]);
     let path = format!("tcp:{}", port.place);
-    let said = told(&path, &["hello", "config:2000000:35:6:18", "stream:50:2.0", "frame"]);
+    let said = host_replies(&path, &["hello", "config:2000000:35:6:18", "stream:50:2.0", "frame"]);
     let stream = &said[2];
     for key in ["broken", "gaps", "lost", "wrong_crc", "bad_status", "off_time"] {
         assert_eq!(stream[key], json!(0), "{key}: {stream}");
@@ -198,7 +198,7 @@ fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
 
 /// Faults of the adapter's own bytes: damaged bytes are dropped on both sides, lost ones are requested again.
 #[test]
-fn faults_of_the_adapters_line_are_those_asked_for() {
+fn configured_adapter_line_faults_are_injected() {
     let bench = Bench::new();
     if python("bridge_host.py").is_none() {
         return;
@@ -206,7 +206,7 @@ fn faults_of_the_adapters_line_are_those_asked_for() {
     let with = |fault: &str, actions: &[&str]| {
         let arguments = ["biss", "--bridge", "--listen", "127.0.0.1:0", "--seed", "3", "--fault", fault];
         let port = Simulated::start(&bench, &arguments);
-        told(&format!("tcp:{}", port.place), actions)
+        host_replies(&format!("tcp:{}", port.place), actions)
     };
     assert_eq!(with("drop:1", &["hello"])[0]["error"], json!("no answer"));
     let said = with("silent-after:2", &["hello", "config:2000000:35:6:18", "frame"]);
@@ -222,7 +222,7 @@ fn faults_of_the_adapters_line_are_those_asked_for() {
 
 /// A client starts a stream and reads nothing of it.
 #[test]
-fn an_interrupt_ends_it_whatever_the_client_does() {
+fn an_interrupt_ends_the_simulation_with_a_busy_client() {
     let bench = Bench::new();
     let port = Simulated::start(&bench, &["biss", "--bridge", "--listen", "127.0.0.1:0"]);
     let mut client = TcpStream::connect(&port.place).unwrap();
@@ -235,7 +235,7 @@ fn an_interrupt_ends_it_whatever_the_client_does() {
 }
 
 #[test]
-fn what_cannot_be_simulated_is_told() {
+fn impossible_simulations_are_refused() {
     let bench = Bench::new();
     bench.run(&["simulate", "biss"]).fails(2, &["--listen"]);
     let listen = ["--listen", "127.0.0.1:0"];

@@ -32,7 +32,7 @@ fn saved(registers: &[&str]) -> Vec<String> {
 }
 
 #[test]
-fn three_bytes_of_a_bank_are_three_registers_and_one_save() {
+fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--data", AS_PROFILE, "--preset", PRESET]) else { return };
     let wanted = PROFILE.replace("[\"00 01 02", "[\"00 A1 A2").replace("0E 0F\"", "0E EE\"");
@@ -95,7 +95,7 @@ fn write_stores_exactly_these_bytes() {
 
 /// A restore stores the preset value and the filter, and carries no preset out (reference 5.4 and 5.5).
 #[test]
-fn filter_and_preset_value_are_restored_and_no_preset_is_carried_out() {
+fn filter_and_preset_value_are_restored_without_executing_the_preset() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--data", AS_PROFILE, "--filter", "4"]) else { return };
     let file = bench.write("p.ron", PROFILE);
@@ -116,7 +116,7 @@ fn filter_and_preset_value_are_restored_and_no_preset_is_carried_out() {
 }
 
 #[test]
-fn the_mounting_of_another_encoder_is_left_alone() {
+fn the_mounting_of_another_encoder_is_not_changed() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&["--serial-number", "7", "--data", AS_PROFILE]) else { return };
     let file = bench.write("p.ron", PROFILE);
@@ -136,7 +136,7 @@ fn the_mounting_of_another_encoder_is_left_alone() {
 
 /// Issue 22.9: another type is named, and refused without explicit permission.
 #[test]
-fn an_encoder_of_another_type_needs_a_permit_of_its_own() {
+fn an_encoder_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&[]) else { return };
     let types = ["01 01 68 11 00 01", "01 01 68 11 00 02"];
@@ -156,7 +156,7 @@ fn an_encoder_of_another_type_needs_a_permit_of_its_own() {
 }
 
 #[test]
-fn without_consent_nothing_is_touched() {
+fn without_consent_nothing_is_written() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&[]) else { return };
     let file = bench.write("p.ron", PROFILE);
@@ -176,7 +176,7 @@ fn without_consent_nothing_is_touched() {
 }
 
 #[test]
-fn what_cannot_be_written_is_told() {
+fn unwritable_values_are_refused() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&[]) else { return };
     let cases: [(i32, &[&str], &[&str]); 16] = [
@@ -251,7 +251,7 @@ fn filter_and_preset_are_actions() {
 
 /// Manual 6.1: 1000 write cycles. A warning is printed from 800 on; beyond 1000 nothing is written unless forced.
 #[test]
-fn a_worn_flash_is_told_and_written_only_where_that_is_wished() {
+fn a_worn_flash_is_reported_and_written_only_if_forced() {
     let bench = Bench::new();
     let write = |more: &[&str]| {
         let words = ["do", "biss", "preset", "98304", "0", "--yes", "--link", "sim:", "--json"];
@@ -273,7 +273,7 @@ fn a_worn_flash_is_told_and_written_only_where_that_is_wished() {
         logbook.conclude(id, Timestamp::now(), Outcome::Done, spent).unwrap();
     };
     wear_to(798);
-    write(&[]).says(&["At least 800 of the 1000"]);
+    write(&[]).assert_stderr(&["At least 800 of the 1000"]);
     wear_to(999);
     write(&[]).fails(1, &["999", "(2)", "1000", "--force-wear"]);
     assert_eq!(write(&["--force-wear"]).json()["write_cycles"], json!(2));
@@ -282,7 +282,7 @@ fn a_worn_flash_is_told_and_written_only_where_that_is_wished() {
 
 /// Once in the reading and in three places of the writing.
 #[test]
-fn a_link_that_is_cut_in_the_middle_is_told_with_the_backup() {
+fn a_link_lost_during_a_write_is_reported_with_the_backup() {
     let bench = Bench::new();
     let file = bench.write("p.ron", PROFILE);
     let Some(whole) = bench.kit(&[]) else { return };
@@ -304,7 +304,7 @@ fn a_link_that_is_cut_in_the_middle_is_told_with_the_backup() {
 /// Issue 22.15: registers that were written and never saved are reported, and no comparison takes them for the encoder's
 /// content. Only `lead-back` restores the mode.
 #[test]
-fn what_a_killed_write_has_left_is_not_taken_for_the_encoders_content() {
+fn unsaved_registers_of_a_killed_write_are_not_compared() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--data", AS_PROFILE, "--preset", PRESET, "--left-in", "4"]) else { return };
     let file = bench.write("p.ron", PROFILE);
@@ -315,25 +315,25 @@ fn what_a_killed_write_has_left_is_not_taken_for_the_encoders_content() {
             assert!(ran.err.contains("device mode 0x04") && ran.err.contains("do biss lead-back --yes"), "{ran:?}");
         }
         let read = ask(&bench, encoder, &["read", "biss", "0x24:0x01"]);
-        read.says(&["device mode 0x04", "never saved", "lead-back"]);
+        read.assert_stderr(&["device mode 0x04", "never saved", "lead-back"]);
         assert_eq!((read.status, &read.json()["value"]), (Some(0), &json!(1)));
         let saved = bench.file("saved.ron");
         let ran = ask(&bench, encoder, &["save", "biss", "-o", &saved]);
-        ran.says(&["device mode 0x04", "never saved"]);
+        ran.assert_stderr(&["device mode 0x04", "never saved"]);
         assert_eq!(ran.json()["unsaved_in_mode"], json!(4));
         assert!(bench.read("saved.ron").contains("device_mode: 0x04"));
         assert_eq!(written(encoder), [""; 0], "reading leads nothing back");
         assert_eq!(ask(&bench, encoder, &["do", "biss", "lead-back", "--yes"]).json()["mode"], json!(4));
         assert_eq!(ask(&bench, encoder, &["verify", &file]).json()["equal"], json!(true));
         let ran = ask(&bench, encoder, &["verify", &saved]);
-        ran.says(&["saved.ron", "device mode 0x04"]);
+        ran.assert_stderr(&["saved.ron", "device mode 0x04"]);
         assert_eq!(ran.json()["equal"], json!(true));
     }
 }
 
 /// Issue 22.16: the supply is restored at the end of the program.
 #[test]
-fn an_adapter_is_left_with_the_supply_as_it_was_found() {
+fn the_adapters_supply_is_restored_on_exit() {
     let bench = Bench::new();
     let Some(adapter) = bench.adapter(&["--supply", "off"]) else { return };
     let supplied = |parameters: &str| -> Vec<String> {
@@ -352,7 +352,7 @@ fn an_adapter_is_left_with_the_supply_as_it_was_found() {
 
 /// Reference 5: the mode and the password that another host has set are reset.
 #[test]
-fn an_encoder_that_was_left_in_a_mode_is_led_back() {
+fn an_encoder_left_in_a_mode_is_led_back() {
     let bench = Bench::new();
     let Some(encoders) = both(&bench, &["--left-in", "4"]) else { return };
     for encoder in &encoders {
@@ -368,7 +368,7 @@ fn an_encoder_that_was_left_in_a_mode_is_led_back() {
 /// Issue 22.15: restoring the mode discards unsaved changes: on a terminal the program asks, unless --yes answers it. It
 /// stores nothing, so that a script needs no --yes.
 #[test]
-fn on_a_terminal_leading_back_is_asked_for() {
+fn on_a_terminal_leading_back_needs_confirmation() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&[]) else { return };
     let lead_back = ["do", "biss", "lead-back", "--link", &encoder.url];

@@ -38,7 +38,7 @@ fn data_fields_are_created_protected_resized_and_deleted() {
 }
 
 #[test]
-fn the_memory_is_not_overfilled() {
+fn the_memory_cannot_be_overfilled() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--blocks", "2"]) else { return };
     act(&bench, &encoder, &["create-field", "0", "48"]).fails(1, &["48", "32"]);
@@ -65,7 +65,7 @@ fn a_position_is_set_in_phase_or_exactly() {
 }
 
 #[test]
-fn an_address_is_set_whatever_the_reply_looks_like() {
+fn an_address_is_set_with_any_form_of_reply() {
     let bench = Bench::new();
     for reply in [&[][..], &["--reply-from", "new"], &["--no-repeat"], &["--reply-from", "new", "--no-repeat"]] {
         let Some(encoder) = bench.encoder(reply) else { return };
@@ -102,7 +102,7 @@ fn settings_are_stored_and_the_counter_is_cleared() {
 }
 
 #[test]
-fn a_reset_is_waited_for() {
+fn a_reset_is_awaited() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&[]) else { return };
     let ran = act(&bench, &encoder, &["reset"]);
@@ -114,7 +114,7 @@ fn a_reset_is_waited_for() {
 const LABEL: &str = "530000000010000010 0053454C33372D484642302D4B30322020202000030048 0073";
 
 #[test]
-fn an_encoder_with_an_extended_label_is_known_by_it() {
+fn an_encoder_is_identified_by_its_extended_label() {
     let bench = Bench::new();
     let Some(encoder) =
         bench.encoder(&["--type", "FF", "--label", &format!("{LABEL}{}", "00".repeat(30)), "--position", "0x0531"])
@@ -130,7 +130,7 @@ fn an_encoder_with_an_extended_label_is_known_by_it() {
 }
 
 #[test]
-fn a_linear_encoder_has_millimetres() {
+fn a_linear_encoder_reports_millimetres() {
     let bench = Bench::new();
     // Linear, periods of 1,000,000 nm, 1000 of them.
     let label = format!("00 01 000F4240 000003E8 {} {}", "20".repeat(18), "00".repeat(36));
@@ -156,7 +156,7 @@ fn an_unknown_type_takes_periods_and_turns_from_the_link() {
 /// Issue 22.12: a restore onto another encoder creates data fields; restoring its before-image deletes them again, except
 /// for a field that was changed meanwhile, which is named, and the fields before it.
 #[test]
-fn undoing_a_restore_deletes_what_it_created_and_no_more() {
+fn undoing_a_restore_deletes_only_the_fields_it_created() {
     let bench = Bench::new();
     let bytes = |byte: &str| byte.repeat(16);
     let fields = format!(

@@ -54,7 +54,7 @@ fn near(told: &Value, key: &str, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn the_reference_signal_gives_back_what_was_put_in() {
+fn the_parameters_of_the_reference_signal_are_recovered() {
     let bench = Bench::new();
     // 360 points of a period and the six of 0, 60 … 300°; they cover one step less than the period.
     for (count, header) in [(360, "time,sin,cos\n"), (6, "")] {
@@ -76,7 +76,7 @@ fn the_reference_signal_gives_back_what_was_put_in() {
 /// 2 mV rms of noise in 0.5 V: 1000 points per period, 7.25 periods. A parameter scatters by σ·√(2/n) = 33 µV; the limit is
 /// five of them.
 #[test]
-fn noise_moves_it_only_as_far_as_its_statistics_allow() {
+fn noise_moves_the_parameters_within_its_statistics() {
     let bench = Bench::new();
     let mut noise = fastrand::Rng::with_seed(11);
     let mut rows = rows(&REFERENCE, 7250, 0.3, -7.25);
@@ -98,7 +98,7 @@ fn noise_moves_it_only_as_far_as_its_statistics_allow() {
 }
 
 #[test]
-fn columns_and_units_are_found_or_given() {
+fn columns_and_units_are_detected_or_given() {
     let bench = Bench::new();
     let rows = rows(&REFERENCE, 500, 0.0, 3.0);
     let plain = bench.run(&["analyse", &bench.write("p.csv", table("", &rows)), "--json"]).json();
@@ -131,7 +131,7 @@ fn columns_and_units_are_found_or_given() {
 }
 
 #[test]
-fn bad_captures_get_one_sentence() {
+fn bad_captures_are_refused_with_one_sentence() {
     let bench = Bench::new();
     let good = rows(&REFERENCE, 200, 0.0, 1.0);
     let made = |change: fn(&mut [f64; 3])| {
@@ -171,7 +171,7 @@ fn bad_captures_get_one_sentence() {
 }
 
 #[test]
-fn a_spike_is_left_out_and_told() {
+fn a_spike_is_excluded_and_reported() {
     let bench = Bench::new();
     let mut rows = rows(&REFERENCE, 720, 0.0, 2.0);
     rows[123][1] = 4.5;
@@ -185,7 +185,7 @@ fn a_spike_is_left_out_and_told() {
 }
 
 #[test]
-fn wrong_usage_is_status_2() {
+fn wrong_usage_exits_with_status_2() {
     let bench = Bench::new();
     let file = bench.write("c.csv", table("", &rows(&REFERENCE, 100, 0.0, 1.0)));
     bench.run(&["analyse"]).fails(2, &["FILE.csv"]);
@@ -206,7 +206,7 @@ fn wrong_usage_is_status_2() {
 }
 
 #[test]
-fn the_captures_that_ship_are_a_good_one_and_a_bad_one() {
+fn the_example_captures_are_judged_as_documented() {
     let bench = Bench::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/signals");
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
@@ -236,7 +236,7 @@ fn the_captures_that_ship_are_a_good_one_and_a_bad_one() {
 /// cosine 0.49·cos θ + 0.010, sine 0.49·sin(θ − 2°)/1.04 − 0.015, 0.3 mV rms of noise from `random.Random(16).gauss`, four
 /// decimals; reference `360·turn mod 360`, absolute `floor(32·16·true − 0.5) mod 512`; decimal commas.
 #[test]
-fn the_revolution_that_ships_tells_its_eccentricity() {
+fn the_example_revolution_reveals_its_eccentricity() {
     let bench = Bench::new();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/signals/revolution-with-reference.csv");
     let path = path.to_str().unwrap();
@@ -280,7 +280,7 @@ fn the_revolution_that_ships_tells_its_eccentricity() {
 }
 
 #[test]
-fn limits_are_those_of_the_family_that_is_named() {
+fn limits_are_those_of_the_named_family() {
     let bench = Bench::new();
     let weak = Signal { amplitude: 0.43, offset_cosine: 0.0, offset_sine: 0.0, ratio: 1.0, phase_deg: 0.0 };
     let file = bench.write("weak.csv", table("t,sin,cos\n", &rows(&weak, 400, 0.0, 3.0)));
@@ -291,7 +291,7 @@ fn limits_are_those_of_the_family_that_is_named() {
 }
 
 #[test]
-fn a_drive_and_a_broken_wire_are_told() {
+fn interference_and_a_broken_wire_are_reported() {
     let bench = Bench::new();
     let good = rows(&REFERENCE, 20_000, 0.0, 400.0);
     let disturbed: Vec<[f64; 3]> =
@@ -312,7 +312,7 @@ fn a_drive_and_a_broken_wire_are_told() {
 
 /// 2 kHz at 2.5 µs, and the effect of a slow recorder, a second recording in the file or too few samples.
 #[test]
-fn a_frequency_is_told_of_what_was_seen_and_marked_where_it_is_uncertain() {
+fn the_frequency_is_reported_and_marked_if_uncertain() {
     let bench = Bench::new();
     let row = |at: usize, step: f64| {
         let angle = TAU * 2_000.0 * step * at as f64;

@@ -22,7 +22,7 @@ fn profile(bench: &Bench) -> String {
 const SIM: &str = "sim:?serial=HF0000001";
 
 #[test]
-fn a_profile_edited_by_hand_is_taken() {
+fn a_profile_edited_by_hand_is_accepted() {
     let bench = Bench::new();
     let file = profile(&bench);
     let told = bench.run(&["restore", &file, "--yes", "--link", SIM, "--json"]).json();
@@ -34,7 +34,7 @@ fn a_profile_edited_by_hand_is_taken() {
 }
 
 #[test]
-fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
+fn a_broken_profile_is_refused_with_its_name_and_error() {
     let bench = Bench::new();
     profile(&bench);
     let good = bench.read("good.ron");
@@ -66,7 +66,7 @@ fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
 
 /// Issue 22.17: a profile of a newer schema is compared, and the message says that nothing else is possible.
 #[test]
-fn a_profile_of_a_newer_schema_is_only_read() {
+fn a_profile_of_a_newer_schema_is_read_only() {
     let bench = Bench::new();
     profile(&bench);
     let newer = bench.write("newer.ron", bench.read("good.ron").replacen("schema: 1", "schema: 99", 1));
@@ -79,7 +79,7 @@ fn a_profile_of_a_newer_schema_is_only_read() {
 }
 
 #[test]
-fn what_is_no_file_to_read_is_refused() {
+fn unreadable_files_are_refused() {
     let bench = Bench::new();
     fs::create_dir(bench.path("folder")).unwrap();
     let huge = bench.file("huge");
@@ -96,7 +96,7 @@ fn what_is_no_file_to_read_is_refused() {
 }
 
 #[test]
-fn a_profile_of_another_encoder_is_refused_before_anything_is_written() {
+fn a_profile_of_another_encoder_is_refused_before_writing() {
     let bench = Bench::new();
     let file = profile(&bench);
     let Some(encoder) = bench.encoder(&["--serial", "XX9999999"]) else { return };
@@ -116,7 +116,7 @@ fn a_profile_of_another_encoder_is_refused_before_anything_is_written() {
 /// Issue 22.30: a silent line is no proof that there is no drive on it, so that a search on a serial line needs a
 /// confirmation from the user. Other commands run without it, as scripts expect.
 #[test]
-fn a_search_without_a_terminal_needs_the_word_that_no_drive_is_there() {
+fn a_search_in_a_script_needs_only_master() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&[]) else { return };
     bench
@@ -135,7 +135,7 @@ fn ready_made(kind: &str, name: &str) -> String {
 
 /// Issue 22.8: options about data fields are refused for devices without them, before anything is opened.
 #[test]
-fn answers_about_data_fields_are_for_devices_that_have_them() {
+fn data_field_options_are_refused_for_other_devices() {
     let bench = Bench::new();
     let profiles = [
         ready_made("biss", "dynamic-filter"),
@@ -152,7 +152,7 @@ fn answers_about_data_fields_are_for_devices_that_have_them() {
 
 /// Issue 22.9: another kind of BiSS encoder is named, and refused without explicit permission.
 #[test]
-fn a_profile_of_another_kind_of_biss_encoder_needs_a_permit_of_its_own() {
+fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
     let bench = Bench::new();
     let text = fs::read_to_string(ready_made("biss", "dynamic-filter")).unwrap();
     let other = text.replace("device_id: \"01 01", "device_id: \"02 01");
@@ -166,7 +166,7 @@ fn a_profile_of_another_kind_of_biss_encoder_needs_a_permit_of_its_own() {
 
 /// Issue 22.9: another type is named, and refused without explicit permission.
 #[test]
-fn a_profile_of_another_type_needs_a_permit_of_its_own() {
+fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
     let file = profile(&bench);
     let Some(encoder) = bench.encoder(&["--serial", "XX9999999", "--type", "0x32"]) else { return };
@@ -184,7 +184,7 @@ fn a_profile_of_another_type_needs_a_permit_of_its_own() {
 }
 
 #[test]
-fn without_consent_nothing_is_touched() {
+fn without_consent_nothing_is_written() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C8"}]"#]) else { return };
     let file = profile(&bench);
@@ -202,7 +202,7 @@ fn without_consent_nothing_is_touched() {
 }
 
 #[test]
-fn a_link_is_needed_and_has_to_be_one() {
+fn a_valid_link_is_required() {
     let bench = Bench::new();
     for command in [&["identify", "hiperface"][..], &["status", "hiperface"], &["read", "hiperface", "counter"]] {
         bench.run(&[command, &["--json"]].concat()).fails(2, &["--link"]);
@@ -219,7 +219,7 @@ fn a_link_is_needed_and_has_to_be_one() {
 }
 
 #[test]
-fn a_port_that_is_none_is_told() {
+fn an_invalid_port_is_reported() {
     let bench = Bench::new();
     let file = bench.write("file", "text");
     let cases = [
@@ -259,7 +259,7 @@ fn out_of_range_values_name_both_limits() {
 }
 
 #[test]
-fn what_cannot_be_understood_is_wrong_usage() {
+fn invalid_arguments_are_usage_errors() {
     let bench = Bench::new();
     let cases: [&[&str]; 12] = [
         &["read", "hiperface", "colour"],
@@ -283,7 +283,7 @@ fn what_cannot_be_understood_is_wrong_usage() {
 }
 
 #[test]
-fn a_save_that_fails_leaves_nothing() {
+fn a_failed_save_leaves_no_file() {
     let bench = Bench::new();
     bench.write("file", "text");
     fs::create_dir(bench.path("folder")).unwrap();
@@ -302,7 +302,7 @@ fn a_save_that_fails_leaves_nothing() {
 }
 
 #[test]
-fn nobody_reading_the_output_is_no_disaster() {
+fn a_closed_output_pipe_does_not_panic() {
     let bench = Bench::new();
     let arguments = ["position", "hiperface", "--link", "sim:", "--count", "100000", "--interval", "0"];
     let mut child = bench.program(&arguments).spawn().unwrap();

@@ -15,7 +15,7 @@ fn guarded(bench: &Bench) -> Option<Foreign> {
 }
 
 #[test]
-fn a_field_whose_code_is_not_known_is_saved_as_locked_and_left_alone() {
+fn a_field_with_an_unknown_code_is_saved_as_locked_and_not_written() {
     let bench = Bench::new();
     let Some(encoder) = guarded(&bench) else { return };
     let file = bench.file("p.ron");
@@ -45,7 +45,7 @@ fn a_complete_save_fails_and_leaves_no_file() {
 }
 
 #[test]
-fn a_code_opens_a_field_and_is_shown_nowhere() {
+fn a_code_opens_a_field_and_is_never_printed() {
     let bench = Bench::new();
     let Some(encoder) = guarded(&bench) else { return };
     let trace = bench.file("t.trace");
@@ -102,7 +102,7 @@ fn a_wrong_code_is_refused_with_its_number() {
 }
 
 #[test]
-fn a_code_that_cannot_be_understood_is_not_repeated() {
+fn an_invalid_code_is_not_echoed() {
     let bench = Bench::new();
     for wrong in ["5=A7", "2=A7A7", "2:A7", "A7"] {
         let ran = bench.run(&["identify", "hiperface", "--link", "sim:", "--code", wrong]);
@@ -117,7 +117,7 @@ fn a_code_that_cannot_be_understood_is_not_repeated() {
 }
 
 #[test]
-fn a_recording_without_the_answer_does_not_name_the_code() {
+fn a_recording_without_the_reply_does_not_reveal_the_code() {
     let bench = Bench::new();
     let Some(encoder) = guarded(&bench) else { return };
     let trace = bench.file("t.trace");

@@ -29,7 +29,7 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
 /// Issue 22.30: on a terminal the program asks whether a drive is on the line, before the first byte; it continues only
 /// after a no.
 #[test]
-fn on_a_terminal_a_drive_on_the_line_is_asked_for() {
+fn on_a_terminal_the_user_must_rule_out_a_drive_on_the_line() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&[]) else { return };
     if python("master.py").is_none() {
@@ -50,7 +50,7 @@ fn on_a_terminal_a_drive_on_the_line_is_asked_for() {
 }
 
 #[test]
-fn values_of_the_mounting_stay_off_another_encoder_unless_told_otherwise() {
+fn mounting_values_are_not_copied_to_another_encoder_by_default() {
     let bench = Bench::new();
     // A commutation offset as this program stores it, and one byte after it.
     let fields = format!(r#"[{{"status":"C9","bytes":"434F31{}0815"}}]"#, "00".repeat(13));
@@ -89,7 +89,7 @@ fn values_of_the_mounting_stay_off_another_encoder_unless_told_otherwise() {
 }
 
 #[test]
-fn two_writes_in_a_second_keep_two_before_images() {
+fn two_writes_in_one_second_keep_two_backups() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C8"}]"#]) else { return };
     let backups = ["00", "01", "02"].map(|byte| {
@@ -106,7 +106,7 @@ fn two_writes_in_a_second_keep_two_before_images() {
 /// Issue 22.28: an existing file is replaced on a terminal only after consent; without a terminal it is replaced, with a
 /// message.
 #[test]
-fn save_replaces_a_file_on_a_terminal_only_when_told_to() {
+fn on_a_terminal_save_asks_before_replacing_a_file() {
     let bench = Bench::new();
     let file = bench.file("layout.ron");
     let save = ["save", "ssi", "--layout", "ahm36", "-o", file.as_str()];
@@ -145,7 +145,7 @@ fn save_replaces_a_file_on_a_terminal_only_when_told_to() {
 /// Issue 22.4: if the logbook cannot be read for the write cycles, a write is refused before the question for consent, for
 /// every kind of device.
 #[test]
-fn a_write_that_is_refused_for_unknown_wear_is_not_asked_for() {
+fn a_write_refused_for_unknown_wear_needs_no_confirmation() {
     if python("master.py").is_none() {
         return;
     }

@@ -23,7 +23,7 @@ fn a_silent_encoder_ends_a_command_in_time() {
 }
 
 #[test]
-fn a_silent_encoder_behind_an_echo_is_told_apart() {
+fn a_silent_encoder_behind_an_echo_is_detected() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--silent", "--echo"]) else { return };
     let ran = bench.run(&["save", "hiperface", "--link", &encoder.url, "-o", &bench.file("p.ron")]);
@@ -33,7 +33,7 @@ fn a_silent_encoder_behind_an_echo_is_told_apart() {
 }
 
 #[test]
-fn nonsense_is_never_taken_for_a_value() {
+fn garbage_is_never_mistaken_for_a_value() {
     let bench = Bench::new();
     for seed in ["1", "2"] {
         let Some(encoder) = bench.encoder(&["--nonsense", "--seed", seed]) else { return };
@@ -46,7 +46,7 @@ fn nonsense_is_never_taken_for_a_value() {
 }
 
 #[test]
-fn unplugging_ends_polling_with_one_sentence() {
+fn unplugging_ends_polling_with_one_message() {
     let bench = Bench::new();
     // Polling back to back, and with the encoder disconnected in a long pause between two readings.
     for interval in ["0", "100", "60000"] {
@@ -56,14 +56,14 @@ fn unplugging_ends_polling_with_one_sentence() {
         encoder.kill();
         let ran = going.ended();
         assert_eq!(ran.status, Some(1), "{ran:?}");
-        ran.says(&["lost", "unplugged"]);
+        ran.assert_stderr(&["lost", "unplugged"]);
         assert!(!ran.out.is_empty(), "{ran:?}");
         assert!(ran.took < Duration::from_secs(4), "interval {interval}: {ran:?}");
     }
 }
 
 #[test]
-fn an_interrupt_ends_polling_at_once() {
+fn an_interrupt_ends_polling_immediately() {
     let bench = Bench::new();
     for (interval, name) in [("0", "INT"), ("100", "TERM"), ("60000", "INT")] {
         let Some(encoder) = bench.encoder(&[]) else { return };
@@ -78,7 +78,7 @@ fn an_interrupt_ends_polling_at_once() {
 }
 
 #[test]
-fn power_lost_in_a_restore_names_the_backup_and_the_next_restore_completes() {
+fn power_loss_in_a_restore_names_the_backup_and_the_next_one_completes() {
     let bench = Bench::new();
     let wanted = r#"[{"status":"C9","bytes":"00112233445566778899"},{"status":"88","bytes":"02"}]"#;
     let Some(source) = bench.encoder(&["--fields", wanted]) else { return };
@@ -108,7 +108,7 @@ fn power_lost_in_a_restore_names_the_backup_and_the_next_restore_completes() {
 }
 
 #[test]
-fn noise_on_the_line_is_lived_with() {
+fn noise_on_the_line_is_tolerated() {
     let bench = Bench::new();
     let url = "sim:?seed=3&fault=drop:0.01,flip:0.005";
     for _ in 0..3 {
@@ -118,7 +118,7 @@ fn noise_on_the_line_is_lived_with() {
 }
 
 #[test]
-fn a_field_left_without_its_protection_is_named_and_the_next_restore_protects_it() {
+fn an_unprotected_field_is_named_and_the_next_restore_protects_it() {
     let bench = Bench::new();
     let Some(source) = bench.encoder(&["--fields", r#"[{"status":"88","bytes":"0A0B0C0D"}]"#]) else { return };
     let there = r#"[{"status":"88","bytes":"01020304"}]"#;
@@ -137,7 +137,7 @@ fn a_field_left_without_its_protection_is_named_and_the_next_restore_protects_it
 
 /// The encoders that answered before are printed: the first format and address are those of this encoder.
 #[test]
-fn a_search_is_interrupted() {
+fn a_search_can_be_interrupted() {
     let bench = Bench::new();
     for (query, found) in [("settings=0xE5&address=0x43", false), ("address=0x40", true)] {
         let link = format!("sim:?{query}");

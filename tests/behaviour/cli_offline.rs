@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::support::Bench;
 
 #[test]
-fn a_recording_answers_as_the_encoder_did() {
+fn a_recording_replays_the_encoders_replies() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", r#"[{"status":"C9","bytes":"0815"}]"#]) else { return };
     let trace = bench.file("t.trace");
@@ -29,7 +29,7 @@ fn a_recording_answers_as_the_encoder_did() {
 }
 
 #[test]
-fn a_trace_that_cannot_be_kept_is_told() {
+fn an_unwritable_trace_is_reported() {
     let bench = Bench::new();
     let trace = bench.file("none/t.trace");
     bench.run(&["identify", "hiperface", "--link", "sim:", "--trace", &trace, "--json"]).fails(1, &["none/t.trace"]);
@@ -60,7 +60,7 @@ fn golden_frames_are_explained() {
             }
             None => {
                 assert_eq!(ran.status, Some(1), "{bytes}: {ran:?}");
-                ran.says(&["checksum"]);
+                ran.assert_stderr(&["checksum"]);
             }
         }
     }
@@ -69,7 +69,7 @@ fn golden_frames_are_explained() {
 }
 
 #[test]
-fn the_access_code_of_a_captured_frame_is_not_explained_aloud() {
+fn the_access_code_of_a_captured_frame_is_not_printed() {
     let bench = Bench::new();
     // The manual's example: 08 15 into field 1 at address 5; decoding repeats the input and adds nothing.
     let told = bench.run(&["decode", "hiperface", "40 4B 01 05 02 66 08 15 76", "--json"]).json();
@@ -79,7 +79,7 @@ fn the_access_code_of_a_captured_frame_is_not_explained_aloud() {
 }
 
 #[test]
-fn the_virtual_encoder_is_there_without_hardware() {
+fn the_virtual_encoder_needs_no_hardware() {
     let bench = Bench::new();
     let told = bench.run(&["identify", "hiperface", "--link", "sim:", "--json"]).json();
     assert_eq!((&told["address"], &told["baud"], &told["parity"]), (&json!(0x40), &json!(9600), &json!("even")));

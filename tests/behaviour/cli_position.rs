@@ -8,7 +8,7 @@ use super::support::{Bench, Foreign, ended, signal};
 const HEADER: &str = "t_s,raw,turns,steps,degrees,valid,codes";
 
 #[test]
-fn a_table_has_a_header_once_and_a_line_a_reading() {
+fn a_table_has_one_header_and_a_line_per_reading() {
     let bench = Bench::new();
     // SKM36: 128 periods of 32 steps, 4096 turns; 0E0531h is turn 224 and step 1329, which is 116.806640625°.
     let link = "sim:?position=0xE0531";
@@ -27,7 +27,7 @@ fn a_table_has_a_header_once_and_a_line_a_reading() {
 }
 
 #[test]
-fn a_scale_has_millimetres_and_codes_have_a_column() {
+fn millimetres_and_status_codes_have_columns() {
     let bench = Bench::new();
     // Type 90h has periods of 1 mm: 0E0531h are 918833 steps of 1/32 mm.
     let Some(encoder) = bench.encoder(&["--type", "90", "--status", "1C08"]).map(Foreign::waited_for) else { return };
@@ -78,7 +78,7 @@ fn ctrl_c_ends_a_stream_between_two_lines() {
 }
 
 #[test]
-fn a_table_is_no_json() {
+fn csv_and_json_exclude_each_other() {
     let bench = Bench::new();
     bench.run(&["position", "hiperface", "--link", "sim:", "--csv", "--json"]).fails(2, &["--csv", "--json"]);
 }

@@ -50,7 +50,7 @@ fn examine(path: &str) {
 }
 
 #[test]
-fn a_terminal_answers_the_frames_of_the_reference_and_one_client_after_the_other() {
+fn a_pseudoterminal_answers_the_reference_frames_for_successive_clients() {
     let bench = Bench::new();
     if python("master.py").is_none() {
         return;
@@ -70,7 +70,7 @@ fn a_terminal_answers_the_frames_of_the_reference_and_one_client_after_the_other
 }
 
 #[test]
-fn a_port_answers_the_frames_of_the_reference_and_one_client_after_the_other() {
+fn a_tcp_port_answers_the_reference_frames_for_successive_clients() {
     let bench = Bench::new();
     if python("master.py").is_none() {
         return;
@@ -86,7 +86,7 @@ fn a_port_answers_the_frames_of_the_reference_and_one_client_after_the_other() {
 }
 
 #[test]
-fn an_interrupt_ends_it_with_a_client_connected_too() {
+fn an_interrupt_ends_the_simulation_with_a_connected_client() {
     let bench = Bench::new();
     for name in ["INT", "TERM"] {
         let simulated = Simulated::start(&bench, &["hiperface", "--listen", "127.0.0.1:0"]);
@@ -101,7 +101,7 @@ fn an_interrupt_ends_it_with_a_client_connected_too() {
 }
 
 #[test]
-fn after_a_reset_the_encoder_is_deaf_and_then_answers() {
+fn after_a_reset_the_encoder_is_silent_and_then_answers() {
     let bench = Bench::new();
     let simulated = Simulated::start(&bench, &["hiperface", "--listen", "127.0.0.1:0"]);
     let mut line = TcpStream::connect(&simulated.place).unwrap();
@@ -136,7 +136,7 @@ fn after_a_reset_the_encoder_is_deaf_and_then_answers() {
 }
 
 #[test]
-fn power_is_lost_in_the_middle_of_a_store_and_comes_back_with_the_next_client() {
+fn power_lost_in_a_store_returns_with_the_next_client() {
     let bench = Bench::new();
     if python("master.py").is_none() {
         return;
@@ -153,7 +153,7 @@ fn power_is_lost_in_the_middle_of_a_store_and_comes_back_with_the_next_client() 
 }
 
 #[test]
-fn our_own_restore_works_on_our_own_encoder_over_both_wires() {
+fn a_restore_works_on_the_virtual_encoder_over_both_wires() {
     let bench = Bench::new();
     let terminal = Simulated::start(&bench, &["hiperface", "--pty", &bench.file("enc"), "--set", "serial=HF0000001"]);
     let port = Simulated::start(&bench, &["hiperface", "--listen", "127.0.0.1:0", "--set", "serial=HF0000001"]);
@@ -171,7 +171,7 @@ fn our_own_restore_works_on_our_own_encoder_over_both_wires() {
 }
 
 #[test]
-fn what_cannot_be_simulated_is_told() {
+fn impossible_simulations_are_refused() {
     let bench = Bench::new();
     bench.run(&["simulate", "hiperface"]).fails(2, &["--listen"]);
     bench.run(&["simulate", "hiperface", "--listen", "127.0.0.1:0", "--fault", "explode:1"]).fails(2, &["explode:1"]);

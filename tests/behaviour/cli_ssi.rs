@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::support::Bench;
 
 #[test]
-fn frames_are_made_and_read() {
+fn frames_are_encoded_and_decoded() {
     let bench = Bench::new();
     let table: [(&[&str], &str, &str); 6] = [
         (&["ahm36", "--turns", "0x123", "--steps", "0x2A5B"], "000100100011101010010110110", "091D4B6"),
@@ -56,7 +56,7 @@ fn frames_are_made_and_read() {
 }
 
 #[test]
-fn layouts_go_to_other_programs() {
+fn layouts_are_exported() {
     let bench = Bench::new();
     let export = |format: &str| bench.run(&["ssi", "export", "--layout", "ahs36,code=gray", "--format", format]).out;
     assert_eq!(export("linuxcnc"), "error%1bposition%14ge\n");
@@ -149,7 +149,7 @@ fn layouts_of_recorded_frames_are_found() {
 
 /// Issue 22.22: any frame can be written as one word, as `ssi find` prints it.
 #[test]
-fn any_frame_is_written_in_one_word() {
+fn any_frame_has_a_one_word_specification() {
     let bench = Bench::new();
     let decoded = |layout: &str, frame: &str| bench.run(&["ssi", "decode", "--json", "--layout", layout, frame]).json();
     // Reference section 8: AHM36 in Gray, and the same with exchanged wires.
@@ -163,7 +163,7 @@ fn any_frame_is_written_in_one_word() {
 }
 
 #[test]
-fn what_is_wrong_is_said() {
+fn invalid_arguments_are_reported() {
     let bench = Bench::new();
     let fails = |status: i32, words: &[&str], said: &[&str]| {
         bench.run(&[&["ssi"], words].concat()).fails(status, said);

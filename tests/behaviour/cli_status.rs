@@ -32,7 +32,7 @@ fn status_codes_are_kept_in_the_logbook() {
 }
 
 #[test]
-fn status_reads_the_whole_queue_and_ends_well_whatever_it_reports() {
+fn status_reads_the_entire_queue_and_always_exits_with_success() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--status", "1E080120"]).map(Foreign::waited_for) else { return };
     let told = bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).json();
@@ -65,7 +65,7 @@ fn codes_in_late_replies_are_not_lost() {
 /// Issue 22.10: for any data instead of a reply to 50h, including a repeated old one, each code is printed or reported as
 /// lost, and none is printed twice.
 #[test]
-fn each_code_is_given_once_or_said_to_be_lost() {
+fn each_code_is_reported_once_or_as_lost() {
     let bench = Bench::new();
     let spoilt = [
         "good,the-last",
@@ -93,7 +93,7 @@ fn each_code_is_given_once_or_said_to_be_lost() {
 
 /// Issue 22.10: a reply that a device server sends twice is read with its codes.
 #[test]
-fn a_reply_that_comes_twice_costs_no_code() {
+fn a_duplicated_reply_loses_no_code() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--status", "1E080120", "--status-replies", "twice,twice,twice,twice"]) else {
         return;
@@ -136,7 +136,7 @@ fn a_code_about_the_position_makes_it_invalid() {
 }
 
 #[test]
-fn codes_met_on_the_way_are_named_and_the_value_is_printed() {
+fn codes_met_while_reading_are_named_and_the_value_is_printed() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--status", "1D06"]).map(Foreign::waited_for) else { return };
     let ran = bench.run(&["read", "hiperface", "counter", "--link", &encoder.url, "--json"]);
@@ -145,7 +145,7 @@ fn codes_met_on_the_way_are_named_and_the_value_is_printed() {
 }
 
 #[test]
-fn the_check_gives_a_verdict_a_line() {
+fn the_check_prints_a_verdict_per_line() {
     let bench = Bench::new();
     let check = ["do", "hiperface", "check", "--link"];
     let good = bench.run(&[&check[..], &["sim:", "--json"]].concat()).json();

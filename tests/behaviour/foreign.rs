@@ -16,7 +16,7 @@ fn save(bench: &Bench, encoder: &Foreign, file: &str) -> String {
 }
 
 #[test]
-fn identify_tells_every_key() {
+fn identify_prints_every_key() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let told = bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]).json();
@@ -33,7 +33,7 @@ fn identify_tells_every_key() {
 }
 
 #[test]
-fn the_address_and_the_speed_of_the_link_are_used() {
+fn address_and_baud_rate_of_the_link_are_used() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--address", "45"]) else { return };
     let url = format!("{}?address=0x45&baud=19200&parity=none", encoder.url);
@@ -96,7 +96,7 @@ fn write_stores_exactly_these_bytes() {
 }
 
 #[test]
-fn what_another_host_has_changed_is_found_restored_and_verified() {
+fn changes_by_another_host_are_found_restored_and_verified() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let file = save(&bench, &encoder, "as-saved.ron");
@@ -129,7 +129,7 @@ fn what_another_host_has_changed_is_found_restored_and_verified() {
 }
 
 #[test]
-fn restoring_what_is_so_already_writes_nothing_and_keeps_no_backup() {
+fn restoring_equal_values_writes_nothing_and_keeps_no_backup() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let file = save(&bench, &encoder, "p.ron");
@@ -154,7 +154,7 @@ fn two_files_are_compared_without_a_link() {
 }
 
 #[test]
-fn a_dry_run_prints_what_is_carried_out_later_and_writes_nothing() {
+fn a_dry_run_prints_the_later_plan_and_writes_nothing() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     save(&bench, &encoder, "p.ron");
@@ -188,7 +188,7 @@ fn a_dry_run_prints_what_is_carried_out_later_and_writes_nothing() {
 }
 
 #[test]
-fn missing_fields_are_created_and_surplus_ones_left_and_named() {
+fn missing_fields_are_created_and_surplus_ones_kept_and_named() {
     let bench = Bench::new();
     let Some(two) = bench.encoder(&["--fields", FIELDS]) else { return };
     let Some(none) = bench.encoder(&[]) else { return };
@@ -211,7 +211,7 @@ fn missing_fields_are_created_and_surplus_ones_left_and_named() {
 }
 
 #[test]
-fn only_the_last_field_changes_its_size_unless_told_otherwise() {
+fn only_the_last_field_is_resized_by_default() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let Some(other) = bench.encoder(&["--fields", r#"[{"status":"C8","bytes":"0815"},{"status":"A9"}]"#]) else {
@@ -226,7 +226,7 @@ fn only_the_last_field_changes_its_size_unless_told_otherwise() {
 }
 
 #[test]
-fn a_converter_that_echoes_is_learned_or_told() {
+fn an_echoing_converter_is_detected_or_configured() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--echo", "--fields", FIELDS]) else { return };
     for echo in ["", "?echo=auto", "?echo=on"] {
@@ -249,7 +249,7 @@ fn a_converter_that_echoes_is_learned_or_told() {
 }
 
 #[test]
-fn reading_changes_nothing() {
+fn reading_writes_nothing() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--fields", FIELDS]) else { return };
     let file = save(&bench, &encoder, "p.ron");

@@ -4,7 +4,7 @@ use super::hiperdrive_tap::Tapped;
 use super::support::Bench;
 
 #[test]
-fn what_cannot_be_written_is_refused_with_its_reason() {
+fn unwritable_values_are_refused_with_a_reason() {
     let bench = Bench::new();
     let cases: [(&[&str], i32, &[&str]); 32] = [
         // Both limits, in the program's and in the drive's refusal.
@@ -56,7 +56,7 @@ fn what_cannot_be_written_is_refused_with_its_reason() {
 }
 
 #[test]
-fn places_without_a_drive_are_named() {
+fn ports_without_a_drive_are_named() {
     let bench = Bench::new();
     let hub = "sim:?hub=4&drives=1,0,1";
     for words in [
@@ -82,7 +82,7 @@ fn places_without_a_drive_are_named() {
 }
 
 #[test]
-fn options_and_actions_of_others_are_refused() {
+fn options_and_actions_of_other_devices_are_refused() {
     let bench = Bench::new();
     for (words, said) in [
         (&["read", "interbus", "steps", "--drive", "1"][..], "--drive is not for interbus"),
@@ -118,7 +118,7 @@ fn options_and_actions_of_others_are_refused() {
 }
 
 #[test]
-fn without_consent_nothing_is_touched() {
+fn without_consent_nothing_is_written() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &[]);
     for words in
@@ -130,7 +130,7 @@ fn without_consent_nothing_is_touched() {
 }
 
 #[test]
-fn nobody_there_is_told_within_ten_seconds() {
+fn a_missing_device_is_reported_within_ten_seconds() {
     let bench = Bench::new();
     // Port 1 accepts no connections here.
     let ran = bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1:1"]);
@@ -143,7 +143,7 @@ fn nobody_there_is_told_within_ten_seconds() {
 }
 
 #[test]
-fn a_save_that_fails_leaves_no_file() {
+fn a_failed_save_leaves_no_file() {
     let bench = Bench::new();
     let file = bench.file("none.ron");
     bench.run(&["save", "hiperdrive", "-o", &file, "--link", "enip:127.0.0.1:1"]).fails(1, &["127.0.0.1:1"]);

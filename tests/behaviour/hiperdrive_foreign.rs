@@ -42,7 +42,7 @@ fn change(session: &mut Session<Hiperdrive>, change: Change) -> Result<Committed
 }
 
 #[test]
-fn whatever_the_target_is_like_it_is_read_and_written() {
+fn targets_of_any_behaviour_are_read_and_written() {
     let cases: [(&[&str], &str); 6] = [
         (&[], ""),
         (&["--counted", "--pieces"], ""),
@@ -91,7 +91,7 @@ fn whatever_the_target_is_like_it_is_read_and_written() {
 
 /// The commands as a user types them.
 #[test]
-fn the_commands_do_their_work_with_it() {
+fn the_commands_work_with_a_foreign_target() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&["--topology=hub8", "--drives=1,2", "--counted", "--serial=815"]) else { return };
     let link = ["--link", foreign.url.as_str()];
@@ -114,7 +114,7 @@ fn the_commands_do_their_work_with_it() {
 }
 
 #[test]
-fn what_is_no_drive_says_who_it_is() {
+fn another_device_is_identified_and_refused() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&["--product=Valve island"]) else { return };
     let mut session = session(&bench, &foreign, "");
@@ -124,7 +124,7 @@ fn what_is_no_drive_says_who_it_is() {
 }
 
 #[test]
-fn who_is_there_is_found_by_asking_all() {
+fn devices_are_found_by_broadcast() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&["--serial=77"]) else { return };
     let Some(other) = bench.target(&["--product=Valve island"]) else { return };
@@ -142,7 +142,7 @@ fn who_is_there_is_found_by_asking_all() {
 }
 
 #[test]
-fn services_settings_and_positions_are_carried_out_as_they_were_planned() {
+fn services_settings_and_positions_are_written_as_planned() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&["--busy=200"]) else { return };
     let mut session = session(&bench, &foreign, "");
@@ -173,7 +173,7 @@ fn services_settings_and_positions_are_carried_out_as_they_were_planned() {
 /// Issue 21.8: the program waits as long as the manual allows, whatever the usual reply time: for 47 with each of its
 /// values, and 152 from 0 to 1. With 8000 ms for a hub it is the same, and takes as long.
 #[test]
-fn what_takes_long_is_answered_late_and_done_once() {
+fn slow_services_are_answered_late_and_executed_once() {
     let bench = Bench::new();
     let slow = "--slow=47:-4:1700,47:-3:1400,47:-2:1400,47:-1:1400,47:1:190,152:1:1300";
     let Some(foreign) = bench.target(&["--topology=hub4", "--drives=1,3", slow]) else { return };
@@ -198,7 +198,7 @@ fn what_takes_long_is_answered_late_and_done_once() {
 /// Issue 21.9: a number with another length than in the manual is shown by no command, kept in no file and used in no
 /// write; both lengths are reported, with the remedy.
 #[test]
-fn a_number_of_another_length_is_shown_nowhere() {
+fn a_number_of_another_length_is_not_shown() {
     let bench = Bench::new();
     let (file, other) = (bench.file("file.ron"), bench.file("other.ron"));
     {
@@ -260,7 +260,7 @@ fn limits_beyond_the_turns_of_the_drive_are_not_sent() {
 }
 
 #[test]
-fn a_target_that_is_silent_or_gone_ends_everything_in_time() {
+fn a_silent_or_lost_target_ends_everything_in_time() {
     let bench = Bench::new();
     let cases: [(&[&str], &str); 3] =
         [(&["--silent-after=9"], "?timeout=60"), (&["--vanish-after=9"], ""), (&["--garbage"], "?timeout=60")];
@@ -291,7 +291,7 @@ fn comes(what: &str, mut has_come: impl FnMut() -> bool) {
 }
 
 #[test]
-fn the_cyclic_connection_is_opened_as_the_target_takes_it_and_closed_again() {
+fn the_cyclic_connection_is_opened_as_accepted_and_closed() {
     let bench = Bench::new();
     let cases: [(&[&str], &str); 4] = [
         (&[], "OPEN 16"),
@@ -325,7 +325,7 @@ fn the_cyclic_connection_is_opened_as_the_target_takes_it_and_closed_again() {
 }
 
 #[test]
-fn another_master_is_told_and_a_lost_target_ends_the_connection() {
+fn another_master_is_reported_and_a_lost_target_ends_the_connection() {
     let bench = Bench::new();
     let Some(owned) = bench.target(&["--owned"]) else { return };
     let error = session(&bench, &owned, "").run_inline(HiperdriveJob::Take).unwrap_err();
@@ -343,7 +343,7 @@ fn another_master_is_told_and_a_lost_target_ends_the_connection() {
 }
 
 #[test]
-fn a_session_that_goes_stops_what_it_has_opened() {
+fn dropping_a_session_stops_its_connection() {
     let bench = Bench::new();
     let Some(foreign) = bench.target(&[]) else { return };
     let mut session = session(&bench, &foreign, "");
@@ -362,14 +362,14 @@ fn a_session_that_goes_stops_what_it_has_opened() {
 /// Issue 22.19: an action without effect is no success: a fault that remains after acknowledgement, and drives that the
 /// presence test does not find again.
 #[test]
-fn an_action_whose_result_is_bad_fails() {
+fn an_action_with_a_bad_result_fails() {
     let bench = Bench::new();
     let act = |target: &Foreign, action: &str| {
         bench.run(&["do", "hiperdrive", action, "--yes", "--link", &target.url, "--json"])
     };
     let fails = |ran: &Ran, words: &[&str]| {
         assert_eq!(ran.status, Some(1), "{ran:?}");
-        ran.says(words);
+        ran.assert_stderr(words);
     };
     // 2AB8: a fault (reference 3); its drive is under no control, so that it remains.
     let Some(faulty) = bench.target(&["--status=2AB8"]) else { return };

@@ -8,7 +8,7 @@ use super::support::{Bench, Simulated};
 
 /// Reference 3 and 5: a turn is 65536 steps. The drive reaches its target, and is off afterwards.
 #[test]
-fn a_drive_goes_to_a_position() {
+fn a_drive_moves_to_a_position() {
     let bench = Bench::new();
     let simulated = Simulated::start(&bench, &["hiperdrive", "--listen", "127.0.0.1:0", "--hub", "4"]);
     let link = format!("enip:{}", simulated.place);
@@ -32,7 +32,7 @@ fn a_drive_goes_to_a_position() {
 
 /// Status 2 for wrong usage: nothing is opened. There is no device at this address.
 #[test]
-fn without_consent_nothing_is_touched() {
+fn without_consent_nothing_moves() {
     let bench = Bench::new();
     for (arguments, words) in [
         (&["65536"][..], &["--yes", "nothing was changed"][..]),
@@ -52,7 +52,7 @@ fn without_consent_nothing_is_touched() {
 
 /// Status 1, one clear sentence, and the drive has not moved.
 #[test]
-fn what_may_not_be_is_refused() {
+fn invalid_moves_are_refused() {
     let bench = Bench::new();
     let limits = ["-33488896", "33488896"];
     for (link, arguments, words) in [
@@ -69,7 +69,7 @@ fn what_may_not_be_is_refused() {
 
 /// If a motion does not reach its target, the position is printed, also for scripts.
 #[test]
-fn what_does_not_arrive_says_where_it_stands() {
+fn an_incomplete_move_reports_the_position() {
     let bench = Bench::new();
     let run = |link: &str, seconds: &str| {
         bench.run(&["move", "hiperdrive", "9000000", "--yes", "--json", "--timeout", seconds, "--link", link])
@@ -78,11 +78,11 @@ fn what_does_not_arrive_says_where_it_stands() {
     let position = late.json_with(1)["position"].as_i64().unwrap();
     assert!(0 < position && position < 9_000_000, "{late:?}");
     assert_eq!(late.json_with(1)["reached"], false);
-    late.says(&["1 s", "--timeout", &position.to_string()]);
+    late.assert_stderr(&["1 s", "--timeout", &position.to_string()]);
     assert!(late.took < Duration::from_secs(10), "{late:?}");
-    run("sim:?s3=1", "5").says(&["S3", "at 0"]);
+    run("sim:?s3=1", "5").assert_stderr(&["S3", "at 0"]);
     // Reference 4: a following error is 8203h, 33283.
     let blocked = run("sim:?load=120", "5");
-    blocked.says(&["fault", "at 0", "0x8203"]);
+    blocked.assert_stderr(&["fault", "at 0", "0x8203"]);
     assert_eq!(blocked.json_with(1)["error"]["code"], 33_283);
 }

@@ -152,7 +152,7 @@ fn golden_packets_are_explained() {
 }
 
 #[test]
-fn a_script_gets_every_reading() {
+fn json_has_every_reading() {
     let bench = Bench::new();
     let told = bench.run(&["decode", "hiperdrive", "--json", "0401", "2AB8", "2A37"]).json();
     let frames = told["frames"].as_array().unwrap();
@@ -168,7 +168,7 @@ fn a_script_gets_every_reading() {
 }
 
 #[test]
-fn what_must_not_be_sent_and_what_is_nothing_is_refused() {
+fn illegal_and_invalid_words_are_refused() {
     let bench = Bench::new();
     let failing: [(&[&str], &[&str]); 7] = [
         (&["hiperdrive", "--direction", "out", "047F"], &["047F", "reserved bits set (1, 2)"]),

@@ -12,7 +12,7 @@ fn ask(bench: &Bench, link: &str, words: &[&str]) -> Ran {
 const HUB: &str = "sim:?hub=4&drives=1,0,1&serial=1234&requested=1";
 
 #[test]
-fn who_is_there_is_told_with_its_drives() {
+fn identify_lists_the_device_and_its_drives() {
     let bench = Bench::new();
     let told = ask(&bench, HUB, &["identify", "hiperdrive"]).json();
     for (key, value) in [
@@ -39,7 +39,7 @@ fn who_is_there_is_told_with_its_drives() {
 }
 
 #[test]
-fn a_healthy_device_has_nothing_to_tell() {
+fn a_healthy_device_reports_no_errors() {
     let bench = Bench::new();
     let told = ask(&bench, "sim:", &["status", "hiperdrive"]).json();
     assert_eq!((&told["ok"], &told["errors"], &told["warnings"]), (&json!(true), &json!([]), &json!([])), "{told}");
@@ -52,7 +52,7 @@ fn a_healthy_device_has_nothing_to_tell() {
 
 /// A limit above the other is refused by the device, which keeps 8501 for it (reference 4) and answers 09.
 #[test]
-fn errors_of_now_are_errors_and_those_of_before_are_notes() {
+fn current_errors_are_errors_and_past_ones_are_notes() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--hub", "4", "--set", "drives=0,1", "--set", "requested=1"]);
     // 258 = 7FFFFFFFh.
@@ -90,14 +90,14 @@ fn writing_0_to_197_acknowledges_and_status_is_of_one_drive() {
     assert_eq!(status("2")["ok"], json!(true));
     // Nothing is left to acknowledge: nothing is sent.
     device.sets();
-    device.ask(&bench, &["write", "hiperdrive", "297", "0", "--yes"]).says(&["Drive 2 has no fault"]);
+    device.ask(&bench, &["write", "hiperdrive", "297", "0", "--yes"]).assert_stderr(&["Drive 2 has no fault"]);
     assert!(device.sets().is_empty());
 }
 
 /// Issue 22.9: restoring onto a device with the same serial number and another type, of the device or of its drive: named,
 /// and refused without explicit permission.
 #[test]
-fn a_profile_of_another_type_needs_a_permit_of_its_own() {
+fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
     let file = bench.file("single.ron");
     ask(&bench, "sim:?serial=77&requested=1", &["save", "hiperdrive", "-o", &file]).json();
@@ -115,7 +115,7 @@ fn a_profile_of_another_type_needs_a_permit_of_its_own() {
 }
 
 #[test]
-fn a_check_says_each_thing_once() {
+fn a_check_reports_each_fact_once() {
     let bench = Bench::new();
     let ran = bench.run(&["do", "hiperdrive", "check", "--link", "sim:?hub=4&drives=1"]);
     assert!(!ran.out.contains("HDA30A HDA30A") && !ran.out.contains(".;"), "{ran:?}");
@@ -141,7 +141,7 @@ fn units_are_those_of_the_manual() {
 
 /// 65536 steps per turn: −1 is turn −1, step 65535; 163840 are 2.5 turns (reference 2).
 #[test]
-fn a_position_has_turns_with_a_sign() {
+fn a_position_has_signed_turns() {
     let bench = Bench::new();
     for (link, drive, raw, turns, steps, degrees) in [
         ("sim:?position=163840", "1", 163_840, 2, 32_768, 180.0),
@@ -166,7 +166,7 @@ fn a_position_has_turns_with_a_sign() {
 }
 
 #[test]
-fn parameters_are_read_by_their_numbers() {
+fn parameters_are_read_by_number() {
     let bench = Bench::new();
     let cases: [(&[&str], &str, Value, Value); 7] = [
         (&["13"], "13", json!("HIPERDRIVE HUB-4"), Value::Null),
@@ -197,7 +197,7 @@ fn parameters_are_read_by_their_numbers() {
 }
 
 #[test]
-fn what_is_saved_is_a_profile_that_people_read() {
+fn a_saved_profile_is_human_readable() {
     let bench = Bench::new();
     let file = bench.file("hub.ron");
     let told = ask(&bench, HUB, &["save", "hiperdrive", "-o", &file]).json();
@@ -237,7 +237,7 @@ fn what_is_saved_is_a_profile_that_people_read() {
 
 /// No set request, no cyclic connection: only get attribute, single (0E) or all (01), is sent.
 #[test]
-fn reading_sets_nothing() {
+fn reading_writes_nothing() {
     let bench = Bench::new();
     let file = bench.file("drive.ron");
     let changed =
@@ -268,7 +268,7 @@ fn reading_sets_nothing() {
 }
 
 #[test]
-fn devices_are_found_by_asking_an_address() {
+fn devices_are_found_by_address() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--set", "hub=8", "--set", "serial=77"]);
     let url = device.url();
@@ -281,7 +281,7 @@ fn devices_are_found_by_asking_an_address() {
 
 /// On a terminal there is a bar, and a note about the network; a script gets neither.
 #[test]
-fn a_slow_device_is_read_without_a_word_where_nobody_looks() {
+fn a_slow_device_causes_no_messages_in_a_script() {
     let bench = Bench::new();
     let ran = ask(&bench, "sim:?fault=delay:200", &["status", "hiperdrive"]);
     assert!(ran.json()["ok"] == json!(true) && ran.err.is_empty(), "{ran:?}");

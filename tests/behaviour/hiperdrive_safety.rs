@@ -70,7 +70,7 @@ impl Drive {
 
     /// Checks that it stops within the limit, and has the same position half a second later.
     #[track_caller]
-    fn stands_within(&mut self, limit: Duration) {
+    fn stops_within(&mut self, limit: Duration) {
         let until = Instant::now() + limit + BUSY;
         while self.moves() {
             assert!(Instant::now() < until, "it moves on: {:?}", self.actual());
@@ -141,12 +141,12 @@ impl Host {
 }
 
 #[test]
-fn a_frozen_window() {
+fn a_frozen_window_stops_the_drive() {
     let mut drive = Drive::start();
     let host = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     host.jogs(&mut drive);
     // No further report is sent.
-    drive.stands_within(FROZEN + WATCHDOG);
+    drive.stops_within(FROZEN + WATCHDOG);
     assert_eq!(host.ended(), Some(Ended::Stale));
     // A returned window with the same button still pressed causes no motion.
     let stood = drive.actual().position;
@@ -155,18 +155,18 @@ fn a_frozen_window() {
     assert!(host.motion.is_open());
     host.jogs(&mut drive);
     host.motion.stop();
-    drive.stands_within(WATCHDOG);
+    drive.stops_within(WATCHDOG);
     assert_eq!(host.ended(), Some(Ended::Stopped));
 }
 
 /// The window is closed: the session is dropped.
 #[test]
-fn an_end_without_a_word() {
+fn closing_the_session_stops_the_drive() {
     let mut drive = Drive::start();
     let host = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     host.jogs(&mut drive);
     assert!(host.worker.close(Duration::from_secs(5)));
-    drive.stands_within(Duration::ZERO);
+    drive.stops_within(Duration::ZERO);
     assert_eq!(drive.actual().status.word() & 0x000F, 0, "off, and no fault: it was told");
     // The drive is free: the next host may take it.
     let next = Host::in_control(&drive.bench, &drive.simulated.place.clone());
@@ -174,7 +174,7 @@ fn an_end_without_a_word() {
 }
 
 #[test]
-fn a_wire_for_parameters_that_is_cut() {
+fn a_cut_parameter_connection_stops_the_drive() {
     let mut drive = Drive::start();
     let wires = Wires::to(&drive.simulated.place);
     let host = Host::in_control(&drive.bench, &wires.place());
@@ -188,13 +188,13 @@ fn a_wire_for_parameters_that_is_cut() {
             sleep(Duration::from_millis(20));
         }
     });
-    drive.stands_within(Duration::from_millis(500) + WATCHDOG);
+    drive.stops_within(Duration::from_millis(500) + WATCHDOG);
     held.join().unwrap();
     assert_eq!(host.motion.view().lost, Some(CyclicLost::Session));
 }
 
 #[test]
-fn wires_for_packets_that_are_cut() {
+fn cut_packet_wires_stop_the_drive() {
     for (ways, told) in [
         (&[Transport::ToTarget, Transport::ToHost][..], false),
         (&[Transport::ToTarget], false),
@@ -205,7 +205,7 @@ fn wires_for_packets_that_are_cut() {
         let host = Host::in_control(&drive.bench, &wires.place());
         host.jogs(&mut drive);
         ways.iter().for_each(|way| wires.cut(*way));
-        drive.stands_within(WATCHDOG);
+        drive.stops_within(WATCHDOG);
         // If only the return direction is cut, the drive receives the stop; otherwise its watchdog stops it, which is a
         // fault.
         let faulty = drive.actual().status.state() == State::Fault;
@@ -217,7 +217,7 @@ fn wires_for_packets_that_are_cut() {
         }
         assert!(matches!(host.motion.view().lost, Some(CyclicLost::Silent { .. })), "{ways:?}");
         // Restored: it remains stopped, even if the button is held.
-        ways.iter().for_each(|way| wires.mend(*way));
+        ways.iter().for_each(|way| wires.restore(*way));
         let stood = drive.actual().position;
         host.motion.intend(DriveNumber::FIRST, JOG);
         host.holds(Duration::from_millis(500));
@@ -227,7 +227,7 @@ fn wires_for_packets_that_are_cut() {
 
 /// Garbage in both directions at full speed: a release still stops the drive.
 #[test]
-fn a_flood() {
+fn a_release_stops_the_drive_during_a_flood() {
     let mut drive = Drive::start();
     let wires = Wires::to(&drive.simulated.place);
     let host = Host::in_control(&drive.bench, &wires.place());
@@ -235,7 +235,7 @@ fn a_flood() {
     let flood = wires.flood();
     host.holds(Duration::from_millis(300));
     host.motion.stop();
-    drive.stands_within(WATCHDOG + FROZEN);
+    drive.stops_within(WATCHDOG + FROZEN);
     assert!(flood.end() > 1000);
     let figures = host.motion.view().link;
     assert!(figures.malformed > 0, "{figures:?}");
@@ -251,21 +251,21 @@ fn moving(drive: &mut Drive) -> Child {
 }
 
 #[test]
-fn a_process_that_is_killed() {
+fn a_killed_process_stops_the_drive() {
     let mut drive = Drive::start();
     let mut child = moving(&mut drive);
     signal(&child, "KILL");
-    drive.stands_within(WATCHDOG);
+    drive.stops_within(WATCHDOG);
     child.wait().unwrap();
     assert_eq!(drive.actual().status.state(), State::Fault, "its watchdog has stopped it");
 }
 
 #[test]
-fn a_process_that_is_frozen_and_wakes() {
+fn a_frozen_process_stops_the_drive() {
     let mut drive = Drive::start();
     let child = moving(&mut drive);
     signal(&child, "STOP");
-    drive.stands_within(WATCHDOG);
+    drive.stops_within(WATCHDOG);
     let stood = drive.actual().position;
     signal(&child, "CONT");
     let ran = ended(child, Instant::now());
@@ -273,11 +273,11 @@ fn a_process_that_is_frozen_and_wakes() {
 }
 
 #[test]
-fn an_interrupt() {
+fn an_interrupt_stops_the_drive() {
     let mut drive = Drive::start();
     let child = moving(&mut drive);
     signal(&child, "INT");
-    drive.stands_within(WATCHDOG);
+    drive.stops_within(WATCHDOG);
     let ran = ended(child, Instant::now());
     let position = drive.actual().position.to_string();
     ran.fails(1, &["stopped", &position]);
@@ -287,7 +287,7 @@ fn an_interrupt() {
 /// Issue 21.1: after any signal that ends a command, also twice, the drive is at standstill and off, and its watchdog does
 /// not report a fault.
 #[test]
-fn signals_that_end_a_command() {
+fn terminating_signals_stop_the_drive() {
     for (name, times) in [("TERM", 1), ("HUP", 1), ("TERM", 2), ("INT", 2)] {
         let mut drive = Drive::start();
         let child = moving(&mut drive);
@@ -295,7 +295,7 @@ fn signals_that_end_a_command() {
             signal(&child, name);
             sleep(Duration::from_millis(30));
         }
-        drive.stands_within(WATCHDOG);
+        drive.stops_within(WATCHDOG);
         let ran = ended(child, Instant::now());
         assert!(ran.status.is_some_and(|status| status != 0), "{name}: {ran:?}");
         assert_eq!(drive.actual().status.word() & 0x000F, 0, "{name}, {times} times: off, and no fault");

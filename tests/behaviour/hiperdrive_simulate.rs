@@ -2,7 +2,7 @@
 
 use super::support::{Bench, Simulated, foreign_host, foreign_host_with, pycomm3, python};
 
-fn told(place: &str, things: &[&str]) -> Vec<String> {
+fn host_replies(place: &str, things: &[&str]) -> Vec<String> {
     foreign_host("enip_client.py", place, things)
 }
 
@@ -14,7 +14,7 @@ fn drives(bench: &Bench, arguments: &[&str]) -> Simulated {
 #[track_caller]
 fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
     let (things, expected): (Vec<&str>, Vec<&str>) = walk.iter().copied().unzip();
-    let said = told(place, &[options, &things].concat());
+    let said = host_replies(place, &[options, &things].concat());
     let pairs: Vec<_> = things.iter().zip(&said).collect();
     assert_eq!(said, expected, "{pairs:?}");
 }
@@ -55,7 +55,7 @@ fn parameters_are_read_and_written() {
 
 /// Reference 3 and 9: words and their states; a move and back; hold-to-run ends at release.
 #[test]
-fn a_drive_is_led_moved_and_jogged() {
+fn a_drive_is_enabled_moved_and_jogged() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;
@@ -102,7 +102,7 @@ fn a_drive_of_a_hub_moves_alone() {
 
 /// Reference 7: a lost master ends the motion within its time-out; fault 8601 = 34305 reports it.
 #[test]
-fn a_drive_stands_when_its_master_falls_silent() {
+fn a_drive_stops_when_its_master_falls_silent() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;
@@ -118,7 +118,7 @@ fn a_drive_stands_when_its_master_falls_silent() {
 
 /// Garbage in both directions disturbs neither the motion nor other requests.
 #[test]
-fn garbage_is_let_pass() {
+fn garbage_is_ignored() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;
@@ -140,7 +140,7 @@ fn garbage_is_let_pass() {
 
 /// Saved values exist for the next client after a loss of power; of an interrupted save, half of the values do.
 #[test]
-fn a_save_is_cut_where_it_was_asked_for() {
+fn a_save_is_interrupted_where_configured() {
     let bench = Bench::new();
     if python("enip_client.py").is_none() {
         return;
@@ -183,7 +183,7 @@ fn pycomm3_reads_and_writes() {
 }
 
 #[test]
-fn what_cannot_be_served_is_said() {
+fn impossible_simulations_are_refused() {
     let bench = Bench::new();
     bench.run(&["simulate", "hiperdrive", "--pty", &bench.file("drive")]).fails(2, &["--listen", "EtherNet/IP"]);
     bench.run(&["simulate", "hiperdrive", "--listen", "127.0.0.1:0", "--bridge"]).fails(2, &["--bridge", "biss"]);

@@ -36,7 +36,7 @@ fn a_parameter_is_written_and_saved_once() {
 }
 
 #[test]
-fn what_is_not_kept_is_not_saved() {
+fn volatile_parameters_are_not_saved() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--set", "hub=4", "--set", "drives=0,1", "--set", "requested=1"]);
     let told = device.ask(&bench, &["write", "hiperdrive", "170", "100", "--drive", "2", "--yes"]).json();
@@ -98,7 +98,7 @@ fn a_restore_writes_scale_then_limits_and_saves_once() {
 }
 
 #[test]
-fn a_drive_outside_its_new_limits_stays_as_it_is() {
+fn a_drive_outside_its_new_limits_is_not_changed() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &["--set", "position=100"]);
     let file =
@@ -119,11 +119,11 @@ fn a_position_is_set_in_steps_of_64_and_saved() {
     let device = Tapped::start(&bench, &["--set", "position=5000"]);
     let ran = device.ask(&bench, &["do", "hiperdrive", "set-position", "100", "--yes"]);
     assert_eq!(ran.json()["write_cycles"], json!(1));
-    ran.says(&["100 becomes 128"]);
+    ran.assert_stderr(&["100 becomes 128"]);
     assert_eq!(device.sets(), ["10 03 20 65 24 01 30 C6 80 00 00 00", SAVE]);
     assert_eq!(device.ask(&bench, &["position", "hiperdrive"]).json()["raw"], json!(128));
     // −33 becomes −64.
-    device.ask(&bench, &["write", "hiperdrive", "198", "-33", "--yes"]).says(&["-33 becomes -64"]);
+    device.ask(&bench, &["write", "hiperdrive", "198", "-33", "--yes"]).assert_stderr(&["-33 becomes -64"]);
     assert_eq!(device.ask(&bench, &["position", "hiperdrive"]).json()["raw"], json!(-64));
     device.sets();
     let beyond = device.ask(&bench, &["do", "hiperdrive", "set-position", "33488930", "--yes"]);
@@ -132,7 +132,7 @@ fn a_position_is_set_in_steps_of_64_and_saved() {
 }
 
 #[test]
-fn services_are_what_parameter_47_takes() {
+fn services_write_parameter_47() {
     let bench = Bench::new();
     let device = Tapped::start(&bench, &[]);
     device.ask(&bench, &["write", "hiperdrive", "166", "200", "--yes"]).json();
@@ -153,11 +153,11 @@ fn services_are_what_parameter_47_takes() {
         assert_eq!(speed["value"], json!(expected), "{words:?}");
     }
     device.ask(&bench, &["do", "hiperdrive", "acknowledge", "--yes"]).json();
-    device.ask(&bench, &["do", "hiperdrive", "factory", "--yes"]).says(&["saved"]);
+    device.ask(&bench, &["do", "hiperdrive", "factory", "--yes"]).assert_stderr(&["saved"]);
 }
 
 #[test]
-fn a_profile_goes_onto_its_own_device_and_skips_empty_places() {
+fn a_profile_is_restored_to_its_own_device_and_skips_empty_ports() {
     let bench = Bench::new();
     let file = bench.file("hub.ron");
     let hub = |serial: &str, drives: &str| {
@@ -174,22 +174,22 @@ fn a_profile_goes_onto_its_own_device_and_skips_empty_places() {
     let ran = other.ask(&bench, &["restore", &file, "--yes", "--allow-other-device"]);
     let told = ran.json();
     assert_eq!((&told["written"], &told["missing"].as_array().unwrap().len()), (&json!(1), &13), "{told}");
-    ran.says(&["place 3"]);
+    ran.assert_stderr(&["place 3"]);
     assert_eq!(other.sets(), ["10 03 20 65 24 01 30 A6 C8 00", SAVE]);
 }
 
 #[test]
-fn what_a_change_of_scale_does_to_limits_is_said() {
+fn effects_of_a_scale_change_on_limits_are_shown() {
     let bench = Bench::new();
     let file = bench.write("scale.ron", r#"(schema: 1, device: "hiperdrive", parameters: {154: 400, 156: 256})"#);
     let ran = bench.run(&["restore", &file, "--dry-run", "--link", "sim:"]);
     // 511 turns become 33488896 / 400.
     assert_eq!(ran.status, Some(0), "{ran:?}");
-    ran.says(&["511", "83722.24"]);
+    ran.assert_stderr(&["511", "83722.24"]);
 }
 
 #[test]
-fn a_number_that_does_something_is_named() {
+fn values_that_trigger_an_action_are_named() {
     let bench = Bench::new();
     for (code, name) in [("-1", "47 = −1"), ("-2", "47 = −2"), ("-3", "47 = −3"), ("-4", "47 = −4")] {
         let ran = bench.run(&["write", "hiperdrive", "47", code, "--yes", "--link", "sim:"]);
@@ -201,7 +201,7 @@ fn a_number_that_does_something_is_named() {
 }
 
 #[test]
-fn a_number_that_is_no_parameter_is_told_where_it_stands() {
+fn an_unknown_parameter_number_is_reported_with_its_location() {
     let bench = Bench::new();
     let file = bench.write("slip.ron", r#"(schema: 1, device: "hiperdrive", parameters: {166: 200, 999: 7})"#);
     bench.run(&["restore", &file, "--yes", "--link", "sim:"]).fails(1, &["parameters.999"]);

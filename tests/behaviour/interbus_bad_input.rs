@@ -7,7 +7,7 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
 }
 
 #[test]
-fn what_cannot_be_understood_is_wrong_usage() {
+fn invalid_arguments_are_usage_errors() {
     let bench = Bench::new();
     let cases: &[&[&str]] = &[
         &["read", "interbus"],
@@ -43,7 +43,7 @@ fn what_cannot_be_understood_is_wrong_usage() {
 /// Refused before anything is sent if nothing has to be read, otherwise before anything is set; the message has both
 /// limits.
 #[test]
-fn what_is_out_of_range_names_both_limits() {
+fn out_of_range_values_name_both_limits() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600"]) else { return };
     let cases: &[(&[&str], &[&str])] = &[
@@ -77,7 +77,7 @@ fn what_is_out_of_range_names_both_limits() {
 
 /// The encoder's own refusal (reference 2), and the return to its mode.
 #[test]
-fn an_encoder_that_refuses_is_told_with_its_word_and_led_back() {
+fn a_refusal_is_reported_with_its_word_and_led_back() {
     let bench = Bench::new();
     for (word, words) in
         [("82000000", "within the limits"), ("84000000", "does not know"), ("98000004", "outside the measuring range")]
@@ -91,7 +91,7 @@ fn an_encoder_that_refuses_is_told_with_its_word_and_led_back() {
 }
 
 #[test]
-fn exceptions_of_a_gateway_say_what_to_compare() {
+fn gateway_exceptions_name_the_settings_to_compare() {
     let bench = Bench::new();
     for (code, words) in [("1", "illegal function"), ("2", "illegal data address"), ("0xB", "failed to respond")] {
         let Some(encoder) = bench.gateway(&["--exception", code]) else { return };
@@ -102,7 +102,7 @@ fn exceptions_of_a_gateway_say_what_to_compare() {
 }
 
 #[test]
-fn words_with_their_halves_exchanged_say_that_the_order_may_be_swapped() {
+fn swapped_words_suggest_the_other_word_order() {
     let bench = Bench::new();
     for order in [["--order=low-first", "order=high-first"], ["--order=high-first", "order=low-first"]] {
         for position in ["--position=4097", "--position=0"] {
@@ -120,7 +120,7 @@ fn words_with_their_halves_exchanged_say_that_the_order_may_be_swapped() {
 }
 
 #[test]
-fn two_masters_are_told_as_that() {
+fn a_second_master_is_reported() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600", "--second-master", "20210000:1"]) else { return };
     let ran = ask(&bench, &encoder, &["write", "interbus", "preset", "7", "--yes"]);
@@ -129,7 +129,7 @@ fn two_masters_are_told_as_that() {
 }
 
 #[test]
-fn a_gateway_that_does_not_answer_is_told_within_its_time() {
+fn a_silent_gateway_is_reported_in_time() {
     let bench = Bench::new();
     let Some(silent) = bench.gateway(&["--silent-after=4"]) else { return };
     let ran = ask(&bench, &silent, &["identify", "interbus"]);
@@ -149,7 +149,7 @@ fn a_gateway_that_does_not_answer_is_told_within_its_time() {
 }
 
 #[test]
-fn a_profile_that_is_wrong_or_of_another_kind_is_told() {
+fn an_invalid_or_foreign_profile_is_refused() {
     let bench = Bench::new();
     let parameters = r#"parameters: (steps: 3600, revolutions: 1, direction: "cw", preset: 0, zero_shift: 0)"#;
     let with = |programs: &str| {

@@ -53,7 +53,7 @@ fn log(foreign: &Foreign) -> Vec<String> {
 }
 
 #[test]
-fn whatever_the_gateway_is_like_the_encoder_is_read_written_and_led_back() {
+fn gateways_of_any_behaviour_can_read_write_and_lead_back() {
     let cases: [(&[&str], &str); 5] = [
         (&[], "?cycle=1"),
         (&["--busy=40", "--stale=3", "--early"], "?cycle=1"),
@@ -89,7 +89,7 @@ fn whatever_the_gateway_is_like_the_encoder_is_read_written_and_led_back() {
 }
 
 #[test]
-fn what_the_encoder_or_another_master_does_wrong_is_told() {
+fn faults_of_the_encoder_or_another_master_are_reported() {
     type Told = fn(&Error) -> bool;
     let cases: [(&[&str], Told); 6] = [
         (&["--error=1:82000000"], |error| matches!(error, Error::Refused { .. })),
@@ -142,7 +142,7 @@ fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Int
 /// Issue 22.1: the processing word may carry any data, those sent or those of the word before, and a word that is replaced
 /// during processing is not accepted. Eight programs of eight cams are written with one store each.
 #[test]
-fn cam_0_is_written_through_a_gateway_that_is_busy() {
+fn cam_0_is_written_through_a_busy_gateway() {
     let bench = Bench::new();
     let cases =
         [("--busy=12", "sent", 8), ("--busy=12", "old", 1), ("--busy=40", "sent", 1), ("--busy=130", "sent", 2)];
@@ -160,7 +160,7 @@ fn cam_0_is_written_through_a_gateway_that_is_busy() {
 
 /// Issue 22.2: an echo that comes 0.4 to 0.8 s late, or was never requested (manual 5.3 shows C2000100), ends nothing.
 #[test]
-fn stale_echoes_are_waited_out() {
+fn stale_echoes_are_skipped() {
     let bench = Bench::new();
     for echo in ["400:C2000100", "800:CA000000", "600:E2000100"] {
         let Some(foreign) = bench.gateway(&["--steps=3600", "--old-echo", echo]) else { return };

@@ -50,7 +50,7 @@ fn golden_words_are_explained() {
 }
 
 #[test]
-fn a_script_gets_every_reading() {
+fn json_has_every_reading() {
     let bench = Bench::new();
     let told = bench.run(&["decode", "interbus", "--json", "46000015", "9800000F"]).json();
     let frames = told["frames"].as_array().unwrap();
@@ -69,7 +69,7 @@ fn a_script_gets_every_reading() {
 }
 
 #[test]
-fn what_must_not_be_sent_and_what_is_no_word_is_refused() {
+fn illegal_and_invalid_words_are_refused() {
     let bench = Bench::new();
     let out = |mode, word| ["decode", "interbus", "--direction", "out", "--mode", mode, word];
     for (mode, word, words) in [

@@ -28,7 +28,7 @@ fn only_read(encoder: &Foreign) {
 }
 
 #[test]
-fn an_encoder_says_who_it_is() {
+fn identify_prints_every_key() {
     let bench = Bench::new();
     let options = ["--serial-number=4711", "--steps=3600", "--turns=10", "--direction=ccw", "--flags=2", "--busy=20"];
     let Some(encoder) = bench.gateway(&[&options[..], &["--stale=2", "--software-version=77"]].concat()) else {
@@ -47,7 +47,7 @@ fn an_encoder_says_who_it_is() {
 }
 
 #[test]
-fn every_item_is_read_by_its_name() {
+fn every_item_is_read_by_name() {
     let bench = Bench::new();
     let options = ["--steps=3600", "--preset=500", "--zero-shift=7", "--shift=8", "--programs", PROGRAMS];
     let Some(encoder) = bench.gateway(&[&options[..], &["--temperature=-100", "--operating-time=12"]].concat()) else {
@@ -88,7 +88,7 @@ fn encoder_mode(bench: &Bench, encoder: &Foreign) -> String {
 
 /// Reference 7: 12345 steps of the disc are 542 of 360 per turn: turn 1, 182 steps of 360, which are 182°.
 #[test]
-fn a_position_lies_within_the_programmed_turns() {
+fn a_position_is_within_the_programmed_turns() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--position=12345", "--steps=720", "--turns=2"]) else { return };
     let ran = ask(&bench, &encoder, &["position", "interbus", "--count", "3", "--interval", "1"]);
@@ -107,7 +107,7 @@ fn a_position_lies_within_the_programmed_turns() {
 
 /// Reference 5: position 1000 of 3600 under the window, cam 3 from 900 on; speed; and an encoder with an error.
 #[test]
-fn what_is_no_position_is_not_taken_for_one() {
+fn words_without_a_position_are_not_printed_as_one() {
     let bench = Bench::new();
     let programs = r#"{"2": {"mask": 8, "cams": {"3": [900, 1100]}}}"#;
     let position = ["--position=2276", "--steps=3600"];
@@ -131,7 +131,7 @@ fn what_is_no_position_is_not_taken_for_one() {
 }
 
 #[test]
-fn a_healthy_encoder_has_nothing_to_say() {
+fn a_healthy_encoder_reports_no_errors() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--temperature=253"]) else { return };
     let told = ask(&bench, &encoder, &["status", "interbus"]).json();
@@ -143,7 +143,7 @@ fn a_healthy_encoder_has_nothing_to_say() {
 }
 
 #[test]
-fn what_is_saved_is_what_is_there() {
+fn a_saved_profile_matches_the_encoder() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600", "--preset=500", "--mode=5", "--programs", PROGRAMS]) else {
         return;
@@ -183,7 +183,7 @@ fn what_is_saved_is_what_is_there() {
 
 /// The virtual encoder in this process and the same one over TCP return the same values.
 #[test]
-fn the_virtual_encoder_is_read_either_way() {
+fn the_virtual_encoder_is_read_directly_and_over_modbus() {
     use super::support::Simulated;
     let bench = Bench::new();
     let settings = ["steps=3600", "revolutions=1", "cams=demo", "position=5000", "serial=99"];
@@ -202,7 +202,7 @@ fn the_virtual_encoder_is_read_either_way() {
 /// Issue 22.31: reading cam programs switches live outputs. On a terminal the program asks first; without one it continues
 /// for the commands that name it in their help.
 #[test]
-fn cam_programs_are_read_once_the_machine_stands_still() {
+fn reading_cam_programs_needs_confirmation() {
     let bench = Bench::new();
     let Some(foreign) = bench.gateway(&["--steps=3600"]) else { return };
     let (url, all) = (format!("{}?cycle=1", foreign.url), bench.file("k3.ron"));

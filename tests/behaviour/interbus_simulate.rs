@@ -3,7 +3,7 @@
 
 use super::support::{Bench, Simulated, foreign_host, python};
 
-fn told(place: &str, things: &[&str]) -> Vec<String> {
+fn host_replies(place: &str, things: &[&str]) -> Vec<String> {
     foreign_host("interbus_master.py", place, things)
 }
 
@@ -49,7 +49,7 @@ const CAMS: [(&str, &str); 21] = [
 #[track_caller]
 fn walk(place: &str, walk: &[(&str, &str)]) {
     let (things, expected): (Vec<&str>, Vec<&str>) = walk.iter().copied().unzip();
-    let said = told(place, &things);
+    let said = host_replies(place, &things);
     let pairs = || things.iter().zip(&said);
     assert_eq!(said, expected, "{:?}", pairs().collect::<Vec<_>>());
 }
@@ -60,7 +60,7 @@ fn virtual_gateway(bench: &Bench, settings: &[&str]) -> Simulated {
 }
 
 #[test]
-fn the_worked_example_and_the_example_of_cams_go_as_the_reference_says() {
+fn the_worked_and_cam_examples_match_the_reference() {
     let bench = Bench::new();
     if python("interbus_master.py").is_none() {
         return;
@@ -78,7 +78,7 @@ fn the_worked_example_and_the_example_of_cams_go_as_the_reference_says() {
 
 /// Both were written from the reference, apart from each other.
 #[test]
-fn the_foreign_encoder_answers_as_the_reference_says_too() {
+fn the_foreign_encoder_matches_the_reference() {
     let bench = Bench::new();
     let Some(foreign) = bench.gateway(&["--position", "5000", "--busy", "20", "--stale", "2"]) else { return };
     assert_eq!(foreign.url, format!("modbus:{}", foreign.place));
@@ -96,7 +96,7 @@ fn the_foreign_encoder_answers_as_the_reference_says_too() {
 }
 
 #[test]
-fn several_masters_are_served_at_once() {
+fn several_masters_are_served_concurrently() {
     let bench = Bench::new();
     if python("interbus_master.py").is_none() {
         return;
@@ -106,12 +106,12 @@ fn several_masters_are_served_at_once() {
         ["020000FF", "other:in", "other:out", "other:04000001", "in", "out", "80000000", "other:00000000", "in"];
     let words =
         ["C20000FF", "C20000FF", "020000FF", "C4000001", "C4000001", "04000001", "0000009B", "0000009B", "0000009B"];
-    assert_eq!(told(&port.place, &things), words);
+    assert_eq!(host_replies(&port.place, &things), words);
     port.end("INT");
 }
 
 #[test]
-fn registers_unit_and_order_are_those_asked_for_and_what_is_wrong_is_an_exception() {
+fn registers_unit_and_order_are_configurable_and_errors_are_exceptions() {
     let bench = Bench::new();
     if python("interbus_master.py").is_none() {
         return;
@@ -121,30 +121,33 @@ fn registers_unit_and_order_are_those_asked_for_and_what_is_wrong_is_an_exceptio
     let port = virtual_gateway(&bench, &settings);
     let options = ["--unit=17", "--input=100", "--output=512", "--low-first"];
     assert_eq!(
-        told(&port.place, &[&options[..], &["in", "020000FF", "out"]].concat()),
+        host_replies(&port.place, &[&options[..], &["in", "020000FF", "out"]].concat()),
         ["00001388", "C20000FF", "020000FF"]
     );
     let wrong = ["raw:01 0000 0001", "raw:04 0000 0002", "raw:04 0064 0000", "raw:07"];
     let exceptions = ["exception 01", "exception 02", "exception 03", "exception 01"];
-    assert_eq!(told(&port.place, &[&["--unit=17"], &wrong[..]].concat()), exceptions);
-    assert_eq!(told(&port.place, &["in"]), ["exception 0B"]);
+    assert_eq!(host_replies(&port.place, &[&["--unit=17"], &wrong[..]].concat()), exceptions);
+    assert_eq!(host_replies(&port.place, &["in"]), ["exception 0B"]);
     port.end("INT");
 }
 
 /// An encoder that has lost its power is powered again with the next client, without the value that it was storing.
 #[test]
-fn faults_are_those_asked_for() {
+fn configured_faults_are_injected() {
     let bench = Bench::new();
     if python("interbus_master.py").is_none() {
         return;
     }
     let listen = ["interbus", "--listen", "127.0.0.1:0", "--set", "steps=360", "--set", "revolutions=1"];
     let port = Simulated::start(&bench, &[&listen[..], &["--fault", "die-in-store:1"]].concat());
-    assert_eq!(told(&port.place, &["06000004", "80000000", "in"]), ["C6000004", "exception 0B", "exception 0B"]);
-    assert_eq!(told(&port.place, &["in", "20210001"]), ["86000000", "A1FFFFFF"]);
+    assert_eq!(
+        host_replies(&port.place, &["06000004", "80000000", "in"]),
+        ["C6000004", "exception 0B", "exception 0B"]
+    );
+    assert_eq!(host_replies(&port.place, &["in", "20210001"]), ["86000000", "A1FFFFFF"]);
     port.end("INT");
     let refusing = Simulated::start(&bench, &[&listen[..], &["--set", "exception=1"]].concat());
-    assert_eq!(told(&refusing.place, &["in", "020000FF"]), ["exception 0B", "exception 0B"]);
+    assert_eq!(host_replies(&refusing.place, &["in", "020000FF"]), ["exception 0B", "exception 0B"]);
     refusing.end("TERM");
     bench
         .run(&["simulate", "interbus", "--listen", "127.0.0.1:0", "--fault", "lose:1"])
@@ -152,7 +155,7 @@ fn faults_are_those_asked_for() {
 }
 
 #[test]
-fn what_cannot_be_served_is_said() {
+fn impossible_simulations_are_refused() {
     let bench = Bench::new();
     bench.run(&["simulate", "interbus", "--pty", &bench.file("enc")]).fails(2, &["--listen", "Modbus/TCP"]);
     bench.run(&["simulate", "interbus", "--listen", "127.0.0.1:0", "--bridge"]).fails(2, &["--bridge", "biss"]);

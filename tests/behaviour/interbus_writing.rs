@@ -51,7 +51,7 @@ const PARAMETERS: &str = r#"steps: 3600, revolutions: 1, direction: "cw", preset
 
 /// The issue: 64 cams and 8 masks into an encoder that already has 60 of the cams.
 #[test]
-fn a_full_set_of_cams_touches_what_differs_and_stores_once_a_program() {
+fn a_full_set_of_cams_writes_differences_and_stores_once_per_program() {
     let bench = Bench::new();
     let (there, _) = cams(|_, _| None);
     let moved = |program, cam| match (program, cam) {
@@ -112,7 +112,7 @@ fn a_full_set_of_cams_touches_what_differs_and_stores_once_a_program() {
 
 /// Reference 3: one parameterisation, in an order in which each number is legal; the preset is stored and not applied.
 #[test]
-fn parameters_are_one_store_and_a_preset_is_not_fired_by_a_restore() {
+fn parameters_need_one_store_and_a_restore_fires_no_preset() {
     let bench = Bench::new();
     let parameters = r#"steps: 36000, revolutions: 10, direction: "ccw", preset: 20000, zero_shift: 0"#;
     let file = bench.write("gear.ron", profile("4000", parameters, ""));
@@ -125,7 +125,7 @@ fn parameters_are_one_store_and_a_preset_is_not_fired_by_a_restore() {
 }
 
 #[test]
-fn each_item_is_written_by_its_name() {
+fn each_item_is_written_by_name() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--steps=3600"]) else { return };
     let cases = [
@@ -184,7 +184,7 @@ fn the_default_is_experimental() {
 
 /// Issue 22.19: an encoder that sends an error word after the return to its mode has not recovered.
 #[test]
-fn leading_back_fails_where_the_encoder_sends_an_error() {
+fn leading_back_fails_if_the_encoder_sends_an_error() {
     let bench = Bench::new();
     let Some(encoder) = bench.gateway(&["--lost"]) else { return };
     let ran = ask(&bench, &encoder, &["do", "interbus", "lead-back"]);
@@ -197,7 +197,7 @@ fn leading_back_fails_where_the_encoder_sends_an_error() {
 /// Issue 22.9: a profile of a multiturn encoder for an encoder that counts no turns: named, and refused without explicit
 /// permission.
 #[test]
-fn an_encoder_of_another_type_needs_a_permit_of_its_own() {
+fn an_encoder_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
     let parameters = r#"steps: 3600, revolutions: 1, direction: "ccw", preset: 9, zero_shift: 3"#;
     let text = profile("4000", parameters, "").replace(r#""4000")"#, r#""4000", flags: 2)"#);
@@ -220,7 +220,7 @@ fn an_encoder_of_another_type_needs_a_permit_of_its_own() {
 }
 
 #[test]
-fn nothing_is_written_without_consent_or_into_another_encoder() {
+fn nothing_is_written_without_consent_or_to_another_encoder() {
     let bench = Bench::new();
     let file = bench.write(
         "p.ron",
@@ -307,7 +307,7 @@ fn the_stores_of_an_eeprom_are_counted() {
 
 /// At three points of the writing: the written values are reported, with the backup, within the time-out of a lost gateway.
 #[test]
-fn a_gateway_that_is_gone_in_the_middle_is_told_with_the_backup() {
+fn a_gateway_lost_during_a_write_is_reported_with_the_backup() {
     let bench = Bench::new();
     let (_, wanted) = cams(|program, _| (program > 2).then_some((0, 0)));
     let file = bench.write("cams.ron", profile("4000", PARAMETERS, &wanted));

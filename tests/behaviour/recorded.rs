@@ -109,7 +109,7 @@ fn hiperdrive_is_as_recorded() {
 }
 
 #[test]
-fn what_is_of_no_kind_is_as_recorded() {
+fn common_commands_are_as_recorded() {
     assert_recorded("common");
 }
 
@@ -135,7 +135,7 @@ const LINKS: [&str; 16] = [
 
 /// The parameters of links and the settings of virtual devices, which are in users' scripts and settings.
 #[test]
-fn links_take_the_recorded_parameters() {
+fn links_accept_the_recorded_parameters() {
     let (path, bench) = (fixtures().join("links.txt"), Bench::new());
     let mut text = String::new();
     for link in LINKS {

@@ -34,7 +34,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn the_parameters_come_back() {
+fn the_parameters_are_recovered() {
     let (analysis, told) = diagnosed(Settings {
         amplitude_v: 0.48,
         offset_sine_v: 0.015,
@@ -55,7 +55,7 @@ fn the_parameters_come_back() {
 }
 
 #[test]
-fn each_fault_is_found_by_its_name() {
+fn each_injected_fault_is_diagnosed() {
     let base = Settings::default;
     type IsIt = fn(&FindingKind) -> bool;
     let cases: [(&str, Settings, IsIt); 10] = [
@@ -99,7 +99,7 @@ fn each_fault_is_found_by_its_name() {
 /// An eccentricity of 100″ is an integral deviation of 100″; an offset of 1 % makes ±0.573 electrical degrees, in 512
 /// periods 4.03″.
 #[test]
-fn eccentricity_is_the_integral_and_an_offset_the_differential_deviation() {
+fn eccentricity_is_integral_and_an_offset_differential_nonlinearity() {
     let settings = Settings { eccentricity_arcsec: 100.0, offset_sine_v: 0.005, noise_v: 0.0, ..Settings::default() };
     let (_, wires) = recorded(settings);
     let unwrapped = |angles: Vec<f64>, whole: f64| {

@@ -87,7 +87,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     frames
 }
 
-fn told(layout: &Layout, reading: FrameReading) -> String {
+fn expected_line(layout: &Layout, reading: FrameReading) -> String {
     use encoder_studio::devices::ssi::protocol::Location;
     let (turns, steps) = match layout.descriptor().range.place(reading.position) {
         Location::Shaft { turns, steps, .. } => (turns, steps),
@@ -97,7 +97,7 @@ fn told(layout: &Layout, reading: FrameReading) -> String {
 }
 
 #[test]
-fn the_exported_c_decodes_as_the_program_does() {
+fn the_exported_c_code_decodes_like_the_program() {
     let compiler = ["cc", "gcc", "clang"].into_iter().find(|name| {
         Command::new(name)
             .arg("--version")
@@ -127,14 +127,14 @@ fn the_exported_c_decodes_as_the_program_does() {
         let lines: Vec<&str> = output.lines().collect();
         assert_eq!(lines.len(), frames.len(), "{title}");
         for (frame, line) in frames.iter().zip(lines) {
-            assert_eq!(line, told(&layout, layout.decode(*frame)), "{title}, frame {frame:X}");
+            assert_eq!(line, expected_line(&layout, layout.decode(*frame)), "{title}, frame {frame:X}");
         }
     }
 }
 
 /// `EXPECT=write` writes the file again, to be reviewed before it is committed.
 #[test]
-fn the_exported_structured_text_is_the_reviewed_one() {
+fn the_exported_structured_text_matches_the_reviewed_file() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vectors/ssi_ahs36.st");
     let text = structured_text(&family("ahs36,st=12,code=gray"), "AHS36, 12 bits, Gray");
     if std::env::var_os("EXPECT").is_some_and(|it| it == "write") {
@@ -204,7 +204,7 @@ fn decoders_of_32_bits_decode_as_the_program_does() {
             let Some(lines) = run_32(&text, &frames) else { return };
             assert_eq!(lines.len(), frames.len(), "{title}");
             for (frame, line) in frames.iter().zip(lines) {
-                assert_eq!(line, told(&layout, layout.decode(*frame)), "{title} as {name}, frame {frame:X}");
+                assert_eq!(line, expected_line(&layout, layout.decode(*frame)), "{title} as {name}, frame {frame:X}");
             }
         }
     }

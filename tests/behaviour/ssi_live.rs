@@ -49,7 +49,7 @@ fn the_position_has_turns_steps_and_degrees() {
 
 /// KH53 counts tenths of a millimetre: three quarters of 2^24.
 #[test]
-fn a_linear_encoder_has_millimetres() {
+fn a_linear_encoder_reports_millimetres() {
     let bench = Bench::new();
     let Some(encoder) = adapter(&bench, "0,24,binary,0", &[]) else { return };
     let told = &lines(&position(&bench, "kh53", &encoder.url, &["--json"]))[0];
@@ -61,7 +61,7 @@ fn a_linear_encoder_has_millimetres() {
 
 /// AFS60 has ERRDIG, ERRSI and ERRSYNC on clocks 19 to 21; a transfer clears the last.
 #[test]
-fn error_bits_are_told_as_they_appear_and_counted() {
+fn error_bits_are_reported_on_appearance_and_counted() {
     let bench = Bench::new();
     let Some(encoder) = adapter(&bench, "0,18,binary,3", &["--ssi-error", "3"]) else { return };
     let ran = position(&bench, "afs60", &encoder.url, &["--json", "--count", "7", "--interval", "10"]);
@@ -84,7 +84,7 @@ fn error_bits_are_told_as_they_appear_and_counted() {
 
 /// Reference 6.7: all ones are a fault of a safety encoder, and a broken wire for another; all zeros are a stuck line.
 #[test]
-fn a_line_that_does_not_move_is_told() {
+fn a_stuck_line_is_reported() {
     let bench = Bench::new();
     let told = |line: &str, layout: &str| {
         let encoder = adapter(&bench, "12,13,gray,0", &["--line", line])?;
@@ -122,7 +122,7 @@ fn clock_and_pause_are_those_of_the_link_or_the_profile() {
 }
 
 #[test]
-fn an_adapter_that_cannot_do_it_is_told() {
+fn an_unsuitable_adapter_is_reported() {
     let bench = Bench::new();
     let Some(other) = bench.adapter(&[]) else { return };
     position(&bench, "atm60", &other.url, &[]).fails(1, &["bench adapter", "SSI"]);
@@ -138,7 +138,7 @@ fn an_adapter_that_cannot_do_it_is_told() {
 
 /// The cable is unplugged, or the user cancels, during the measurement: the counts so far are printed.
 #[test]
-fn an_end_in_the_middle_is_told_with_what_was_counted() {
+fn an_interrupted_stream_reports_its_counts() {
     let bench = Bench::new();
     let format = ["--capabilities", "1", "--ssi", "0,18,binary,3", "--ssi-error", "2"];
     let encoders = [bench.adapter(&format), bench.adapter_on_terminal(&format), bench.adapter(&format)];
@@ -168,7 +168,7 @@ fn an_end_in_the_middle_is_told_with_what_was_counted() {
 }
 
 #[test]
-fn what_is_typed_wrongly_is_told_in_a_sentence() {
+fn invalid_arguments_are_usage_errors() {
     let bench = Bench::new();
     for command in ["position", "status"] {
         bench.run(&[command, "ssi", "--link", "sim:", "--json"]).fails(2, &["--layout", command]);

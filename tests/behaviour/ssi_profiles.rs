@@ -79,7 +79,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
 
 /// The help names the entries of a layout, each of which can be used in a file.
 #[test]
-fn the_help_names_entries_that_can_be_written() {
+fn the_help_names_valid_entries() {
     let bench = Bench::new();
     let help = bench.run(&["ssi", "export", "--help"]).out;
     let entry = |name: &str| {
@@ -123,7 +123,7 @@ fn two_layouts_are_compared() {
 }
 
 #[test]
-fn the_profiles_that_ship_are_their_families_as_delivered() {
+fn ready_made_profiles_have_the_factory_settings_of_their_families() {
     let bench = Bench::new();
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/ssi");
     for key in "ahs36 ahm36 afs60 afm60 afs60s afm60s atm60 atm90 ars60 ttk70 kh53".split(' ') {
@@ -139,7 +139,7 @@ fn the_profiles_that_ship_are_their_families_as_delivered() {
 }
 
 #[test]
-fn families_of_the_users_own_are_known_and_broken_ones_told() {
+fn user_families_are_loaded_and_broken_ones_reported() {
     let bench = Bench::new();
     let folder = bench.path("config/encoder-studio/devices/ssi");
     fs::create_dir_all(&folder).unwrap();
@@ -162,7 +162,7 @@ fn families_of_the_users_own_are_known_and_broken_ones_told() {
 }
 
 #[test]
-fn positions_named_twice_have_to_be_the_same() {
+fn positions_given_twice_must_agree() {
     let bench = Bench::new();
     let encode = |words: &[&str]| bench.run(&[&["ssi", "encode", "--json", "--layout"], words].concat());
     // 123h · 4000h + 2A5Bh.
@@ -177,7 +177,7 @@ fn positions_named_twice_have_to_be_the_same() {
 }
 
 #[test]
-fn what_is_no_layout_is_refused_with_entry_and_reason() {
+fn invalid_layouts_are_refused_with_entry_and_reason() {
     let bench = Bench::new();
     let file = bench.file("wrong.ron");
     let cases = [
@@ -211,7 +211,7 @@ fn what_is_no_layout_is_refused_with_entry_and_reason() {
 }
 
 #[test]
-fn what_ssi_encoders_do_not_have_is_said_with_what_there_is() {
+fn unsupported_ssi_commands_name_the_alternative() {
     let bench = Bench::new();
     let file = bench.write("feeder.ron", LAYOUT);
     let out = bench.file("out.ron");

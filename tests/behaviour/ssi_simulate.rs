@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::support::{Bench, Simulated, foreign_host, python};
 
-fn told(path: &str, actions: &[&str]) -> Vec<Value> {
+fn host_replies(path: &str, actions: &[&str]) -> Vec<Value> {
     let lines = foreign_host("bridge_host.py", path, actions);
     lines.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
@@ -13,7 +13,7 @@ fn told(path: &str, actions: &[&str]) -> Vec<Value> {
 fn examine(path: &str) {
     let actions =
         ["word", "hello", "ssi:25:1500000:30", "word", "ssi:27:400000:200", "word", "ssi:12:400000:200", "word"];
-    let said = told(path, &[&actions[..], &["ssi:0:400000:200", "ssi:65:400000:200", "word"]].concat());
+    let said = host_replies(path, &[&actions[..], &["ssi:0:400000:200", "ssi:65:400000:200", "word"]].concat());
     assert_eq!((&said[0]["error"], &said[0]["op"]), (&json!(2), &json!(0x11)), "not configured");
     assert_eq!((&said[1]["version"], said[1]["capabilities"].as_u64().unwrap() & 1), (&json!(1), 1));
     assert_eq!((&said[2], &said[3]["raw"]), (&json!({"clock_hz": 1_500_000}), &json!("65D400")));
@@ -24,7 +24,7 @@ fn examine(path: &str) {
 }
 
 #[test]
-fn words_come_on_a_terminal_and_on_a_port() {
+fn words_are_served_on_a_pseudoterminal_and_a_tcp_port() {
     let bench = Bench::new();
     if python("bridge_host.py").is_none() {
         return;
@@ -51,7 +51,7 @@ fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     let arguments = ["ssi", "--listen", "127.0.0.1:0", "--layout", "atm60,code=gray", "--set", "rpm=600"];
     let port = Simulated::start(&bench, &arguments);
     let path = format!("tcp:{}", port.place);
-    let said = told(&path, &["hello", "ssi:25:1500000:30", "words:50:2.0:12,13,gray,0", "word"]);
+    let said = host_replies(&path, &["hello", "ssi:25:1500000:30", "words:50:2.0:12,13,gray,0", "word"]);
     let stream = &said[2];
     for key in ["broken", "gaps", "lost", "off_time"] {
         assert_eq!(stream[key], json!(0), "{key}: {stream}");
@@ -62,20 +62,20 @@ fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     assert!(stream["words"].as_u64() > Some(30_000), "{stream}");
     assert!(said[3]["raw"].is_string(), "single words again when the stream has ended");
     // 25 clocks at 400 kHz are 62.5 µs, and 200 µs of pause: whole microseconds.
-    let slower = told(&path, &["hello", "ssi:25:400000:200", "words:50:0.2:12,13,gray,0"]);
+    let slower = host_replies(&path, &["hello", "ssi:25:400000:200", "words:50:0.2:12,13,gray,0"]);
     assert_eq!((&slower[2]["period_us"], &slower[2]["gaps"]), (&json!(263), &json!(0)), "{}", slower[2]);
 }
 
 /// Another family, its error bits, and a profile as the layout.
 #[test]
-fn the_encoder_is_as_its_layout_says() {
+fn the_encoder_follows_its_layout() {
     let bench = Bench::new();
     if python("bridge_host.py").is_none() {
         return;
     }
     let with = |arguments: &[&str], actions: &[&str]| {
         let port = Simulated::start(&bench, &[&["ssi", "--listen", "127.0.0.1:0"], arguments].concat());
-        told(&format!("tcp:{}", port.place), actions)
+        host_replies(&format!("tcp:{}", port.place), actions)
     };
     // AFS60: 18 bits of step 30000h, ERRSI on clock 20 permanently, ERRSYNC on 21 only in the first transfer.
     let actions = ["ssi:21:1000000:30", "word", "word"];
@@ -100,7 +100,7 @@ fn the_encoder_is_as_its_layout_says() {
 
 /// Our own host over both ways.
 #[test]
-fn our_own_host_reads_it() {
+fn the_programs_own_host_reads_the_encoder() {
     let bench = Bench::new();
     let port = Simulated::start(&bench, &["ssi", "--listen", "127.0.0.1:0", "--layout", "ahm36"]);
     let terminal = Simulated::start(&bench, &["ssi", "--pty", &bench.file("adapter"), "--layout", "ahm36"]);
@@ -116,7 +116,7 @@ fn our_own_host_reads_it() {
 }
 
 #[test]
-fn what_cannot_be_simulated_is_told() {
+fn impossible_simulations_are_refused() {
     let bench = Bench::new();
     bench.run(&["simulate", "ssi"]).fails(2, &["--listen"]);
     let cases: [(&[&str], i32, &[&str]); 8] = [

@@ -222,12 +222,12 @@ impl Ran {
     pub(crate) fn fails(&self, status: i32, words: &[&str]) {
         assert_eq!(self.status, Some(status), "{self:?}");
         assert_eq!(self.out, "", "{self:?}");
-        self.says(words);
+        self.assert_stderr(words);
     }
 
     /// Checks that one to four lines on stderr, besides warnings in the log, hold all these words.
     #[track_caller]
-    pub(crate) fn says(&self, words: &[&str]) {
+    pub(crate) fn assert_stderr(&self, words: &[&str]) {
         let lines: Vec<&str> = self.err.lines().filter(|line| !line.trim_start().starts_with("WARN")).collect();
         let shown: Vec<&&str> = lines.iter().filter(|line| !line.is_empty()).collect();
         assert!((1..=4).contains(&shown.len()), "{self:?}");

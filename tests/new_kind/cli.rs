@@ -40,7 +40,7 @@ fn run(home: &Path, arguments: &[&str]) -> (i32, String, String) {
 }
 
 #[test]
-fn it_is_identified_read_saved_compared_and_restored() {
+fn the_encoder_is_identified_read_saved_compared_and_restored() {
     let home = tempfile::tempdir().unwrap();
     let run = |arguments: &[&str]| run(home.path(), arguments);
     let done = |printed: &str| (0, printed.to_owned(), String::new());
@@ -67,7 +67,7 @@ fn it_is_identified_read_saved_compared_and_restored() {
 }
 
 #[test]
-fn what_it_does_not_have_is_wrong_usage() {
+fn unsupported_commands_are_usage_errors() {
     let home = tempfile::tempdir().unwrap();
     for arguments in [["status", "novo", "--link", "sim:"], ["identify", "novo", "--link", "modbus:plc"]] {
         let (status, printed, said) = run(home.path(), &arguments);
@@ -76,7 +76,7 @@ fn what_it_does_not_have_is_wrong_usage() {
 }
 
 #[test]
-fn it_is_simulated_for_other_programs() {
+fn the_encoder_can_be_simulated() {
     let home = tempfile::tempdir().unwrap();
     let mut served = start(home.path(), &["simulate", "novo", "--listen", "127.0.0.1:0", "--set", "serial=7000"]);
     let lines = BufReader::new(served.stdout.take().unwrap()).lines().map(Result::unwrap);

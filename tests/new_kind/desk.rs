@@ -61,7 +61,7 @@ impl Desk {
         self.studio.selected_model().unwrap()
     }
 
-    pub(crate) fn told(&self, least: Severity) -> Vec<&'static str> {
+    pub(crate) fn notice_ids(&self, least: Severity) -> Vec<&'static str> {
         let notices = self.studio.services.log.notices().filter(|notice| notice.severity >= least);
         notices.flat_map(|notice| notice.texts.iter().map(encoder_studio::app::Text::id)).collect()
     }
@@ -74,7 +74,7 @@ impl Desk {
             if condition(self) {
                 return;
             }
-            assert!(began.elapsed() < Duration::from_secs(20), "never: {what}; {:?}", self.told(Severity::Note));
+            assert!(began.elapsed() < Duration::from_secs(20), "never: {what}; {:?}", self.notice_ids(Severity::Note));
             std::thread::sleep(Duration::from_millis(1));
         }
     }

@@ -26,7 +26,7 @@ use super::novo::state::Encoder;
 const DELIVERED: Values = [0, 3, 0, 65535];
 
 #[test]
-fn it_is_offered_and_connects_from_the_dialog() {
+fn the_kind_is_offered_and_connects_from_the_dialog() {
     assert_eq!(program().tabs.page_words(Encoder::TAB), ["page.values", "page.backups"]);
     let mut desk = Desk::new();
     let actions = [
@@ -94,7 +94,7 @@ fn a_secret_parameter_is_neither_shown_nor_kept() {
 }
 
 #[test]
-fn it_is_polled_and_recorded() {
+fn positions_are_polled_and_recorded() {
     // A turn of 4096 steps per second.
     let mut desk = Desk::connected("?rpm=60");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
@@ -148,11 +148,11 @@ fn edits_are_undone_reviewed_written_and_restored() {
     desk.write();
     desk.until_ready();
     assert_eq!(desk.encoder().read().unwrap().values, DELIVERED);
-    assert_eq!(desk.told(Severity::Error), [""; 0]);
+    assert_eq!(desk.notice_ids(Severity::Error), [""; 0]);
 }
 
 #[test]
-fn what_is_not_taken_is_told_and_stays_edited() {
+fn a_value_that_is_not_accepted_is_reported_and_stays_edited() {
     // The second of two values, at 10h and 12h.
     let mut desk = Desk::connected("?stuck=0x12");
     desk.set(0, 100);
@@ -170,7 +170,7 @@ fn what_is_not_taken_is_told_and_stays_edited() {
 }
 
 #[test]
-fn a_profile_is_saved_opened_and_edited_and_goes_into_no_other_encoder_unasked() {
+fn a_profile_is_saved_and_restored_to_another_encoder_only_on_request() {
     let mut desk = Desk::connected("");
     let (id, path) = (desk.shown().id(), desk.path("novo.ron"));
     desk.command(DeviceCommand::AskSave);
@@ -201,11 +201,11 @@ fn a_profile_is_saved_opened_and_edited_and_goes_into_no_other_encoder_unasked()
 }
 
 #[test]
-fn a_payload_of_another_kind_is_refused_and_told() {
+fn a_payload_of_another_kind_is_refused_and_reported() {
     let mut desk = Desk::connected("");
     let id = desk.shown().id();
     desk.studio.act(StudioAction::device(id, Interbus::Check));
-    assert_eq!(desk.told(Severity::Error), ["session.wrong_kind"]);
+    assert_eq!(desk.notice_ids(Severity::Error), ["session.wrong_kind"]);
     desk.studio.act(StudioAction::OpenVirtual);
     desk.until_ready();
     desk.set(0, 1);

@@ -14,7 +14,7 @@ fn desk(echoes: bool, setting: Echo, more: &str) -> Desk {
 }
 
 #[test]
-fn echo_is_learned_and_stripped() {
+fn echo_is_detected_and_stripped() {
     for echoes in [true, false] {
         let told = if echoes { Echo::On } else { Echo::Off };
         for setting in [Echo::Unknown, told] {
@@ -33,7 +33,7 @@ fn echo_is_learned_and_stripped() {
 
 /// With a wrong setting, every answer is refused; no byte of it is shown as a value.
 #[test]
-fn a_wrong_setting_gives_errors_and_no_values() {
+fn a_wrong_echo_setting_yields_errors_and_no_values() {
     for (echoes, setting) in [(true, Echo::Off), (false, Echo::On)] {
         let mut desk = desk(echoes, setting, "");
         let (memory, worn) = (desk.memory(), desk.wear());
@@ -57,7 +57,7 @@ fn a_wrong_setting_gives_errors_and_no_values() {
 
 /// The replies to 47h and 67h equal their requests: the echo cannot be detected from them.
 #[test]
-fn nothing_is_learned_from_a_reply_that_is_its_request() {
+fn echo_is_not_detected_from_a_reply_equal_to_its_request() {
     for echoes in [true, false] {
         let mut desk = desk(echoes, Echo::Unknown, "");
         desk.run(HiperfaceJob::ConfigureForNow(LineSettings::FACTORY)).unwrap();
@@ -73,7 +73,7 @@ fn nothing_is_learned_from_a_reply_that_is_its_request() {
 
 /// A byte with the value of the access code makes a reply that equals its request.
 #[test]
-fn a_byte_that_has_the_value_of_its_code_is_read() {
+fn a_byte_equal_to_its_access_code_is_read() {
     for echoes in [true, false] {
         let mut desk = desk(echoes, Echo::Unknown, "");
         desk.change(Change::Store(vec![(FieldRange::new(0, 7, 1), vec![0x55])])).unwrap();

@@ -28,7 +28,7 @@ fn searched(desk: &mut Desk, options: FindOptions) -> Vec<FoundEncoder> {
 }
 
 #[test]
-fn one_encoder_at_odd_settings() {
+fn one_encoder_with_unusual_settings_is_found() {
     // 600 to 38400 baud, each parity, both time-outs, standard and bus
     for (byte, address) in
         [(0xE0, 0x5F), (0xC1, 0x41), (0xF2, 0x50), (0x63, 0x40), (0x84, 0x4A), (0xB5, 0x5E), (0xA6, 0x40)]
@@ -45,7 +45,7 @@ fn one_encoder_at_odd_settings() {
 }
 
 #[test]
-fn eight_encoders_on_a_bus() {
+fn eight_encoders_on_a_bus_are_found() {
     for settings in [0x64, 0x65] {
         let mut desk = Desk::new(&format!("encoders=8&address=0x52&settings={settings}"));
         let found = searched(&mut desk, FindOptions::default());
@@ -76,7 +76,7 @@ fn broadcast_is_the_last_resort_and_needs_consent() {
 }
 
 #[test]
-fn nobody_is_found_on_an_empty_line() {
+fn no_encoder_is_found_on_an_empty_line() {
     let mut desk = Desk::new("fault=silent-after:0");
     assert_eq!(searched(&mut desk, FindOptions::default()), []);
     assert_eq!(desk.tap().sent.len(), 7 * 3 * 32);
@@ -84,7 +84,7 @@ fn nobody_is_found_on_an_empty_line() {
 
 /// An encoder that is switched on while the search waits is found during its window at factory settings.
 #[test]
-fn a_power_cycle_opens_the_default_window() {
+fn a_power_cycle_opens_the_factory_settings_window() {
     for (settings, one_encoder) in [(0xB5, true), (0x80, true), (0xE6, false)] {
         let mut desk = Desk::new(&format!("settings={settings}&fault=silent-after:0"));
         let bus = desk.bus.clone();
@@ -118,7 +118,7 @@ fn through_a_device_server_each_encoder_is_found_once() {
 
 /// A cancelled search returns the encoders found so far, and the line format of the computer is restored.
 #[test]
-fn an_interrupted_search_tells_what_it_found() {
+fn an_interrupted_search_reports_its_findings() {
     // 40h is requested first, at the encoders' own settings.
     let mut desk = Desk::new("encoders=2&address=0x4A");
     for (questions, expected) in [(0, vec![]), (10, vec![]), (11, vec![0x4A]), (12, vec![0x4A, 0x4B])] {
@@ -135,7 +135,7 @@ fn an_interrupted_search_tells_what_it_found() {
 
 /// Each encoder is reported when it answers, before the end.
 #[test]
-fn encoders_are_told_as_they_answer() {
+fn encoders_are_reported_as_they_answer() {
     let mut desk = Desk::new("encoders=3&address=0x52");
     let mut told = Vec::new();
     let mut progress = 0;

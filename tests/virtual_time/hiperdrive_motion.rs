@@ -37,7 +37,7 @@ fn words(bench: &mut Bench) -> String {
 
 /// Reference 3: 0000, 0400, 0401, 0409, 0439, 0479, and for the next job 0439. A drive at rest has bits 4 and 5 clear.
 #[test]
-fn the_published_words_lead_to_a_target() {
+fn the_published_words_move_to_a_target() {
     let mut bench = Bench::new();
     bench.run(50);
     assert_eq!(words(&mut bench), "0000");
@@ -90,7 +90,7 @@ fn a_jog_runs_while_it_is_held() {
 
 /// However a hand trembles, a jog never turns into a job.
 #[test]
-fn a_jog_pressed_again_and_again() {
+fn repeated_jogs_never_start_a_job() {
     let mut bench = Bench::new();
     for times in 1..60 {
         bench.act(jog(if times % 3 == 0 { Direction::Clockwise } else { Direction::Counterclockwise }));
@@ -108,7 +108,7 @@ fn a_jog_pressed_again_and_again() {
 }
 
 #[test]
-fn a_job_waits_and_goes_on() {
+fn a_job_can_be_paused_and_resumed() {
     let mut bench = Bench::new();
     let job = bench.act(to(3 * TURN));
     bench.run(1000);
@@ -147,7 +147,7 @@ fn a_job_waits_and_goes_on() {
 
 /// A request that is refused here never reaches the drive.
 #[test]
-fn what_may_not_be_is_refused() {
+fn invalid_requests_are_refused() {
     let none = Effort { speed: Percent::NONE, ..FULL };
     let permit = |limits, locks: &[Lock]| Permit { limits, locks: locks.to_vec(), ..Permit::within(0, 0) };
     let free = || permit(Some((-TURN, TURN)), &[]);
@@ -211,7 +211,7 @@ fn a_fault_is_acknowledged_before_anything_moves() {
 
 /// An obstacle blocks the drive.
 #[test]
-fn a_blocked_drive_ends_the_act() {
+fn a_blocked_drive_ends_the_motion() {
     let mut bench = Bench::new();
     bench.load(SpindleLoad { wall_above: Some(f64::from(TURN)), ..SpindleLoad::default() });
     bench.act(to(2 * TURN));
@@ -221,7 +221,7 @@ fn a_blocked_drive_ends_the_act() {
 
 /// At the end of the range a run ends, and so does the act.
 #[test]
-fn a_run_ends_with_the_range() {
+fn a_run_ends_at_the_end_of_the_range() {
     let mut bench = Bench::new();
     bench.write(160, TURN.into());
     bench.act(MotionRequest::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
@@ -235,7 +235,7 @@ fn a_run_ends_with_the_range() {
 
 /// Switch S3 points to a drive: the commands on the bus have no effect.
 #[test]
-fn a_drive_that_does_not_follow_is_told() {
+fn an_unresponsive_drive_is_reported() {
     let mut bench = Bench::new();
     bench.station.turn_s3(bench.now, 1);
     bench.act(to(TURN));
@@ -248,7 +248,7 @@ fn a_drive_that_does_not_follow_is_told() {
 
 /// A drive that loses its supply for a moment restarts while the old words are still being sent.
 #[test]
-fn a_drive_that_starts_anew_does_not_take_up_its_job() {
+fn a_restarted_drive_does_not_resume_its_job() {
     for after in [100, 110, 500, 1500] {
         let mut bench = Bench::new();
         bench.act(to(5 * TURN));

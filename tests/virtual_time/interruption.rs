@@ -67,7 +67,7 @@ fn fields_of(profile: &HiperfaceProfile) -> Fields {
 }
 
 #[test]
-fn the_plan_is_the_shortest_there_is() {
+fn the_plan_is_the_shortest_possible() {
     let (mut desk, wanted) = scene();
     let prepared = desk.prepare(restore_of(&wanted)).unwrap();
     let items: Vec<String> = prepared.plan.ops.iter().map(|op| op.item().to_string()).collect();
@@ -111,7 +111,7 @@ impl Ending<'_> {
 
     /// Checks after a lost connection: the counted operations were carried out, the one in progress was or was not, and a
     /// field that remains unlocked is named.
-    fn assert_cut_off_and_told(&self, interrupted: &Interrupted) {
+    fn assert_cut_off_and_reported(&self, interrupted: &Interrupted) {
         let Ending { context, .. } = self;
         let ops = &self.prepared.plan.ops;
         let count = interrupted.done.ops;
@@ -194,7 +194,7 @@ fn disturbed(
 }
 
 #[test]
-fn cancelled_at_every_transaction() {
+fn cancelling_at_any_transaction_ends_cleanly() {
     let scene = scene();
     let mut steps = 0;
     while !disturbed(
@@ -210,7 +210,7 @@ fn cancelled_at_every_transaction() {
 
 /// If a code waits in the encoder's queue, the reply to a write announces it. The write is done nevertheless.
 #[test]
-fn cancelled_at_every_transaction_of_an_encoder_that_warns() {
+fn cancelling_at_any_transaction_with_warnings_ends_cleanly() {
     let scene = scene();
     for code in [StatusCode::TEMPERATURE, StatusCode::COUNTER_OVERFLOW] {
         for steps in 0.. {
@@ -230,7 +230,7 @@ fn cancelled_at_every_transaction_of_an_encoder_that_warns() {
 
 /// A warning during the restore: announced by the reply to a write, immediately followed by the cancellation.
 #[test]
-fn a_warning_in_the_middle_hides_no_write() {
+fn a_warning_during_a_write_hides_no_operation() {
     let (original, wanted) = scene();
     for store in 1..=7 {
         for steps in 0..40 {
@@ -259,7 +259,7 @@ fn a_warning_in_the_middle_hides_no_write() {
 }
 
 #[test]
-fn cut_off_at_every_transaction() {
+fn a_cut_at_any_transaction_is_reported() {
     let scene = scene();
     type Cut = fn(&mut Desk, usize);
     let cuts: [(&str, Cut); 4] = [
@@ -279,7 +279,7 @@ fn cut_off_at_every_transaction() {
                 cut(desk, if name == "silent" { at } else { sent + at });
             };
             if disturbed(&scene, format!("{name} after {at}"), disturb, |ending, told| {
-                ending.assert_cut_off_and_told(told)
+                ending.assert_cut_off_and_reported(told)
             }) {
                 assert!(at > 20, "{name}: the read-back counts as well: {at}");
                 break;
@@ -300,7 +300,7 @@ fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
 }
 
 #[test]
-fn power_lost_in_the_middle_of_every_store() {
+fn power_lost_in_any_store_is_reported() {
     let (original, wanted) = scene();
     // field 0: 3, field 1: 3, field 2: 1, field 4: 1
     for store in 1..=8 {

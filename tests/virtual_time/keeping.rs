@@ -15,7 +15,7 @@ fn store_byte(value: u8) -> Change {
 }
 
 #[test]
-fn without_a_before_image_nothing_is_written() {
+fn without_a_backup_nothing_is_written() {
     for in_the_way in ["data", "data/backups", "data/backups/hiperface", "data/backups/hiperface/GB0450179"] {
         let mut desk = Desk::new("");
         let path = desk.folder.path().join(in_the_way);
@@ -36,7 +36,7 @@ fn without_a_before_image_nothing_is_written() {
 /// Issue 22.4: then the previous write cycles are not known. Only a forced write begins, and the missing records are
 /// reported.
 #[test]
-fn a_broken_logbook_stops_a_write_that_is_not_forced() {
+fn a_broken_logbook_stops_an_unforced_write() {
     for garbage in [true, false] {
         let mut desk = Desk::new("");
         let path = Store::at(desk.folder.path()).logbook_path();
@@ -61,7 +61,7 @@ fn a_broken_logbook_stops_a_write_that_is_not_forced() {
 }
 
 #[test]
-fn a_backup_is_a_profile_of_what_was_there() {
+fn a_backup_is_a_profile_of_the_previous_state() {
     let mut desk = Desk::new("");
     let before = desk.memory();
     let done = desk.change(store_byte(0xEE)).unwrap();
@@ -74,7 +74,7 @@ fn a_backup_is_a_profile_of_what_was_there() {
 
 /// No file contains an access code: the codes used here do not occur in any form.
 #[test]
-fn no_access_code_is_kept() {
+fn no_access_code_is_stored() {
     let mut desk = Desk::new("codes=0:9D,2:66");
     desk.know_code(0, 0x9D);
     desk.know_code(2, 0x66);

@@ -56,7 +56,7 @@ impl ByteLink for Slow {
 }
 
 #[test]
-fn a_late_reply_is_never_taken_for_the_next() {
+fn a_late_reply_is_never_mistaken_for_the_next() {
     for delay in [0, 60, 110, 150, 300, 700] {
         // One turn per second: a position that is one request old is outside the range that the shaft has passed since.
         let bus = Arc::new(Mutex::new(bus("rpm=60")));

@@ -41,7 +41,7 @@ fn robbed(query: &str, change: &Change, setup: impl Fn(&mut Desk), judge: impl F
 }
 
 #[test]
-fn the_counter_goes_up_by_exactly_one() {
+fn the_counter_increases_by_exactly_one() {
     for from in [0, 41, 0x00FF_FFFE] {
         let setup = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().set_counter(from);
         robbed("", &Change::IncrementCounter, setup, |desk, context| {
@@ -51,7 +51,7 @@ fn the_counter_goes_up_by_exactly_one() {
 }
 
 #[test]
-fn the_counter_is_cleared() {
+fn the_counter_is_cleared_despite_lost_replies() {
     let setup = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().set_counter(77);
     robbed("", &Change::ClearCounter, setup, |desk, context| {
         assert_eq!(desk.bus().encoders()[0].counter(), 0, "{context}");
@@ -59,7 +59,7 @@ fn the_counter_is_cleared() {
 }
 
 #[test]
-fn an_access_code_is_changed_and_known() {
+fn a_changed_access_code_is_used_afterwards() {
     let zero = CodeNumber::ZERO;
     let change = Change::ChangeCode { number: zero, new: AccessCode::new(0xC3) };
     robbed(
@@ -75,7 +75,7 @@ fn an_access_code_is_changed_and_known() {
 }
 
 #[test]
-fn the_address_is_changed_and_followed() {
+fn a_changed_address_is_followed() {
     let change = Change::SetAddress(DeviceAddress::new(0x4B).unwrap());
     robbed(
         "",
@@ -90,7 +90,7 @@ fn the_address_is_changed_and_followed() {
 }
 
 #[test]
-fn the_position_is_set() {
+fn the_position_is_set_despite_lost_replies() {
     let change = Change::SetPosition { wanted: 4096, exact: true, synchronise: false, kit: false };
     robbed(
         "",
@@ -104,7 +104,7 @@ fn the_position_is_set() {
 
 /// A position that equals the previous one does not prove that the tracks were aligned, so it must not be reported.
 #[test]
-fn synchronising_in_place_is_not_taken_for_done() {
+fn synchronising_in_place_is_not_assumed_done() {
     let mut desk = Desk::new("model=sel37");
     let wanted = desk.bus().encoders()[0].position(desk.clock.now());
     let prepared = desk.prepare(Change::SetPosition { wanted, exact: true, synchronise: true, kit: true }).unwrap();
@@ -120,7 +120,7 @@ fn synchronising_in_place_is_not_taken_for_done() {
 
 /// After a failed job, the next one has its own five tries.
 #[test]
-fn patience_begins_anew_with_each_job() {
+fn each_job_has_its_full_number_of_tries() {
     let mut desk = Desk::new("");
     desk.tap().deaf_from = Some(0);
     desk.run(HiperfaceJob::Identify).unwrap_err();
@@ -133,7 +133,7 @@ fn patience_begins_anew_with_each_job() {
 }
 
 #[test]
-fn a_silent_encoder_is_given_up_within_ten_seconds() {
+fn a_silent_encoder_times_out_within_ten_seconds() {
     for settings in ["E4", "E0", "E6"] {
         let format = encoder_studio::devices::hiperface::protocol::LineSettings::from_byte(
             u8::from_str_radix(settings, 16).unwrap(),
@@ -152,7 +152,7 @@ fn a_silent_encoder_is_given_up_within_ten_seconds() {
 /// Issue 22.10: 50h removes a code from the encoder: whichever reply is lost, each code is returned or counted as possibly
 /// lost.
 #[test]
-fn no_status_code_is_lost_without_a_word() {
+fn lost_status_codes_are_reported() {
     let queue = [StatusCode::TEMPERATURE, StatusCode::TOO_FAST, StatusCode::COUNTER_OVERFLOW];
     let mut counted = 0;
     for lost in 0..8 {
@@ -179,7 +179,7 @@ fn no_status_code_is_lost_without_a_word() {
 
 /// Issue 22.10: a code may be lost only if 50h was sent.
 #[test]
-fn no_code_is_said_to_be_lost_that_was_not_asked_for() {
+fn unrequested_codes_are_not_reported_as_lost() {
     let mut desk = Desk::new("fault=silent-after:0");
     let mut told = Vec::new();
     let end = desk.session.run(JobId::default(), HiperfaceJob::Status, &mut |event| told.push(format!("{event:?}")));

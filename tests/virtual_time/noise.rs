@@ -19,24 +19,24 @@ fn noisy_desk(seed: u8, noise: &str) -> Desk {
         let bytes = bytes(seed.wrapping_add(number), status.size().bytes());
         desk.change(Change::Store(vec![(FieldRange::new(number, 0, bytes.len()), bytes)])).unwrap();
     }
-    mend(&desk, noise);
+    set_noise(&desk, noise);
     let mut noisy = desk.copied();
     noisy.know_code(2, 0x66);
     noisy
 }
 
-fn mend(desk: &Desk, noise: &str) {
+fn set_noise(desk: &Desk, noise: &str) {
     desk.bus().set_faults(&noise.parse::<Faults>().unwrap());
 }
 
 /// Returns whether the bytes are a valid 42h reply with this position.
-fn says_position(reply: &[u8], position: u32) -> bool {
+fn is_position_reply(reply: &[u8], position: u32) -> bool {
     let [a, b, c, d] = position.to_be_bytes();
     reply.len() == 7 && reply[0] == 0x40 && reply[1] & 0x7F == 0x42 && reply[2..6] == [a, b, c, d] && xor(reply) == 0
 }
 
 #[test]
-fn a_position_is_right_or_an_error_or_its_frame_was_perfect() {
+fn a_position_is_correct_or_an_error_or_its_frame_was_valid() {
     let (mut read, mut failed, mut wrong) = (0, 0, 0);
     for noise in NOISE {
         for seed in 0..8 {
@@ -54,7 +54,7 @@ fn a_position_is_right_or_an_error_or_its_frame_was_perfect() {
                             let replies = exchanges(&trace);
                             let shown =
                                 replies.iter().filter(|(request, _)| request == "40 42 02").flat_map(|(_, r)| r);
-                            let proof = shown.filter(|reply| says_position(reply, reading.raw)).count();
+                            let proof = shown.filter(|reply| is_position_reply(reply, reading.raw)).count();
                             assert!(proof > 0, "{noise}, seed {seed}: {:08X} from nowhere: {trace:?}", reading.raw);
                         }
                     }
@@ -72,14 +72,14 @@ fn a_position_is_right_or_an_error_or_its_frame_was_perfect() {
 }
 
 /// Returns the byte of the field in a valid 4Ah reply.
-fn says_byte(reply: &[u8], field: u8, at: usize) -> Option<u8> {
+fn byte_of_reply(reply: &[u8], field: u8, at: usize) -> Option<u8> {
     let [0x40, command, f, start, count, data @ .., _] = reply else { return None };
     let right = command & 0x7F == 0x4A && *f == field && data.len() == usize::from(*count) && xor(reply) == 0;
     right.then(|| data.get(at.checked_sub(usize::from(*start))?).copied())?
 }
 
 #[test]
-fn a_field_is_right_or_an_error_or_its_frames_were_perfect() {
+fn a_field_is_correct_or_an_error_or_its_frames_were_valid() {
     let (mut read, mut failed, mut wrong) = (0, 0, 0);
     for noise in NOISE {
         for seed in 10..18 {
@@ -103,7 +103,8 @@ fn a_field_is_right_or_an_error_or_its_frames_were_perfect() {
                             let exchanges = exchanges(&trace);
                             for (at, byte) in got.iter().enumerate() {
                                 let mut replies = exchanges.iter().flat_map(|(_, replies)| replies);
-                                let proof = replies.any(|reply| says_byte(reply, number, start + at) == Some(*byte));
+                                let proof =
+                                    replies.any(|reply| byte_of_reply(reply, number, start + at) == Some(*byte));
                                 assert!(proof, "{noise}, seed {seed}: byte {at} of field {field} from nowhere");
                             }
                         }
@@ -129,7 +130,7 @@ fn assert_same(got: &HiperfaceProfile, truth: &HiperfaceProfile, context: &str) 
 }
 
 #[test]
-fn a_save_is_right_or_an_error() {
+fn a_save_is_correct_or_an_error() {
     let (mut saved, mut failed) = (0, 0);
     // Little noise is the harder case: the first damage may be an undetectable one.
     for noise in ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garbage:0.02", "flip:0.005", "drop:0.005"] {
@@ -138,7 +139,7 @@ fn a_save_is_right_or_an_error() {
             let truth = desk.save().unwrap();
             let mut desk = desk.copied();
             desk.know_code(2, 0x66);
-            mend(&desk, noise);
+            set_noise(&desk, noise);
             match desk.save() {
                 Ok(profile) => {
                     saved += 1;
@@ -154,7 +155,7 @@ fn a_save_is_right_or_an_error() {
 }
 
 #[test]
-fn a_restore_ends_verified_or_described_and_a_second_one_completes_it() {
+fn an_interrupted_restore_is_described_and_completed_by_another() {
     let (mut at_once, mut described, mut before_any) = (0, 0, 0);
     for noise in NOISE {
         for seed in 0..12 {
@@ -167,7 +168,7 @@ fn a_restore_ends_verified_or_described_and_a_second_one_completes_it() {
                 bytes[middle..middle + 4].copy_from_slice(&[seed, 2, 1, 0xA7]);
             }
             let (before, worn) = (desk.memory(), desk.wear());
-            mend(&desk, noise);
+            set_noise(&desk, noise);
             let context = format!("{noise}, seed {seed}");
             match desk.restore(&wanted) {
                 Ok(done) => {
@@ -190,7 +191,7 @@ fn a_restore_ends_verified_or_described_and_a_second_one_completes_it() {
                     assert_eq!(desk.wear(), worn, "{context}: {error}");
                 }
             }
-            mend(&desk, "");
+            set_noise(&desk, "");
             desk.restore(&wanted).unwrap();
             for (field, (status, bytes)) in wanted.fields.iter().zip(desk.memory()) {
                 assert_eq!((field.status.byte(), field.bytes.as_ref()), (status, Some(&bytes)), "{context}");

@@ -13,7 +13,7 @@ fn store(field: u8, start: usize, bytes: Vec<u8>) -> Change {
 }
 
 #[test]
-fn a_base_that_changed_is_not_written_over() {
+fn a_changed_base_is_not_overwritten() {
     let create = Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xC8) };
     let set = Change::SetPosition { wanted: 0, exact: true, synchronise: false, kit: false };
     let cases: [(Change, Change, &str); 7] = [
@@ -45,7 +45,7 @@ fn a_base_that_changed_is_not_written_over() {
 
 /// Two new encoders have the same memory: the serial number distinguishes them.
 #[test]
-fn a_plan_is_for_one_encoder() {
+fn a_plan_applies_to_one_encoder() {
     let mut desk = Desk::new("serial=A1");
     let prepared = desk.prepare(store(0, 0, vec![1, 2])).unwrap();
     *desk.bus() = crate::support::bus("serial=B2");
@@ -95,7 +95,7 @@ fn an_empty_plan_sends_nothing() {
 
 /// Every byte of every 4Bh differs from the previous one, and nothing but the plan's places is written.
 #[test]
-fn only_what_differs_is_written_and_every_write_is_counted() {
+fn only_differences_are_written_and_every_write_is_counted() {
     for seed in 0..20_u8 {
         let mut desk = Desk::new("");
         desk.change(Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xCF) }).unwrap();
@@ -144,7 +144,7 @@ fn another_encoders_profile_is_refused_before_its_fields_are_read() {
 }
 
 #[test]
-fn protected_fields_and_other_limits_are_refused_without_a_write() {
+fn writes_to_protected_or_out_of_range_fields_are_refused() {
     let mut desk = Desk::new("");
     desk.change(Change::LockField { number: 0, lock: true }).unwrap();
     let size = encoder_studio::devices::hiperface::protocol::FieldSize::from_bytes(16).unwrap();
@@ -170,7 +170,7 @@ fn protected_fields_and_other_limits_are_refused_without_a_write() {
 
 /// Edits of several fields: one plan, one backup, each field read once, and no byte sent that is already stored.
 #[test]
-fn several_edits_are_written_in_one_go() {
+fn several_edits_are_written_in_one_plan() {
     let mut desk = Desk::new("");
     desk.change(Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xE8) }).unwrap();
     let before = desk.memory();

@@ -48,7 +48,7 @@ fn position(sample: &Sample) -> Option<Option<u64>> {
 }
 
 #[test]
-fn samples_come_without_a_job_and_jobs_in_between() {
+fn samples_arrive_without_a_job_and_jobs_run_in_between() {
     let mut bench = in_virtual_time("");
     assert_eq!(bench.worker.polling(), None);
     bench.worker.poll(BACK_TO_BACK);
@@ -68,7 +68,7 @@ fn samples_come_without_a_job_and_jobs_in_between() {
 }
 
 #[test]
-fn another_wish_counts_at_once() {
+fn a_new_interval_applies_immediately() {
     let bench = in_virtual_time("");
     bench.worker.poll(SELDOM);
     samples(&bench.worker, 1);
@@ -99,7 +99,7 @@ fn a_stop_ends_polling() {
 }
 
 #[test]
-fn polling_that_fails_ends_and_is_told_once() {
+fn failed_polling_ends_and_is_reported_once() {
     let mut bench = in_virtual_time("fault=silent-after:5");
     bench.worker.poll(BACK_TO_BACK);
     let told = bench.worker.events().recv_timeout(LONG).unwrap();
@@ -116,7 +116,7 @@ fn polling_that_fails_ends_and_is_told_once() {
 
 /// A job does not wait for five tries with a silent encoder, and polling continues after it.
 #[test]
-fn a_job_cuts_the_repetitions_of_a_sample_short() {
+fn a_job_interrupts_the_retries_of_a_sample() {
     let mut bench = in_real_time("fault=silent-after:0");
     bench.worker.poll(SELDOM);
     let started = Instant::now();
@@ -134,7 +134,7 @@ fn a_job_cuts_the_repetitions_of_a_sample_short() {
 
 /// The report that there is no position is a sample too; another refusal is not.
 #[test]
-fn an_encoder_without_a_position_is_polled_on() {
+fn polling_continues_without_a_position() {
     let mut desk = Desk::new("rpm=9000");
     for _ in 0..3 {
         let Sample::NoPosition { codes, .. } = desk.session.sample().unwrap() else { panic!("too fast") };

@@ -28,7 +28,7 @@ fn a_moving_shaft_is_refused_when_planning_and_when_writing() {
 }
 
 #[test]
-fn the_five_lowest_bits_stay_unless_wished_otherwise() {
+fn the_five_lowest_bits_are_kept_by_default() {
     // SKM36: 128 · 32 · 4096 positions; it is at 000E0531h, phase 17.
     for (wanted, expected) in [(0, 17), (1, 17), (32, 17), (34, 49), (0x1234, 0x1231), (0x00FF_FFFF, 0x00FF_FFF1)] {
         let mut desk = Desk::new("");
@@ -42,7 +42,7 @@ fn the_five_lowest_bits_stay_unless_wished_otherwise() {
 }
 
 #[test]
-fn the_way_back_is_kept() {
+fn the_previous_position_is_recorded() {
     let mut desk = Desk::new("");
     let done = desk.change(set(0, true)).unwrap();
     assert_eq!(backup(&done.backup.unwrap()).recorded.position, Some(0x000E_0531));
@@ -61,7 +61,7 @@ fn the_way_back_is_kept() {
 
 /// A shaft at rest varies by a step. At zero that is the complete range.
 #[test]
-fn zero_may_dither() {
+fn setting_zero_may_dither() {
     for tenths in 1..=600 {
         let mut desk = Desk::new("");
         let prepared = desk.prepare(set(0, true)).unwrap();
@@ -75,7 +75,7 @@ fn zero_may_dither() {
 }
 
 #[test]
-fn only_a_kit_is_synchronised() {
+fn only_a_kit_encoder_is_synchronised() {
     let synchronise = |kit| Change::SetPosition { wanted: 0x40, exact: true, synchronise: true, kit };
     for kit in [false, true] {
         let error = Desk::new("").prepare(synchronise(kit)).unwrap_err();
@@ -91,7 +91,7 @@ fn only_a_kit_is_synchronised() {
 
 /// The time of a position is that at which the encoder sampled it.
 #[test]
-fn a_position_comes_with_its_moment() {
+fn a_position_has_its_sampling_time() {
     for query in ["rpm=3000", "rpm=-1200&fault=delay:60", "rpm=500&fault=delay:33&echo=on", "rpm=3000&pace=worst"] {
         let mut desk = Desk::new(query);
         for _ in 0..50 {
@@ -134,7 +134,7 @@ fn polling_is_as_fast_as_the_protocol_allows() {
 /// Bytes that arrived between requests are no part of the next reply: they neither count as a try nor lower the line's
 /// quality.
 #[test]
-fn bytes_that_came_in_a_pause_are_not_taken_for_a_reply() {
+fn bytes_received_in_a_pause_are_not_part_of_a_reply() {
     let mut desk = Desk::new("");
     desk.run(HiperfaceJob::Position(None)).unwrap();
     let now = desk.clock.now();

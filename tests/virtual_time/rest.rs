@@ -16,7 +16,7 @@ fn rest(desk: &mut Desk) -> Result<Rest, JobError> {
 
 /// Three quarters of a period: counts 409 and 511, of which 511.5 are 0 V and 1023 are 5 V.
 #[test]
-fn both_channels_are_read_between_two_looks_at_the_position() {
+fn both_channels_are_read_between_two_position_readings() {
     let mut desk = Desk::new("position=3224");
     let Rest { raw, valid, signals } = rest(&mut desk).unwrap();
     assert_eq!((raw, valid), (3224, true));
@@ -28,7 +28,7 @@ fn both_channels_are_read_between_two_looks_at_the_position() {
 }
 
 #[test]
-fn a_shaft_that_moves_or_has_no_position_is_refused() {
+fn a_moving_shaft_or_a_missing_position_is_refused() {
     for rpm in ["60", "-0.5"] {
         let error = rest(&mut Desk::new(&format!("rpm={rpm}"))).unwrap_err();
         assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error:?}");
@@ -39,7 +39,7 @@ fn a_shaft_that_moves_or_has_no_position_is_refused() {
 
 /// Slow enough to seem at rest for two tenths of a second, but not during the complete reading.
 #[test]
-fn a_shaft_that_creeps_is_found_out_at_the_end() {
+fn a_creeping_shaft_is_detected_at_the_end() {
     let mut desk = Desk::new("position=100");
     let now = desk.clock.now();
     // 6.7 steps of 1/4096 turn per second: one while the shaft is watched, two more by the end.

@@ -43,7 +43,7 @@ fn a_restart_with_any_stored_settings_is_followed() {
 }
 
 #[test]
-fn stored_settings_are_in_force_after_the_restart_and_not_before() {
+fn stored_settings_apply_after_the_restart_and_not_before() {
     for byte in [0xE5, 0xC6, 0xB2] {
         let settings = LineSettings::from_byte(byte);
         let mut desk = Desk::new("");
@@ -58,7 +58,7 @@ fn stored_settings_are_in_force_after_the_restart_and_not_before() {
 }
 
 #[test]
-fn settings_for_now_are_in_force_at_once_and_lost_with_the_restart() {
+fn temporary_settings_apply_immediately_until_the_restart() {
     for byte in [0xE6, 0xC0, 0xF5, 0xA6] {
         let settings = LineSettings::from_byte(byte);
         let mut desk = Desk::new("");
@@ -74,7 +74,7 @@ fn settings_for_now_are_in_force_at_once_and_lost_with_the_restart() {
 
 /// If a code waits, the replies to 55h and 67h announce it, and the encoder already has the new settings.
 #[test]
-fn an_encoder_that_warns_while_it_moves_is_followed() {
+fn an_encoder_that_warns_while_changing_settings_is_followed() {
     let warn = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().report(StatusCode::TEMPERATURE);
     for at in 0..12 {
         let mut desk = Desk::new("");
@@ -109,7 +109,7 @@ fn warn_at(desk: &mut Desk, frame: usize) {
 }
 
 #[test]
-fn codes_of_the_start_are_all_read() {
+fn all_codes_of_the_start_are_read() {
     let mut desk = Desk::new("temperature=130");
     // One from before the restart, one from the start itself: none is lost.
     assert_eq!(reset(&mut desk), [StatusCode::TEMPERATURE; 2]);
@@ -124,7 +124,7 @@ fn codes_of_the_start_are_all_read() {
 
 /// Two encoders at one address can never be distinguished again.
 #[test]
-fn an_address_that_somebody_has_is_refused() {
+fn an_address_in_use_is_refused() {
     let mut desk = Desk::new("encoders=3");
     let refused = desk.prepare(Change::SetAddress(DeviceAddress::new(0x42).unwrap()));
     assert!(refused.is_err(), "{refused:?}");

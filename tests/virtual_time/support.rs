@@ -59,7 +59,7 @@ impl Tap {
         self.unplugged || self.lost_from.is_some_and(|from| self.sent.len() > from)
     }
 
-    fn hears_nothing(&self) -> bool {
+    fn is_reply_lost(&self) -> bool {
         let Some(last) = self.sent.len().checked_sub(1) else { return false };
         self.mute_from.is_some_and(|from| last >= from)
             || self.swallow_reply == Some(last)
@@ -126,7 +126,7 @@ impl ByteLink for TestLink {
             {
                 *byte ^= 0x10;
             }
-            if heard.is_empty() || !tap.hears_nothing() {
+            if heard.is_empty() || !tap.is_reply_lost() {
                 into.append(&mut heard);
                 return Ok(());
             }

@@ -17,7 +17,7 @@ fn survey(desk: &mut Desk) -> Survey {
 }
 
 #[test]
-fn a_survey_shows_what_is_there_and_reads_each_byte_once() {
+fn a_survey_is_complete_and_reads_each_byte_once() {
     let mut desk = Desk::new("");
     let seen = survey(&mut desk);
     assert_eq!(seen.identity.serial.serial_number, "GB0450179");
@@ -36,7 +36,7 @@ fn a_survey_shows_what_is_there_and_reads_each_byte_once() {
 }
 
 #[test]
-fn what_an_encoder_cannot_tell_at_the_moment_is_no_error() {
+fn a_temporarily_unavailable_value_is_no_error() {
     let mut desk = Desk::new("rpm=9000");
     let seen = survey(&mut desk);
     assert!(matches!(&seen.position, Some(Sample::NoPosition { codes, .. }) if codes.contains(&StatusCode::TOO_FAST)));
@@ -44,7 +44,7 @@ fn what_an_encoder_cannot_tell_at_the_moment_is_no_error() {
 }
 
 #[test]
-fn a_code_is_noted_without_a_byte_on_the_line_or_in_words() {
+fn a_noted_access_code_is_neither_sent_nor_printed() {
     let mut desk = Desk::new("codes=0:66");
     let number = CodeNumber::ZERO;
     let locked = survey(&mut desk);
@@ -113,7 +113,7 @@ fn one_unreadable_field_leaves_the_rest_usable() {
 
 /// An encoder that no longer answers is not an encoder with an unreadable field.
 #[test]
-fn an_encoder_that_falls_silent_ends_the_survey() {
+fn a_silent_encoder_ends_the_survey() {
     let mut desk = two_fields();
     let sent = desk.tap().sent.len();
     survey(&mut desk);
@@ -141,7 +141,7 @@ fn noted(desk: &Desk) -> Vec<String> {
 /// Issue 22.10: 50h removes a code from the encoder, so that it is in the logbook before it is shown: with every way to
 /// read it, and even if the job that read it fails.
 #[test]
-fn a_status_code_that_was_read_is_in_the_logbook() {
+fn a_status_code_that_was_read_is_logged() {
     let mut desk = Desk::new("");
     let report = |desk: &Desk, codes: &[StatusCode]| {
         codes.iter().for_each(|code| desk.bus().encoder_mut(0).unwrap().report(*code))

@@ -77,7 +77,7 @@ pub(crate) fn identify() -> HiperfaceJob {
 }
 
 #[test]
-fn busy_is_refused_and_a_stop_ends_a_search_at_once() {
+fn a_second_job_is_refused_and_a_stop_ends_a_search_immediately() {
     let mut bench = in_real_time("settings=0xE0&address=0x5F");
     let id = bench.worker.submit(search()).unwrap();
     assert!(bench.worker.is_busy());
@@ -112,7 +112,7 @@ fn each_job_starts_once_and_ends_once() {
 
 /// 672 steps of progress without a reader: the job ends nevertheless, and its end is available when it is read.
 #[test]
-fn nobody_reading_stops_nothing() {
+fn a_job_ends_without_a_reader() {
     let mut bench = in_virtual_time("settings=0xE0");
     let id = bench.worker.submit(search()).unwrap();
     let started = Instant::now();
@@ -138,7 +138,7 @@ fn nobody_reading_stops_nothing() {
 }
 
 #[test]
-fn a_dropped_worker_ends_its_thread_with_a_job_or_without() {
+fn a_dropped_worker_ends_its_thread_even_during_a_job() {
     for busy in [true, false] {
         let mut bench = in_real_time("settings=0xE0");
         if busy {
@@ -158,7 +158,7 @@ fn a_dropped_worker_ends_its_thread_with_a_job_or_without() {
 }
 
 #[test]
-fn a_closed_worker_has_ended_with_a_job_or_without() {
+fn a_closed_worker_has_ended_even_during_a_job() {
     for busy in [true, false] {
         let mut bench = in_real_time("settings=0xE0");
         if busy {
@@ -171,7 +171,7 @@ fn a_closed_worker_has_ended_with_a_job_or_without() {
 }
 
 #[test]
-fn a_worker_that_was_let_go_still_tells_how_its_job_ended() {
+fn an_ending_worker_still_reports_the_end_of_its_job() {
     let mut bench = in_real_time("settings=0xE0");
     let id = bench.worker.submit(search()).unwrap();
     let ending = bench.worker.end();
@@ -182,7 +182,7 @@ fn a_worker_that_was_let_go_still_tells_how_its_job_ended() {
 
 /// A stop from any thread reaches the running job, and none that is submitted later.
 #[test]
-fn a_stop_is_for_one_job() {
+fn a_stop_applies_to_one_job() {
     let mut bench = in_virtual_time("");
     let stopper = bench.worker.stopper();
     stopper.stop();
@@ -199,7 +199,7 @@ fn a_stop_is_for_one_job() {
 
 /// No job is accepted while events are unread.
 #[test]
-fn as_long_as_events_wait_there_is_no_new_job() {
+fn unread_events_prevent_a_new_job() {
     let mut bench = in_virtual_time("");
     let mut jobs = 0;
     let refused = loop {
@@ -222,7 +222,7 @@ fn as_long_as_events_wait_there_is_no_new_job() {
 }
 
 #[test]
-fn a_link_that_dies_while_idle_is_told_once() {
+fn a_link_lost_while_idle_is_reported_once() {
     let mut bench = in_virtual_time("");
     bench.worker.submit(identify()).unwrap();
     until_end(&bench.worker);

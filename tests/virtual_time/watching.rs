@@ -46,7 +46,7 @@ fn course(worker: &Worker<Hiperface>, wished: &[Watch], count: usize) -> Vec<Opt
 }
 
 #[test]
-fn watched_values_stand_between_positions_each_in_its_turn() {
+fn watched_values_alternate_with_positions() {
     let bench = in_virtual_time("temperature=-10&position=0x18");
     let temperature = Some((TEMPERATURE, Some(-10)));
     assert_eq!(course(&bench.worker, &[], 4), [None; 4]);
@@ -85,7 +85,7 @@ fn nothing_is_watched_without_polling() {
 }
 
 #[test]
-fn a_channel_that_is_missing_is_told_once_and_polling_goes_on() {
+fn a_missing_channel_is_reported_once_and_polling_continues() {
     let bench = in_virtual_time("");
     let temperature = Some((TEMPERATURE, Some(42)));
     assert_eq!(
@@ -103,7 +103,7 @@ fn a_channel_that_is_missing_is_told_once_and_polling_goes_on() {
 }
 
 #[test]
-fn what_a_reading_says_is_told_with_it() {
+fn a_watched_reading_includes_its_status_codes() {
     let mut desk = Desk::new("");
     let Watched::Refused(Sample::Watched(refusal)) = desk.session.watch_value(&MISSING).unwrap() else { panic!() };
     assert!(matches!(&refusal.value, Err(Error::Rejected { codes, .. }) if codes == &[StatusCode::ARGUMENT]));
@@ -123,7 +123,7 @@ fn what_a_reading_says_is_told_with_it() {
 }
 
 #[test]
-fn jobs_come_in_between_and_watching_goes_on() {
+fn watching_continues_around_jobs() {
     let mut bench = in_virtual_time("");
     bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
     bench.worker.poll(BACK_TO_BACK);
@@ -139,7 +139,7 @@ fn jobs_come_in_between_and_watching_goes_on() {
 }
 
 #[test]
-fn a_line_that_is_lost_ends_polling_and_is_told_once() {
+fn a_lost_line_ends_polling_and_is_reported_once() {
     // Five replies: the type label, position, temperature, position, temperature.
     let bench = in_virtual_time("fault=silent-after:5");
     bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
@@ -162,7 +162,7 @@ fn a_line_that_is_lost_ends_polling_and_is_told_once() {
 }
 
 #[test]
-fn a_wish_of_seldom_values_waits_for_nobody() {
+fn rarely_watched_values_do_not_delay_others() {
     let bench = in_virtual_time("");
     bench.worker.poll(BACK_TO_BACK);
     bench.worker.watch(vec![(TEMPERATURE, Duration::from_secs(3600))]);

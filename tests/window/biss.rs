@@ -16,7 +16,7 @@ use crate::screen::Screen;
 use crate::support::{Desk, asks_for_drive};
 
 #[test]
-fn the_virtual_encoder_is_read_over_either_way() {
+fn the_virtual_encoder_is_read_over_either_interface() {
     for (link, has_bits) in [("sim:", false), ("sim:?bridge=on", true)] {
         let desk = open(link);
         let encoder = encoder(&desk);
@@ -28,14 +28,14 @@ fn the_virtual_encoder_is_read_over_either_way() {
         let reading = encoder.record.last().unwrap();
         assert_eq!((reading.turns, reading.steps, reading.error.is_some()), (0x1234, 0x18000, has_bits), "{link}");
         assert_eq!(encoder.status.as_ref().unwrap().celsius, Some(30.0));
-        assert!(desk.told(Severity::Warning).is_empty(), "{link}");
+        assert!(desk.notice_ids(Severity::Warning).is_empty(), "{link}");
         assert_eq!(desk.studio.settings.links(crate::tabs::BISS), [link]);
         assert!(desk.studio.settings.links(crate::tabs::HIPERFACE).is_empty());
     }
 }
 
 #[test]
-fn a_link_that_only_one_kind_can_open_opens_in_its_tab() {
+fn a_link_of_only_one_kind_opens_in_its_tab() {
     let cases = [
         (crate::tabs::HIPERFACE, "sim:?bridge=on", crate::tabs::BISS),
         (crate::tabs::HIPERFACE, "serial:/dev/nowhere?order=low-first", crate::tabs::BISS),
@@ -83,7 +83,7 @@ fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
 
 /// Over the configuration pin a position has no status bits: the registers are read.
 #[test]
-fn a_position_is_marked_over_either_way() {
+fn a_position_is_marked_over_either_interface() {
     for link in ["sim:", "sim:?bridge=on"] {
         assert_eq!(encoder(&open(link)).mark(), None, "{link}");
     }
@@ -103,7 +103,7 @@ fn every_frame_is_shown_with_its_meaning() {
 }
 
 #[test]
-fn a_bank_that_comes_in_sight_is_read_once() {
+fn a_bank_is_read_once_when_it_becomes_visible() {
     let mut desk = open("sim:?bridge=on");
     let bank = encoder(&desk).table.position(Some(0x24)).unwrap();
     assert!(encoder(&desk).wants(&encoder(&desk).table.groups()[bank]));
@@ -118,7 +118,7 @@ fn a_bank_that_comes_in_sight_is_read_once() {
 }
 
 #[test]
-fn a_turning_shaft_keeps_its_data_to_itself() {
+fn data_areas_are_not_read_while_the_shaft_turns() {
     let mut desk = open("sim:?bridge=on&rpm=300");
     ask(&mut desk, Biss::ReadArea(0x24));
     desk.until("it is refused", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
@@ -133,7 +133,7 @@ fn a_turning_shaft_keeps_its_data_to_itself() {
 }
 
 #[test]
-fn a_register_is_watched_beside_the_position() {
+fn a_register_is_watched_with_the_position() {
     let mut desk = open("sim:?bridge=on&rpm=60");
     let description = encoder(&desk).description.clone().unwrap();
     let temperature = description.with_role(Role::Temperature).unwrap().clone();
@@ -153,7 +153,7 @@ fn a_register_is_watched_beside_the_position() {
 }
 
 #[test]
-fn a_link_is_for_the_tab_that_asks_for_it() {
+fn a_link_opens_in_the_requesting_tab() {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::BISS));
     desk.connect(Connect::Open);
@@ -171,7 +171,7 @@ fn a_link_is_for_the_tab_that_asks_for_it() {
 }
 
 #[test]
-fn a_click_in_the_list_of_banks_goes_there_and_reads_it() {
+fn clicking_a_bank_shows_and_reads_it() {
     let mut screen = Screen::opened_in(crate::tabs::BISS, "sim:?bridge=on", [1440.0, 900.0]);
     screen.until("it is read", is_read);
     screen.click("page.registers");

@@ -35,7 +35,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     });
     assert!(encoder(&desk).session.review.is_none(), "no plan is left for a consent");
     assert!(!encoder(&desk).is_dirty());
-    assert_eq!(desk.told(Severity::Warning), ["session.other_encoder"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["session.other_encoder"]);
     // They are still those of the first.
     served.exchange("serial=1");
     command(&mut desk, DeviceCommand::Read);
@@ -46,7 +46,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
 
 /// Without edits, only the discarded plan is reported.
 #[test]
-fn a_plan_for_one_encoder_is_discarded_for_another_and_that_is_told() {
+fn a_plan_for_one_encoder_is_discarded_for_another_with_a_notice() {
     let served = Served::new("serial=1");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());
@@ -56,11 +56,11 @@ fn a_plan_for_one_encoder_is_discarded_for_another_and_that_is_told() {
         is_read(studio) && studio.biss().unwrap().serial_number() == Some("2")
     });
     assert!(encoder(&desk).session.review.is_none());
-    assert_eq!(desk.told(Severity::Warning), ["session.plan_of_another"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["session.plan_of_another"]);
 }
 
 #[test]
-fn a_wire_belongs_to_the_encoder_or_to_the_scope() {
+fn a_wire_is_used_by_the_encoder_or_the_scope() {
     let served = Served::new("rpm=6");
     let mut desk = Desk::fresh("");
     connect(&mut desk, &served.link());

@@ -46,7 +46,7 @@ fn check(encoder: &Encoder, seconds: f64) {
 }
 
 #[test]
-fn a_stream_is_recorded_without_loss_and_ends_when_it_shall() {
+fn a_stream_is_recorded_without_loss_and_ends_on_request() {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::BISS));
     desk.studio.begin(Some(LINK.parse().unwrap()), None);
@@ -61,7 +61,7 @@ fn a_stream_is_recorded_without_loss_and_ends_when_it_shall() {
     let encoder = desk.studio.biss().unwrap();
     check(encoder, seconds);
     assert_eq!(encoder.streamed(), None);
-    assert!(desk.told(Severity::Warning).is_empty());
+    assert!(desk.notice_ids(Severity::Warning).is_empty());
     // A job in between causes a gap, and nothing worse.
     desk.act(poll(&desk.studio, Some(FAST)));
     desk.until("frames come", |studio| studio.biss().is_some_and(|own| own.streamed().is_some()));
@@ -72,7 +72,7 @@ fn a_stream_is_recorded_without_loss_and_ends_when_it_shall() {
         studio.biss().is_some_and(|own| own.session.is_ready() && own.record.positions() > before + 2_000)
     });
     assert_eq!(desk.studio.biss().unwrap().record.dropped(), 0);
-    assert!(desk.told(Severity::Warning).is_empty());
+    assert!(desk.notice_ids(Severity::Warning).is_empty());
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn until_asked(desk: &mut Desk, task: Task, ready: bool) {
 }
 
 #[test]
-fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
+fn three_bytes_of_one_bank_need_three_writes_and_one_save() {
     for link in ["sim:?bridge=on", "sim:"] {
         let mut desk = open(link);
         ask(&mut desk, Biss::ReadBank(Some(0x24)));
@@ -113,7 +113,7 @@ fn turn_of(studio: &Studio) -> Option<Task> {
 }
 
 #[test]
-fn a_calibration_is_led_step_by_step() {
+fn a_calibration_is_guided_step_by_step() {
     let mut desk = open("sim:?bridge=on&calibration=0.2");
     plan(&mut desk, calibration());
     write(&mut desk);
@@ -171,7 +171,7 @@ fn stopping_a_procedure_leads_the_encoder_back() {
 }
 
 #[test]
-fn the_live_position_says_that_it_waits_for_a_job() {
+fn the_live_panel_shows_that_it_waits_for_a_job() {
     let outside = Outside::new("");
     let mut studio = outside.studio();
     studio.act(Action::ShowTab(crate::tabs::BISS));
@@ -197,7 +197,7 @@ fn the_live_position_says_that_it_waits_for_a_job() {
 }
 
 #[test]
-fn a_drive_on_this_encoder_is_refused() {
+fn a_motor_that_needs_this_encoder_is_refused() {
     let mut desk = open("sim:?bridge=on");
     let run = MountingRun { calibrate: true, ..MountingRun::default() };
     ask(&mut desk, Biss::Plan(Box::new(Change::Guided { run, motor: MotorSource::ThisEncoder })));
@@ -208,7 +208,7 @@ fn a_drive_on_this_encoder_is_refused() {
 }
 
 #[test]
-fn the_position_is_preset_where_the_shaft_stands() {
+fn the_position_is_preset_at_standstill() {
     let mut desk = open("sim:?bridge=on");
     let value = PresetValue::new(0x8000, 7);
     plan(&mut desk, Change::Preset { value, parts: Some(PresetParts::Both) });
@@ -221,5 +221,5 @@ fn the_position_is_preset_where_the_shaft_stands() {
         let last = studio.biss().and_then(|own| own.record.last());
         is_read(studio) && last.is_some_and(|own| (own.turns, own.steps) == (7, 0x8000))
     });
-    assert!(desk.told(Severity::Error).is_empty());
+    assert!(desk.notice_ids(Severity::Error).is_empty());
 }

@@ -23,7 +23,7 @@ fn pipe(path: &Path) {
 }
 
 #[test]
-fn a_link_that_hangs_holds_nobody_up() {
+fn a_hanging_link_blocks_nothing() {
     let mut desk = Desk::fresh("");
     desk.open(HANGING);
     desk.settle();
@@ -45,7 +45,7 @@ fn a_link_that_hangs_holds_nobody_up() {
 }
 
 #[test]
-fn opening_can_be_cancelled_and_what_comes_late_is_dropped() {
+fn opening_can_be_cancelled_and_a_late_result_is_dropped() {
     for stop in [|| Action::Stop, || Action::Escape] {
         let mut desk = Desk::fresh("");
         desk.open(SLOW);
@@ -53,7 +53,7 @@ fn opening_can_be_cancelled_and_what_comes_late_is_dropped() {
         assert!(desk.studio.can_stop());
         desk.act(stop());
         assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.open_cancelled"));
-        assert!(!desk.studio.can_stop() && desk.told(Severity::Warning).is_empty(), "as the user wished");
+        assert!(!desk.studio.can_stop() && desk.notice_ids(Severity::Warning).is_empty(), "as the user wished");
         desk.outside.opens.store(true, std::sync::atomic::Ordering::SeqCst);
         desk.settle();
         assert!(matches!(desk.phase(), Phase::Lost(_)));
@@ -64,7 +64,7 @@ fn opening_can_be_cancelled_and_what_comes_late_is_dropped() {
 }
 
 #[test]
-fn a_search_on_a_link_that_hangs_can_be_ended() {
+fn a_search_on_a_hanging_link_can_be_cancelled() {
     let mut desk = Desk::fresh("");
     let hanging = LinkForm::from_url(&HANGING.parse().unwrap());
     desk.connect(Connect::Open);
@@ -88,7 +88,7 @@ fn a_search_on_a_link_that_hangs_can_be_ended() {
 
 #[cfg(unix)]
 #[test]
-fn a_disk_that_does_not_answer_holds_nobody_up() {
+fn a_hanging_disk_blocks_nothing() {
     let mut desk = Desk::begun("");
     let (profile, types) = (desk.outside.path("pipe.ron"), desk.outside.store().device_file("hiperface"));
     pipe(&profile);
@@ -101,13 +101,13 @@ fn a_disk_that_does_not_answer_holds_nobody_up() {
     desk.until_ready();
     desk.put(0, 0, b"X");
     desk.write();
-    assert_eq!(desk.told(Severity::Warning), ["file.no_file", "file.no_file"], "a pipe is no profile");
+    assert_eq!(desk.notice_ids(Severity::Warning), ["file.no_file", "file.no_file"], "a pipe is no profile");
 }
 
 /// The settings cannot be saved and there is no error: closing waits for a limited time.
 #[cfg(unix)]
 #[test]
-fn a_disk_that_does_not_answer_does_not_keep_the_window_open() {
+fn a_hanging_disk_does_not_keep_the_window_open() {
     let mut desk = Desk::begun("");
     let settings = desk.outside.store().settings_path();
     desk.until("the settings are kept", |_| settings.exists());
@@ -125,7 +125,7 @@ fn a_disk_that_does_not_answer_does_not_keep_the_window_open() {
 /// The draft cannot even be searched for: closing waits for a limited time.
 #[cfg(unix)]
 #[test]
-fn a_draft_that_does_not_answer_does_not_keep_the_window_open() {
+fn a_hanging_draft_does_not_keep_the_window_open() {
     let mut desk = Desk::fresh("");
     pipe(&desk.outside.path("data/drafts/hiperface-virtual/37-GB0450179.ron"));
     desk.studio.begin(None, None);
@@ -139,21 +139,21 @@ fn a_draft_that_does_not_answer_does_not_keep_the_window_open() {
 
 #[cfg(unix)]
 #[test]
-fn settings_that_do_not_answer_do_not_hold_up_the_start() {
+fn hanging_settings_do_not_delay_the_start() {
     let desk = Desk::fresh("");
     pipe(&desk.outside.store().settings_path());
     let mut desk = desk.crash();
-    assert_eq!(desk.told(Severity::Warning), ["session.settings_slow"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["session.settings_slow"]);
     desk.studio.begin(None, None);
     desk.until_read();
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_is_told() {
+fn an_unwritable_folder_is_reported() {
     let mut desk = Desk::begun("");
     desk.ask(Hiperface::Save(desk.outside.path("no/such/folder/mine.ron")));
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
-    assert_eq!(desk.told(Severity::Error), ["file.no_folder", "session.not_saved"]);
+    assert_eq!(desk.notice_ids(Severity::Error), ["file.no_folder", "session.not_saved"]);
     desk.until_ready();
 }
 
@@ -182,7 +182,7 @@ fn without_a_backup_nothing_is_written() {
 /// Issue 22.4: then the previous write cycles are not known. The review offers to write nevertheless, and nothing else
 /// does.
 #[test]
-fn without_a_logbook_it_is_written_only_by_a_permit_and_with_a_warning() {
+fn without_a_logbook_a_write_needs_a_permission_and_warns() {
     let mut desk = Desk::begun("");
     fs::create_dir_all(desk.outside.store().logbook_path()).unwrap();
     assert_eq!((refused(&mut desk), desk.wire().wear()), ("write.uncounted", 0));
@@ -194,7 +194,7 @@ fn without_a_logbook_it_is_written_only_by_a_permit_and_with_a_warning() {
     desk.write_as_shown();
     desk.until_written();
     assert_eq!(desk.wire().field(0)[0], b'X');
-    assert!(desk.told(Severity::Warning).ends_with(&["session.written", "write.logbook"]));
+    assert!(desk.notice_ids(Severity::Warning).ends_with(&["session.written", "write.logbook"]));
     desk.until("the list says why", |studio| matches!(studio.hiperface().unwrap().session.writes, Some(Err(_))));
 }
 
@@ -208,7 +208,7 @@ fn without_polling(condition: impl Fn() -> bool) {
 }
 
 #[test]
-fn samples_and_frames_that_nobody_takes_are_counted_and_the_newest_stay() {
+fn unread_samples_and_frames_are_counted_and_the_newest_kept() {
     let mut desk = Desk::begun("rpm=60");
     let wire = desk.wire();
     desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
@@ -221,11 +221,11 @@ fn samples_and_frames_that_nobody_takes_are_counted_and_the_newest_stay() {
     desk.ask(Hiperface::ReadCounter);
     desk.until_ready();
     desk.act(Action::Stop);
-    assert!(desk.told(Severity::Warning).is_empty());
+    assert!(desk.notice_ids(Severity::Warning).is_empty());
 }
 
 #[test]
-fn the_end_of_a_search_that_nobody_watches_is_not_lost() {
+fn the_end_of_an_unwatched_search_is_not_lost() {
     let mut desk = Desk::fresh("encoders=8");
     let wire = desk.wire();
     desk.connect(Connect::Open);

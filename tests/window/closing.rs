@@ -9,7 +9,7 @@ use encoder_studio::store::{DeviceKey, Logbook, Outcome};
 use crate::support::Desk;
 
 #[test]
-fn with_nothing_to_lose_it_closes() {
+fn the_window_closes_if_nothing_would_be_lost() {
     let mut desk = Desk::begun("");
     assert!(!desk.studio.may_close());
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
@@ -19,7 +19,7 @@ fn with_nothing_to_lose_it_closes() {
 }
 
 #[test]
-fn a_write_ends_at_a_safe_point_before_it_closes() {
+fn a_write_ends_at_a_safe_point_before_closing() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.put(0, 2, b"Y");
@@ -71,7 +71,7 @@ fn escape_stops_first_then_closes_the_dialog_then_the_review() {
 }
 
 #[test]
-fn a_plan_that_is_being_made_ends_with_its_review() {
+fn closing_the_review_cancels_planning() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.wire().hold_at(0x56, 1);
@@ -86,7 +86,7 @@ fn a_plan_that_is_being_made_ends_with_its_review() {
 }
 
 #[test]
-fn a_review_that_writes_stays_until_it_is_over() {
+fn a_writing_review_stays_open_until_the_end() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -97,14 +97,14 @@ fn a_review_that_writes_stays_until_it_is_over() {
     desk.ask(Hiperface::CloseReview);
     assert!(desk.review().is_writing());
     desk.put(0, 1, b"Y");
-    assert_eq!(desk.times_told("session.busy"), 1, "what is being written is not edited");
+    assert_eq!(desk.notice_count("session.busy"), 1, "what is being written is not edited");
     desk.wire().release();
     desk.until_written();
     assert!(!desk.encoder().staged.is_dirty());
 }
 
 #[test]
-fn a_session_that_is_closed_while_it_reads_ends_its_job() {
+fn closing_a_reading_session_ends_its_job() {
     let mut desk = Desk::begun("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);

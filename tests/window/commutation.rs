@@ -74,7 +74,7 @@ impl Desk {
 }
 
 #[test]
-fn nothing_is_read_before_everything_is_ticked_and_written_down() {
+fn nothing_is_read_before_the_checklist_is_complete() {
     let mut desk = Desk::begun(AT_REST);
     let before = desk.wire().sent();
     for (change, why) in [
@@ -100,7 +100,7 @@ fn nothing_is_read_before_everything_is_ticked_and_written_down() {
 }
 
 #[test]
-fn the_whole_run_ends_with_the_offset_in_the_encoder() {
+fn a_complete_run_stores_the_offset_in_the_encoder() {
     let mut desk = Desk::begun(AT_REST);
     desk.prepare();
     // Polled meanwhile: the readings take place in between.
@@ -127,7 +127,7 @@ fn the_whole_run_ends_with_the_offset_in_the_encoder() {
     // The CRC by Python's `binascii.crc_hqx`.
     let record = [0x43, 0x4F, 0x31, 0x01, 0x25, 0xFE, 0x68, 0xF7, 4, 0, 0, 0, 0, 0, 0x29, 0x44];
     assert_eq!(desk.encoder().staged.wanted()[0].bytes.as_ref().unwrap()[16..32], record);
-    assert_eq!(desk.times_told("commutation.staged"), 1);
+    assert_eq!(desk.notice_count("commutation.staged"), 1);
     assert_ne!(desk.wire().field(0)[16..32], record, "nothing is written before the review");
     let found = commutation::stored(&desk.encoder().staged);
     assert_eq!(found.iter().map(|own| (own.field, own.address, own.edited)).collect::<Vec<_>>(), [(0, 16, true)]);
@@ -140,7 +140,7 @@ fn the_whole_run_ends_with_the_offset_in_the_encoder() {
     // The readings are still there: the same value again is no edit.
     desk.assist(Assistant::Store);
     assert!(desk.edits().is_empty());
-    assert_eq!(desk.times_told("commutation.same"), 1);
+    assert_eq!(desk.notice_count("commutation.same"), 1);
     let report = desk.encoder().commutation.report("x", desk.encoder().geometry());
     report.iter().for_each(texts::check);
     let english: Vec<String> = report.iter().map(encoder_studio::app::Text::terminal).collect();
@@ -150,7 +150,7 @@ fn the_whole_run_ends_with_the_offset_in_the_encoder() {
 
 /// Section 5: fine position 339.02 of 1024 periods, four pole pairs. Without an encoder.
 #[test]
-fn a_typed_position_gives_the_offset_of_the_reference() {
+fn a_typed_position_yields_the_offset_of_the_reference() {
     let mut desk = Desk::fresh("");
     desk.open("serial:/dev/nothing");
     desk.until("it is told", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
@@ -181,7 +181,7 @@ fn a_typed_position_gives_the_offset_of_the_reference() {
 }
 
 #[test]
-fn sides_that_are_too_far_apart_are_refused() {
+fn positions_too_far_apart_are_refused() {
     let mut desk = Desk::begun("");
     desk.prepare();
     // Half a period of 128 is 1.40625°, with four pole pairs 5.625°.
@@ -200,7 +200,7 @@ fn sides_that_are_too_far_apart_are_refused() {
 }
 
 #[test]
-fn the_second_vector_tells_what_is_wrong() {
+fn the_second_vector_reveals_wiring_faults() {
     let mut desk = Desk::begun("");
     desk.prepare();
     desk.edit(|form| form.address = "0".to_owned());
@@ -238,7 +238,7 @@ fn the_second_vector_tells_what_is_wrong() {
 }
 
 #[test]
-fn method_2_sets_a_position_in_phase_and_forgets_the_readings() {
+fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
     let mut desk = Desk::begun(AT_REST);
     desk.prepare();
     desk.read(Slot::OneSide);
@@ -261,7 +261,7 @@ fn method_2_sets_a_position_in_phase_and_forgets_the_readings() {
 
 /// Section 5: with 16 periods and 5 pole pairs a step is 112.5° electrical; with 4 of 128 periods 14°.
 #[test]
-fn method_2_is_refused_where_its_step_is_too_large() {
+fn method_2_is_refused_if_its_step_is_too_large() {
     let mut desk = Desk::begun(AT_REST);
     desk.prepare();
     desk.type_in(Slot::OneSide, "3.47");
@@ -295,19 +295,19 @@ fn method_2_is_refused_where_its_step_is_too_large() {
 }
 
 #[test]
-fn a_shaft_that_moves_is_refused_where_it_was_asked_for() {
+fn a_moving_shaft_is_refused_at_its_entry() {
     let mut desk = Desk::begun("rpm=60");
     desk.prepare();
     desk.read(Slot::OneSide);
     assert_eq!(desk.why_not(), Some("encoder.moving"));
     assert!(desk.encoder().commutation.reading(Slot::OneSide).is_none());
-    assert!(desk.told(Severity::Error).contains(&"encoder.moving"), "and stands in the log");
+    assert!(desk.notice_ids(Severity::Error).contains(&"encoder.moving"), "and stands in the log");
     desk.edit(|_| {});
     assert_eq!(desk.why_not(), None);
 }
 
 #[test]
-fn a_position_out_of_phase_says_so() {
+fn a_position_out_of_phase_is_reported() {
     // The word is shifted by exactly half a period against the signals.
     let mut desk = Desk::begun("position=8");
     desk.prepare();
@@ -337,7 +337,7 @@ fn a_position_out_of_phase_says_so() {
 }
 
 #[test]
-fn readings_outlive_a_lost_cable_and_not_another_encoder() {
+fn readings_survive_a_lost_cable_but_not_another_encoder() {
     let mut desk = Desk::at_port(AT_REST);
     desk.prepare();
     desk.read(Slot::OneSide);
@@ -364,7 +364,7 @@ fn readings_outlive_a_lost_cable_and_not_another_encoder() {
 }
 
 #[test]
-fn an_offset_goes_into_a_profile_as_a_value_of_the_mounting() {
+fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
     let mut desk = Desk::begun("");
     let path = desk.outside.path("mine.ron");
     desk.ask(Hiperface::Save(path.clone()));

@@ -33,7 +33,7 @@ fn edit(desk: &mut Desk, change: impl FnOnce(&mut LinkForm)) {
 /// Issue 22.30: before the first byte on a serial line the program asks whether a drive is on it, which may be silent since
 /// it read the encoder at power-up. After "yes" or "not sure" nothing is opened, searched or polled.
 #[test]
-fn a_drive_on_the_line_is_asked_for_before_the_first_byte() {
+fn the_user_must_rule_out_a_drive_before_the_first_byte() {
     let links = [format!("serial:{PORT}"), format!("tcp:{}", SERVERS[0].0)];
     for link in links {
         let mut desk = Desk::fresh("");
@@ -67,7 +67,7 @@ fn a_drive_on_the_line_is_asked_for_before_the_first_byte() {
 
 /// Issue 22.30: a search asks before its first byte as well. An encoder that it finds is opened without another question.
 #[test]
-fn a_search_asks_for_a_drive_before_its_first_byte() {
+fn a_search_asks_about_a_drive_before_its_first_byte() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     edit(&mut desk, |form| (form.kind, form.port) = (LinkKind::Serial, PORT.to_owned()));
@@ -91,7 +91,7 @@ fn a_search_asks_for_a_drive_before_its_first_byte() {
 type Slip = fn(&mut LinkForm);
 
 #[test]
-fn what_cannot_be_is_refused_with_a_sentence() {
+fn invalid_entries_are_refused_with_a_message() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     let cases: [(Slip, &str); 9] = [
@@ -123,7 +123,7 @@ fn what_cannot_be_is_refused_with_a_sentence() {
 }
 
 #[test]
-fn each_kind_shows_a_link_that_it_takes() {
+fn each_kind_shows_a_valid_example_link() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     for (device, scheme) in [
@@ -146,7 +146,7 @@ fn each_kind_shows_a_link_that_it_takes() {
 
 /// The form follows a typed link, and the link follows the form; an invalid link for this device is named.
 #[test]
-fn a_link_is_typed_or_pasted() {
+fn a_link_can_be_typed_or_pasted() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     let wrong = [
@@ -206,7 +206,7 @@ fn a_recording_is_chosen_from_a_list_of_files() {
 }
 
 #[test]
-fn it_begins_with_what_was_used_before() {
+fn the_dialog_starts_with_the_last_used_link() {
     let mut desk = Desk::fresh("address=0x43");
     let link = format!("serial:{PORT}?address=0x43");
     desk.open(&link);
@@ -239,7 +239,7 @@ fn searching(hold: Option<usize>) -> Desk {
 }
 
 #[test]
-fn all_that_answer_are_found_and_one_is_chosen() {
+fn all_answering_encoders_are_found_and_one_is_chosen() {
     let mut desk = searching(None);
     assert!(search(&desk).is_running() && desk.studio.can_stop());
     desk.until("the search is over", |studio| !studio.can_stop());
@@ -258,7 +258,7 @@ fn all_that_answer_are_found_and_one_is_chosen() {
 }
 
 #[test]
-fn it_lists_while_it_runs_and_stop_ends_it() {
+fn a_search_lists_results_while_running_and_can_be_stopped() {
     for stop in [|| Action::Connect(Connect::StopSearch), || Action::Stop, || Action::Escape] {
         let mut desk = searching(None);
         let wire = desk.wire();
@@ -278,7 +278,7 @@ fn it_lists_while_it_runs_and_stop_ends_it() {
 }
 
 #[test]
-fn a_search_that_finds_nobody_says_what_to_look_at() {
+fn a_search_without_results_names_possible_causes() {
     let mut desk = Desk::fresh("fault=silent-after:0");
     desk.connect(Connect::Open);
     edit(&mut desk, |form| (form.kind, form.port) = (LinkKind::Serial, PORT.to_owned()));
@@ -306,7 +306,7 @@ fn closing_the_dialog_ends_its_search() {
 }
 
 #[test]
-fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
+fn a_search_on_an_open_wire_closes_it_first() {
     let mut desk = Desk::at_port("");
     let link = format!("serial:{PORT}");
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(2))));
@@ -315,7 +315,7 @@ fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
     desk.connect(crate::tabs::search_for(FindOptions::default()));
     assert!(matches!(desk.phase(), Phase::Lost(why) if why.id() == "session.let_go_for_search"));
     assert!(desk.encoder().session.line().is_none());
-    assert_eq!(desk.times_told("session.let_go_for_search"), 1);
+    assert_eq!(desk.notice_count("session.let_go_for_search"), 1);
     desk.until("the search is over", |studio| !studio.can_stop());
     assert_eq!(search(&desk).found.len(), 1);
     desk.connect(Connect::Connect);
@@ -339,7 +339,7 @@ fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
 
 /// The missing part of a link is reported by a kind that such links lead to.
 #[test]
-fn a_link_that_no_kind_takes_is_opened_where_its_scheme_leads() {
+fn an_invalid_link_is_reported_by_the_kind_of_its_scheme() {
     for (link, tab) in [
         ("bridge:/dev/nothing?clok=1", crate::tabs::BISS),
         ("bridge:/dev/nothing?pause=30", crate::tabs::SSI),
@@ -354,7 +354,7 @@ fn a_link_that_no_kind_takes_is_opened_where_its_scheme_leads() {
 
 /// The answer is for the search that was asked about, and for no other dialog.
 #[test]
-fn a_late_answer_about_another_master_begins_no_search() {
+fn a_late_answer_about_another_master_starts_no_search() {
     let mut desk = Desk::fresh("");
     desk.connect(Connect::Open);
     desk.connect(Connect::Use("serial:/dev/nothing".to_owned()));

@@ -48,7 +48,7 @@ fn until_kept(desk: &mut Desk) {
 }
 
 #[test]
-fn edits_taken_back_are_no_draft() {
+fn undone_edits_leave_no_draft() {
     let mut desk = connected();
     let path = desk.outside.path(DRAFT);
     NOVO.edit(&mut desk, &[7]);
@@ -60,18 +60,18 @@ fn edits_taken_back_are_no_draft() {
 }
 
 #[test]
-fn a_draft_that_cannot_be_read_is_told() {
+fn an_unreadable_draft_is_reported() {
     let desk = connected();
     let path = desk.outside.path(DRAFT);
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     fs::write(&path, "(no draft").unwrap();
     let desk = crash(desk);
-    assert_eq!(desk.told(Severity::Warning), ["session.draft_broken"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["session.draft_broken"]);
     assert_eq!(edits(&desk), 0);
 }
 
 #[test]
-fn a_draft_that_cannot_be_kept_is_told_once() {
+fn an_unwritable_draft_is_reported_once() {
     let mut desk = connected();
     fs::create_dir_all(desk.outside.path("data")).unwrap();
     fs::write(desk.outside.path("data/drafts"), "a file in the way").unwrap();
@@ -80,28 +80,28 @@ fn a_draft_that_cannot_be_kept_is_told_once() {
         desk.until("it is told", |studio| studio.services.log.standing().is_some());
         desk.settle();
     }
-    assert_eq!(desk.told(Severity::Warning), ["session.draft_not_kept"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["session.draft_not_kept"]);
     write(&mut desk);
     assert_eq!(value(&desk), 4);
 }
 
 /// The notice of restored edits ends once they are written; the result is in the review and in the log.
 #[test]
-fn a_write_ends_the_notice_of_edits_that_came_back() {
+fn a_write_ends_the_notice_of_restored_edits() {
     let mut desk = connected();
     NOVO.edit(&mut desk, &[7]);
     until_kept(&mut desk);
     let mut desk = crash(desk);
     desk.until("it is told", |studio| studio.services.log.standing().is_some());
-    assert_eq!(desk.told(Severity::Warning), ["session.draft_back"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["session.draft_back"]);
     write(&mut desk);
     assert!(desk.studio.services.log.standing().is_none());
-    assert_eq!(desk.times_told("novo.written"), 1);
+    assert_eq!(desk.notice_count("novo.written"), 1);
 }
 
 /// The edits of a profile belong to its file.
 #[test]
-fn the_draft_of_a_profile_ends_where_it_is_saved() {
+fn saving_a_profile_removes_its_draft() {
     let mut desk = connected();
     let path = desk.outside.path("mine.ron");
     NOVO.save(&mut desk, &path);
@@ -148,7 +148,7 @@ fn a_draft_has_one_owner() {
     NOVO.edit(&mut desk, &[8, 9]);
     desk.settle();
     assert_eq!(fs::read_to_string(desk.outside.path(DRAFT)).unwrap(), draft);
-    assert_eq!(desk.times_told("session.draft_elsewhere"), 1);
+    assert_eq!(desk.notice_count("session.draft_elsewhere"), 1);
     desk.act(Action::Close);
     assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_lost", "they would not come back");
     desk.act(Action::Escape);
@@ -159,7 +159,7 @@ fn a_draft_has_one_owner() {
 
 #[cfg(unix)]
 #[test]
-fn two_ways_to_a_file_lead_to_one_session() {
+fn two_paths_to_a_file_open_one_session() {
     let mut desk = connected();
     let path = desk.outside.path("mine.ron");
     NOVO.save(&mut desk, &path);
@@ -174,7 +174,7 @@ fn two_ways_to_a_file_lead_to_one_session() {
 }
 
 #[test]
-fn an_encoder_of_another_type_with_the_same_number_is_another() {
+fn another_type_with_the_same_serial_number_has_a_separate_draft() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
@@ -192,13 +192,13 @@ fn an_encoder_of_another_type_with_the_same_number_is_another() {
 }
 
 #[test]
-fn without_a_serial_number_there_is_no_draft_which_is_said_once() {
+fn a_missing_serial_number_prevents_drafts_with_one_notice() {
     let mut desk = Desk::at_port("serial= ");
     assert_eq!(desk.encoder().identity.as_ref().unwrap().serial.serial_number, "");
     desk.put(0, 0, b"X");
     desk.put(0, 1, b"Y");
     desk.settle();
-    assert_eq!(desk.times_told("session.draft_none"), 1);
+    assert_eq!(desk.notice_count("session.draft_none"), 1);
     let id = desk.encoder().session.id;
     desk.act(Action::CloseSession(id));
     assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_lost");
@@ -221,5 +221,5 @@ fn without_a_serial_number_there_is_no_draft_which_is_said_once() {
     // With factory settings: its memory is not the one that was written.
     replug(&mut desk, Some("serial= "));
     assert!(desk.edits().is_empty());
-    assert_eq!(desk.times_told("session.edits_gone"), 1);
+    assert_eq!(desk.notice_count("session.edits_gone"), 1);
 }

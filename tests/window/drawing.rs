@@ -157,7 +157,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
 
 /// Issue 22.32: live values are drawn as often as they change, whatever dialog is open.
 #[test]
-fn live_values_are_drawn_no_more_often_in_a_window_that_is_not_in_front() {
+fn live_values_in_a_background_window_keep_the_frame_rate() {
     let mut screen = in_hand();
     for (what, begin) in [SITUATIONS[0], SITUATIONS[1], SITUATIONS[2]] {
         begin(&mut screen);

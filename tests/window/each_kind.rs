@@ -76,7 +76,7 @@ impl Case {
         desk.act(Action::ShowTab(self.tab));
         desk.open(&format!("{}:{}", self.scheme, self.port));
         until_ready(desk);
-        self.stands(desk);
+        self.confirm_standstill(desk);
         if self.tab == crate::tabs::INTERBUS {
             command(desk, DeviceCommand::Read);
             desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());
@@ -88,11 +88,11 @@ impl Case {
     fn reconnect(&self, desk: &mut Desk) {
         command(desk, DeviceCommand::Reconnect);
         until_ready(desk);
-        self.stands(desk);
+        self.confirm_standstill(desk);
     }
 
     /// Confirms the standstill, if the program asks.
-    fn stands(&self, desk: &mut Desk) {
+    fn confirm_standstill(&self, desk: &mut Desk) {
         if self.tab == crate::tabs::INTERBUS {
             let id = shown(&desk.studio).unwrap().id();
             desk.act(Action::device(id, Interbus::Stopped(true)));
@@ -276,24 +276,24 @@ fn until_kept(desk: &mut Desk) {
 }
 
 #[test]
-fn edits_outlive_a_crash_until_they_are_written() {
+fn edits_survive_a_crash_until_they_are_written() {
     for case in CASES {
         let mut desk = case.desk();
         case.edit(&mut desk, &[0x5A, 0x5B]);
         until_kept(&mut desk);
         let mut desk = case.crash(desk);
         desk.until("the edits are back", |studio| shown(studio).unwrap().edits() == 2);
-        assert_eq!(desk.told(Severity::Warning), ["session.draft_back"]);
+        assert_eq!(desk.notice_ids(Severity::Warning), ["session.draft_back"]);
         write(&mut desk);
         desk.settle();
         assert_eq!(drafts(&desk), 0);
         let desk = case.crash(desk);
-        assert!(!shown(&desk.studio).unwrap().is_dirty() && desk.told(Severity::Warning).is_empty());
+        assert!(!shown(&desk.studio).unwrap().is_dirty() && desk.notice_ids(Severity::Warning).is_empty());
     }
 }
 
 #[test]
-fn edits_outlive_a_pulled_cable_and_go_into_no_other_encoder() {
+fn edits_survive_a_pulled_cable_and_are_not_written_to_another_encoder() {
     for case in CASES {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
@@ -301,10 +301,10 @@ fn edits_outlive_a_pulled_cable_and_go_into_no_other_encoder() {
         until_kept(&mut desk);
         wire.unplug();
         until_lost(&mut desk);
-        assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
+        assert_eq!(desk.notice_ids(Severity::Error), ["link.lost"], "once");
         case.edit(&mut desk, &[0x5A, 0x5B]);
         command(&mut desk, DeviceCommand::Review);
-        assert_eq!(desk.times_told("session.not_connected"), 1);
+        assert_eq!(desk.notice_count("session.not_connected"), 1);
         command(&mut desk, DeviceCommand::Reconnect);
         until_lost(&mut desk);
         wire.plug();
@@ -315,7 +315,7 @@ fn edits_outlive_a_pulled_cable_and_go_into_no_other_encoder() {
         command(&mut desk, DeviceCommand::Review);
         desk.until("it is noticed", |studio| !shown(studio).unwrap().is_dirty());
         until_ready(&mut desk);
-        assert_eq!(desk.times_told("session.other_encoder"), 1);
+        assert_eq!(desk.notice_count("session.other_encoder"), 1);
         assert!(!shown(&desk.studio).unwrap().is_reviewing());
         wire.exchange("");
         command(&mut desk, DeviceCommand::Read);
@@ -326,7 +326,7 @@ fn edits_outlive_a_pulled_cable_and_go_into_no_other_encoder() {
 }
 
 #[test]
-fn a_cable_pulled_while_it_writes_leaves_a_report_and_the_edits() {
+fn a_cable_pulled_during_a_write_leaves_a_report_and_the_edits() {
     for case in CASES {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
@@ -346,7 +346,7 @@ fn a_cable_pulled_while_it_writes_leaves_a_report_and_the_edits() {
 }
 
 #[test]
-fn with_edits_it_asks_before_a_session_or_the_window_is_closed() {
+fn closing_with_edits_asks_first() {
     for case in CASES {
         let mut desk = case.desk();
         case.edit(&mut desk, &[0x5A]);
@@ -389,7 +389,7 @@ fn a_write_ends_at_a_safe_point_before_the_window_closes() {
 }
 
 #[test]
-fn escape_stops_what_runs_before_it_closes_anything() {
+fn escape_stops_a_running_job_before_closing_anything() {
     for case in CASES {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
@@ -413,7 +413,7 @@ fn edited<F: FormModel>(dialog: &Dialog) -> Connect {
 }
 
 #[test]
-fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
+fn every_kind_of_link_opens_its_device_typed_or_from_the_form() {
     let links = [
         (crate::tabs::HIPERFACE, "sim:".to_owned()),
         (crate::tabs::HIPERFACE, format!("serial:{PORT}")),
@@ -460,14 +460,14 @@ fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
             let id = device.id();
             desk.act(Action::CloseSession(id));
         }
-        assert!(desk.told(Severity::Warning).is_empty(), "{link}");
+        assert!(desk.notice_ids(Severity::Warning).is_empty(), "{link}");
     }
 }
 
 /// Issue 22.9: a profile of another type with the same serial number is refused; an explicit permission is offered, and
 /// with it the review shows the types.
 #[test]
-fn another_type_of_device_needs_a_permit_of_its_own() {
+fn another_type_of_device_needs_a_separate_permission() {
     for case in CASES {
         let Some((entry, value)) = case.other_type() else { continue };
         let mut desk = case.desk();
@@ -496,7 +496,7 @@ fn another_type_of_device_needs_a_permit_of_its_own() {
 /// Issue 22.14: data that were read can be saved after the connection is lost, for every kind. A profile needs all of them:
 /// missing data are named, and nothing is saved.
 #[test]
-fn what_was_read_is_saved_when_the_line_is_lost() {
+fn read_values_can_be_saved_after_the_line_is_lost() {
     for case in CASES {
         let mut desk = case.desk();
         // Data that are not read on connection.

@@ -119,7 +119,7 @@ fn write_as_shown(desk: &mut Desk) {
 }
 
 #[test]
-fn connecting_reads_everything_and_changes_nothing() {
+fn connecting_reads_everything_and_writes_nothing() {
     let desk = read("sim:?hub=4&drives=1,0,1");
     let unit = unit(&desk);
     assert_eq!(unit.session.phase, Phase::Connected);
@@ -133,11 +133,11 @@ fn connecting_reads_everything_and_changes_nothing() {
     assert_eq!((requested.factory.as_str(), requested.is_editable), ("0", true), "of a hub");
     let speed = unit.rows(Some(ONE)).into_iter().find(|row| row.number == number(166)).unwrap();
     assert_eq!((speed.shown.as_str(), speed.factory.as_str()), ("350", "350"));
-    assert!(desk.told(Severity::Warning).is_empty());
+    assert!(desk.notice_ids(Severity::Warning).is_empty());
 }
 
 #[test]
-fn the_drive_that_is_shown_is_polled_and_recorded() {
+fn the_selected_drive_is_polled_and_recorded() {
     let mut desk = read("sim:?hub=4&drives=1,0,1");
     desk.until("it is recorded", |studio| studio.hiperdrive().unwrap().record.last().is_some());
     let three = DriveNumber::new(3).unwrap();
@@ -151,7 +151,7 @@ fn the_drive_that_is_shown_is_polled_and_recorded() {
 }
 
 #[test]
-fn an_edit_is_reviewed_written_and_read_again() {
+fn an_edit_is_reviewed_written_and_read_back() {
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Set(number(166), 351));
     assert_eq!(unit(&desk).refusal.as_ref().unwrap().id(), "hd_said.out_of_range");
@@ -186,7 +186,7 @@ fn limits_that_exclude_the_position_are_marked_and_not_written() {
 }
 
 #[test]
-fn a_pitch_and_what_is_measured_in_come_back() {
+fn pitch_and_unit_are_remembered() {
     let mut desk = read("sim:");
     assert_eq!(unit(&desk).ruler(ONE).measures().count(), 3, "no millimetres without a spindle");
     let pitch = Length { nanometres: 4_000_000 };
@@ -204,7 +204,7 @@ fn a_pitch_and_what_is_measured_in_come_back() {
     desk.open("sim:");
     until_read(&mut desk);
     assert_eq!((unit(&desk).pitch(ONE), unit(&desk).measure), (Some(pitch), Measure::Millimetres));
-    assert!(desk.told(Severity::Warning).is_empty(), "that is no edit");
+    assert!(desk.notice_ids(Severity::Warning).is_empty(), "that is no edit");
 }
 
 #[test]
@@ -233,18 +233,18 @@ fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
 }
 
 #[test]
-fn without_control_nothing_is_asked_of_a_drive() {
+fn without_control_no_motion_is_requested() {
     let mut desk = read("sim:");
     for motor in [Motor::Lead(Goal::Enabled), Motor::Move { target: 64 }, Motor::Step { by: 64 }] {
         drive(&mut desk, motor);
-        assert_eq!(desk.told(Severity::Warning).last(), Some(&"hd_refused.not_taken"));
+        assert_eq!(desk.notice_ids(Severity::Warning).last(), Some(&"hd_refused.not_taken"));
     }
     drive(&mut desk, Motor::JogPress { direction: Direction::Clockwise, repeated: false });
     assert!(!unit(&desk).moves.is_held() && unit(&desk).reachable(ONE).is_empty());
 }
 
 #[test]
-fn who_answers_in_the_network_fills_the_form() {
+fn a_discovered_device_fills_the_form() {
     let mut outside = crate::support::Outside::new("");
     outside.found =
         vec![found([10, 0, 0, 9], 2222, 1, "a switch"), found([10, 0, 0, 7], 44818, VENDOR, "HIPERDRIVE HUB-4")];
@@ -269,7 +269,7 @@ fn who_answers_in_the_network_fills_the_form() {
 
 /// Reference 5: an HDA30 has 512 turns either way, which are 33 554 432 steps, or 204 800 at 400 steps per turn.
 #[test]
-fn limits_may_be_what_the_drive_can_turn() {
+fn limits_may_span_the_full_range_of_the_drive() {
     let mut desk = read("sim:");
     let range = |desk: &Desk| {
         let rows = unit(desk).rows(Some(ONE));

@@ -107,7 +107,7 @@ pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk)
 
 /// Returns the warnings besides that of a lapsed motion.
 pub(crate) fn warned(desk: &Desk) -> Vec<&'static str> {
-    desk.told(Severity::Warning).into_iter().filter(|id| *id != "hd_end.stale").collect()
+    desk.notice_ids(Severity::Warning).into_iter().filter(|id| *id != "hd_end.stale").collect()
 }
 
 /// Refreshes the jog with every poll, until a condition holds.

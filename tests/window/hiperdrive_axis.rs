@@ -27,7 +27,7 @@ use crate::support::Desk;
 use bench::*;
 
 #[test]
-fn a_new_drive_becomes_an_axis_in_millimetres_that_survives_the_supply() {
+fn a_new_drive_is_set_up_in_millimetres_and_survives_a_power_cycle() {
     let mut desk = until_saved(FRESH, 1);
     assert_eq!(unit(&desk).session.cycles, Some(1));
     let limits = unit(&desk).limits(DriveNumber::FIRST).unwrap();
@@ -65,7 +65,7 @@ fn nothing_moves_before_the_limits_are_confirmed() {
 
 /// The values that the user saw on pressing count, even if the window learns with the press that they are outdated.
 #[test]
-fn limits_that_are_no_longer_those_that_are_shown_are_not_confirmed() {
+fn limits_changed_since_they_were_shown_are_not_confirmed() {
     let mut desk = until_jog();
     run(&mut desk, Run::Press(Button::Confirm));
     // Again from the beginning, so that no lock blocks it.
@@ -100,12 +100,12 @@ fn limits_that_are_no_longer_those_that_are_shown_are_not_confirmed() {
 }
 
 #[test]
-fn who_cancels_has_a_drive_that_stands_and_nothing_that_lasts() {
+fn cancelling_stops_the_drive_and_saves_nothing() {
     let mut desk = confirmed();
     let press = Motor::JogPress { direction: Direction::Clockwise, repeated: false };
     held_until(&mut desk, press, "it moves", Unit::is_moving);
     run(&mut desk, Run::Cancel);
-    stands(&mut desk);
+    until_stopped(&mut desk);
     let own = axis(&desk);
     assert_eq!((own.end(), own.is_saved(), own.changes().len()), (Some(End::Cancelled), false, 5));
     // Everything is written back, and read: the drive is no longer requested.
@@ -126,7 +126,7 @@ fn who_cancels_has_a_drive_that_stands_and_nothing_that_lasts() {
 
 /// Issue 21.6 (d): 47 = −2 is only about the adapter; scale and limits of the drive remain, and no text claims otherwise.
 #[test]
-fn a_recall_takes_nothing_back_of_the_drive() {
+fn a_recall_does_not_change_the_drive() {
     let mut desk = confirmed();
     act(&mut desk, Hiperdrive::Plan(Box::new(Change::Do(Service::Recall))));
     write(&mut desk);
@@ -139,7 +139,7 @@ fn a_recall_takes_nothing_back_of_the_drive() {
 
 /// Issue 21.6 (a): the pads of the run send their own effort, and the Motion page keeps its own.
 #[test]
-fn the_pads_of_the_run_have_an_effort_of_their_own() {
+fn the_jog_pads_of_the_setup_have_a_separate_effort() {
     let mut desk = begun("sim:");
     let percent = |value| Percent::new(value).unwrap();
     let chosen = Effort { speed: percent(80), torque: percent(100) };
@@ -158,14 +158,14 @@ fn the_pads_of_the_run_have_an_effort_of_their_own() {
         let sent = unit(&desk).moves.sent(unit(&desk).drive()).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (speed, torque));
         act(&mut desk, Hiperdrive::Drive(Motor::JogRelease));
-        stands(&mut desk);
+        until_stopped(&mut desk);
         assert_eq!(unit(&desk).moves.jog_effort(unit(&desk).drive()), chosen);
     }
 }
 
 /// Issue 21.6 (f): typed text is no spindle until the step is left with it; none of it is remembered.
 #[test]
-fn a_pitch_counts_once_it_is_confirmed() {
+fn a_pitch_applies_only_after_confirmation() {
     let mut desk = begun("sim:");
     assert_eq!((axis(&desk).entries().pitch.as_str(), unit(&desk).pitch(unit(&desk).drive())), ("", None));
     next(&mut desk, AxisStep::Scale);
@@ -184,7 +184,7 @@ fn a_pitch_counts_once_it_is_confirmed() {
 
 /// Issue 21.6 (h): the next run reports an interrupted one, also after a restart of the program.
 #[test]
-fn a_new_run_tells_what_a_broken_one_left() {
+fn a_new_run_lists_changes_left_by_an_aborted_one() {
     let mut desk = until_jog();
     let differences = |desk: &Desk| words::differences(&seen(desk)).map(|own| own.words(Language::English));
     let told = differences(&desk).unwrap();
@@ -207,7 +207,7 @@ fn a_new_run_tells_what_a_broken_one_left() {
 
 /// Issue 21.6 (e): closing and opening a connection is no restart; a value that was changed and is never saved proves it.
 #[test]
-fn a_reconnection_is_no_restart() {
+fn a_reconnection_is_not_a_power_cycle() {
     let mut desk = until_saved("sim:?requested=0&timeout=250", 1);
     step_with_write(&mut desk);
     assert_eq!(number(&desk, 182), 1001);
@@ -244,7 +244,7 @@ fn a_reconnection_is_no_restart() {
 
 /// Issue 21.6 (g): a fault during the test is reported with its code, disables motion, and is acknowledged there.
 #[test]
-fn a_fault_in_the_test_is_told_and_acknowledged() {
+fn a_fault_in_the_test_is_shown_and_can_be_acknowledged() {
     let mut desk = until_test(FRESH, 1, false);
     go(&mut desk, TestTarget::Lower, |own| own.state(own.drive()) == Some(State::Moving));
     let drive = unit(&desk).drive();
@@ -275,7 +275,7 @@ fn a_fault_in_the_test_is_told_and_acknowledged() {
 
 /// Issue 21.6 (j): the end is saved as text, in millimetres, in a file that the user chooses.
 #[test]
-fn the_end_is_saved_as_a_report() {
+fn the_result_is_saved_as_a_report() {
     let mut desk = confirmed();
     run(&mut desk, Run::Cancel);
     run(&mut desk, Run::AskReport);
@@ -294,12 +294,12 @@ fn the_end_is_saved_as_a_report() {
     });
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains("The drive's limits are -2044.00 mm … 2044.00 mm."), "{text}");
-    assert_eq!(desk.told(Severity::Good).last(), Some(&"report.saved"));
+    assert_eq!(desk.notice_ids(Severity::Good).last(), Some(&"report.saved"));
 }
 
 /// Issue 21.6: the complete run on a drive of a hub; in each write a refusal first, then a connection lost in the middle.
 #[test]
-fn a_drive_of_a_hub_is_set_up_over_refusals_and_lost_lines() {
+fn a_hub_drive_is_set_up_despite_refusals_and_lost_lines() {
     let desk = until_saved_with("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3, true);
     let three = DriveNumber::new(3).unwrap();
     assert_eq!(unit(&desk).drive(), three);
@@ -311,7 +311,7 @@ fn a_drive_of_a_hub_is_set_up_over_refusals_and_lost_lines() {
 /// Issue 21.6: the last step on a drive of a hub: its write is refused, then cut off; the supply is lost; the end is
 /// reported correctly.
 #[test]
-fn the_supply_of_a_hub_is_checked_over_a_refusal_and_a_lost_line() {
+fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
     let mut desk = until_saved("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3);
     assert_eq!(unit(&desk).axis_report(Language::English), None, "it goes on");
     step_with_writes(&mut desk, 182, true);
@@ -347,7 +347,7 @@ fn the_supply_of_a_hub_is_checked_over_a_refusal_and_a_lost_line() {
 }
 
 #[test]
-fn a_write_that_is_not_consented_to_leaves_the_step_as_it_was() {
+fn a_write_without_consent_leaves_the_step_unchanged() {
     let mut desk = begun(FRESH);
     run(&mut desk, Run::Press(Button::Do));
     desk.until("the plan is there", |studio| {

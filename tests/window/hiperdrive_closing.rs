@@ -16,7 +16,7 @@ use crate::hiperdrive_motion::in_control;
 use crate::support::{Desk, LONG};
 
 /// Returns the state of the drive, whether it is at standstill, and whether a host has the cyclic connection.
-fn says(desk: &Desk) -> (State, bool, bool) {
+fn drive_state(desk: &Desk) -> (State, bool, bool) {
     let target = unit(desk).target.clone().unwrap();
     target.with(|station| {
         let status = station.drive(ONE).unwrap().actual(Moment::default()).status;
@@ -33,17 +33,17 @@ fn moving() -> Desk {
 #[track_caller]
 fn until_let_go(desk: &Desk) {
     let began = Instant::now();
-    while says(desk).2 {
+    while drive_state(desk).2 {
         assert!(began.elapsed() < LONG, "the connection is open");
         std::thread::sleep(Duration::from_millis(1));
     }
     // A fault of the watchdog would be visible now.
-    assert_eq!((says(desk).0, says(desk).1), (State::NotReady, true));
+    assert_eq!((drive_state(desk).0, drive_state(desk).1), (State::NotReady, true));
 }
 
 /// Issue 21.1: without a question. The window waits for the drive, and nothing moves afterwards.
 #[test]
-fn a_window_that_closes_lets_go_of_the_drives_first() {
+fn a_closing_window_releases_the_drives_first() {
     for (closes, action) in [("closed", Action::Close), ("ended by the system", Action::Quit)] {
         let mut desk = moving();
         desk.act(action);
@@ -55,20 +55,20 @@ fn a_window_that_closes_lets_go_of_the_drives_first() {
         assert!(!unit(&desk).moves.motion().unwrap().is_connected(), "{closes}");
         drive(&mut desk, Motor::Lead(Goal::Enabled));
         desk.settle();
-        assert_eq!(says(&desk).0, State::NotReady, "{closes}");
+        assert_eq!(drive_state(&desk).0, State::NotReady, "{closes}");
     }
 }
 
 /// Issue 21.1: a question comes after the stop, and nothing resumes if it is answered with no.
 #[test]
-fn a_question_comes_after_the_stop_and_nothing_resumes() {
+fn the_close_question_follows_the_stop_and_nothing_resumes() {
     let mut desk = moving();
     edit(&mut desk, Edit::Set(number(24), 7));
     desk.act(Action::Close);
     assert!(desk.studio.question.is_some() && !desk.studio.hiperdrive().unwrap().moves.is_under_way());
     // No frame is drawn: the stop was requested before the question.
     let began = Instant::now();
-    while !says(&desk).1 {
+    while !drive_state(&desk).1 {
         assert!(began.elapsed() < LONG, "it moves under the question");
         std::thread::sleep(Duration::from_millis(1));
     }
@@ -79,7 +79,7 @@ fn a_question_comes_after_the_stop_and_nothing_resumes() {
         desk.studio.poll();
         std::thread::sleep(Duration::from_millis(1));
     }
-    let (state, stands, open) = says(&desk);
+    let (state, stands, open) = drive_state(&desk);
     assert_eq!((state, stands, open), (State::Enabled, true, true), "as it was stopped");
     desk.act(Action::Close);
     desk.act(Action::Confirm);
@@ -89,7 +89,7 @@ fn a_question_comes_after_the_stop_and_nothing_resumes() {
 
 /// Issue 21.1: a signal from the system asks no question.
 #[test]
-fn a_signal_asks_nothing() {
+fn a_signal_closes_without_asking() {
     let mut desk = moving();
     edit(&mut desk, Edit::Set(number(24), 7));
     desk.act(Action::Close);
@@ -102,7 +102,7 @@ fn a_signal_asks_nothing() {
 
 /// Issue 21.1: it does not depend on a window that is not updated, as on a display that does not answer.
 #[test]
-fn drives_are_let_go_without_the_window() {
+fn drives_are_released_without_the_window() {
     let desk = moving();
     let brakes = desk.studio.brakes();
     assert!(!brakes.is_done() && !brakes.has_begun());
@@ -115,7 +115,7 @@ fn drives_are_let_go_without_the_window() {
 /// Issue 21.1: a closed session stops its own drive before it asks; an endless run of another one stops because its page is
 /// not shown, and closing the window waits for a closed session.
 #[test]
-fn a_session_that_is_closed_behind_a_motion() {
+fn closing_a_session_stops_its_motion() {
     let mut desk = in_control("sim:");
     let run = Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
     drive_until(
@@ -141,7 +141,7 @@ fn a_session_that_is_closed_behind_a_motion() {
 
 /// Issue 21.1: after control was given back there is nothing to wait for.
 #[test]
-fn a_window_without_control_closes_at_once() {
+fn a_window_without_control_closes_immediately() {
     let mut desk = in_control("sim:");
     act(&mut desk, Hiperdrive::Give);
     desk.until("it is given", |studio| {

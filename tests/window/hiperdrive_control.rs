@@ -34,7 +34,7 @@ fn is_open(studio: &Studio) -> bool {
 }
 
 #[test]
-fn a_control_that_is_lost_says_why_until_it_is_taken_again() {
+fn lost_control_shows_the_reason_until_taken_again() {
     let mut desk = in_control("sim:");
     // Nothing is requested from the device: the loss is reported without that.
     command(&mut desk, DeviceCommand::Poll(None));
@@ -46,10 +46,10 @@ fn a_control_that_is_lost_says_why_until_it_is_taken_again() {
         !is_open(studio) && studio.services.log.notices().any(|notice| notice.texts.iter().any(told))
     });
     desk.settle();
-    assert_eq!(desk.times_told("hd_lost.silent"), 1);
+    assert_eq!(desk.notice_count("hd_lost.silent"), 1);
     assert_eq!(unit(&desk).why_lost().unwrap().id(), "hd_lost.silent");
     drive(&mut desk, Motor::Step { by: 64 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_lost.silent", "hd_refused.not_taken"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lost.silent", "hd_refused.not_taken"]);
     desk.until("everything is read anew", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.actual(ONE).is_some() && own.session.is_ready()
@@ -64,7 +64,7 @@ fn a_control_that_is_lost_says_why_until_it_is_taken_again() {
 }
 
 #[test]
-fn limits_that_somebody_else_sets_while_control_is_held_are_read_and_hold() {
+fn limits_set_by_another_master_under_control_are_read_and_applied() {
     let mut desk = in_control("sim:");
     set(&desk, 160, 65_536);
     desk.until("they are read", |studio| {
@@ -73,13 +73,13 @@ fn limits_that_somebody_else_sets_while_control_is_held_are_read_and_hold() {
     });
     assert!(unit(&desk).moves.locks(ONE).is_empty());
     drive(&mut desk, Motor::Move { target: 65_537 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
 
 /// Issue 21.6: another reference changes the place of every position, so that everything based on the old one becomes
 /// invalid.
 #[test]
-fn a_reference_that_another_master_sets_while_control_is_held_is_read() {
+fn a_reference_set_by_another_master_under_control_is_read() {
     let mut desk = in_control("sim:");
     set(&desk, 198, 6400);
     desk.until("it is read", |studio| {
@@ -87,11 +87,11 @@ fn a_reference_that_another_master_sets_while_control_is_held_is_read() {
         own.number(ONE, 198) == Some(6400) && own.session.is_ready() && own.may_move(ONE).is_ok()
     });
     drive(&mut desk, Motor::Move { target: 6400 });
-    assert_eq!(desk.told(Severity::Warning), Vec::<String>::new());
+    assert_eq!(desk.notice_ids(Severity::Warning), Vec::<String>::new());
 }
 
 #[test]
-fn a_scale_that_somebody_else_sets_while_control_is_held_locks_until_its_limits_are_seen() {
+fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
     let mut desk = in_control("sim:");
     // 400 steps per turn instead of 65536.
     set(&desk, 154, 400);
@@ -99,14 +99,14 @@ fn a_scale_that_somebody_else_sets_while_control_is_held_locks_until_its_limits_
     desk.until("it is locked", |studio| studio.hiperdrive().unwrap().moves.locks(ONE) == [Lock::LimitsUnconfirmed]);
     // Limits read before cannot be confirmed.
     drive(&mut desk, Motor::ConfirmLimits(ONE));
-    assert_eq!(desk.told(Severity::Warning), ["hd_lock.unread"], "nobody presses in vain without being told");
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread"], "nobody presses in vain without being told");
     desk.until("it is read", |studio| {
         let own = studio.hiperdrive().unwrap();
         own.session.is_ready() && (own.number(ONE, 154), own.number(ONE, 156)) == (Some(400), Some(256))
     });
     assert_eq!(unit(&desk).moves.locks(ONE), [Lock::LimitsUnconfirmed]);
     drive(&mut desk, Motor::Step { by: 4 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_lock.unread", "hd_lock.limits"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread", "hd_lock.limits"]);
     // Again, before the confirmation: the limits keep their numbers, and are at other places again.
     set(&desk, 154, 100);
     desk.until("it is read again", |studio| {
@@ -126,7 +126,7 @@ fn a_scale_that_somebody_else_sets_while_control_is_held_locks_until_its_limits_
 }
 
 #[test]
-fn a_scale_that_a_save_finds_changed_locks_too() {
+fn a_scale_found_changed_by_a_save_locks_motion() {
     let mut desk = read("sim:");
     set(&desk, 154, 100);
     assert!(unit(&desk).moves.unconfirmed().is_empty());
@@ -137,12 +137,12 @@ fn a_scale_that_a_save_finds_changed_locks_too() {
 }
 
 #[test]
-fn nothing_moves_before_everything_was_read_anew_with_the_control() {
+fn nothing_moves_until_everything_is_read_again_under_control() {
     let mut desk = read("sim:");
     act(&mut desk, Hiperdrive::Take);
     desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
     drive(&mut desk, Motor::Step { by: 64 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_lock.unread"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.unread"]);
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().session.is_ready());
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
 }
@@ -150,7 +150,7 @@ fn nothing_moves_before_everything_was_read_anew_with_the_control() {
 /// 4096 steps are a sixteenth of a turn (reference 4); such a move ends with 3E37 (reference 9), or the same with another
 /// acknowledge bit.
 #[test]
-fn the_table_shows_what_the_drive_says_now() {
+fn the_table_shows_live_values_of_the_drive() {
     let mut desk = in_control("sim:");
     let shown = |desk: &Desk, of: u16| {
         let rows = unit(desk).rows(Some(ONE));
@@ -175,7 +175,7 @@ fn the_table_shows_what_the_drive_says_now() {
 }
 
 #[test]
-fn what_was_said_before_a_loss_counts_no_more() {
+fn reports_from_before_a_loss_are_discarded() {
     let mut desk = in_control("sim:");
     set_off(&mut desk);
     fall_silent(&desk);
@@ -193,7 +193,7 @@ fn what_was_said_before_a_loss_counts_no_more() {
 }
 
 #[test]
-fn escape_ends_no_watching_while_drives_are_in_hand() {
+fn escape_does_not_end_polling_while_in_control() {
     let mut desk = in_control("sim:");
     assert!(unit(&desk).session.is_polling());
     desk.connect(connect::ConnectAction::Open);
@@ -208,7 +208,7 @@ fn escape_ends_no_watching_while_drives_are_in_hand() {
 }
 
 #[test]
-fn stop_ends_no_reading_that_a_drive_in_hand_waits_for() {
+fn stop_does_not_end_readings_needed_for_control() {
     let mut desk = read("sim:");
     act(&mut desk, Hiperdrive::Take);
     desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
@@ -231,7 +231,7 @@ fn stop_ends_no_reading_that_a_drive_in_hand_waits_for() {
 }
 
 #[test]
-fn without_control_a_reading_ends_as_the_user_wishes_and_what_it_lacks_is_said() {
+fn without_control_a_reading_can_be_stopped_and_missing_values_are_named() {
     let mut desk = in_control("sim:");
     act(&mut desk, Hiperdrive::Axis(Run::Begin));
     fall_silent(&desk);
@@ -249,7 +249,7 @@ fn without_control_a_reading_ends_as_the_user_wishes_and_what_it_lacks_is_said()
 }
 
 #[test]
-fn what_was_not_read_while_control_was_held_is_read_once_it_is_given_back() {
+fn values_unread_under_control_are_read_after_giving_it_up() {
     let mut desk = read("sim:");
     set(&desk, 160, 65_536);
     act(&mut desk, Hiperdrive::Take);
@@ -266,7 +266,7 @@ fn what_was_not_read_while_control_was_held_is_read_once_it_is_given_back() {
 }
 
 #[test]
-fn what_was_read_before_a_link_was_opened_again_is_no_place_of_a_drive() {
+fn positions_read_before_a_reconnect_are_discarded() {
     let mut desk = in_control("sim:");
     command(&mut desk, DeviceCommand::Reconnect);
     desk.until("it is connected", |studio| studio.hiperdrive().unwrap().session.line().is_some());

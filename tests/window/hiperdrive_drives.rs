@@ -32,7 +32,7 @@ fn moves(studio: &Studio, drive: DriveNumber) -> bool {
 
 /// Issue 21.7: effort and *Endless* of one drive are not those of another.
 #[test]
-fn what_is_set_for_one_drive_is_not_set_for_another() {
+fn settings_of_one_drive_do_not_apply_to_another() {
     let mut desk = in_control(HUB);
     let slow = Effort { speed: percent(7), torque: percent(50) };
     drive(&mut desk, Motor::MoveEffort(slow));
@@ -44,7 +44,7 @@ fn what_is_set_for_one_drive_is_not_set_for_another() {
     assert_eq!((moves.move_effort(two()), moves.jog_effort(two())), (Effort::MOVE, Effort::JOG));
     assert_eq!((moves.is_expert(ONE), moves.is_expert(two())), (true, false));
     drive(&mut desk, Motor::Run { direction: Direction::Clockwise, end: RunEnd::Endless });
-    assert_eq!(desk.told(Severity::Warning), ["hd_refused.endless"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.endless"]);
     let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(own.drive()).unwrap().position };
     drive_until(&mut desk, to_64, "it has been sent", |studio| {
         studio.hiperdrive().unwrap().moves.sent(two()).is_some_and(|own| own.target == 64)
@@ -63,7 +63,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
     // Before the drive itself has reported its motion.
     drive(&mut desk, Motor::Move { target: 30_000_000 });
     drive(&mut desk, Motor::Step { by: 64 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_refused.still_moves"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.still_moves"]);
     drive(&mut desk, Motor::Stop);
     desk.until("it stands", |studio| !studio.moves());
     let told = while_it_moves(&mut desk, |desk| {
@@ -107,7 +107,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
 
 /// Issue 21.7: a waiting job is not discarded by a request to another drive.
 #[test]
-fn a_job_that_waits_is_not_discarded_by_another_drive() {
+fn a_paused_job_is_not_discarded_by_another_drive() {
     let mut desk = in_control(HUB);
     until_free(&mut desk, ONE);
     let seen = while_it_moves(&mut desk, |desk| {
@@ -135,7 +135,7 @@ fn a_job_that_waits_is_not_discarded_by_another_drive() {
 
 /// Issue 21.7: messages name the drive of a hub; an adapter has one.
 #[test]
-fn what_is_told_names_the_drive() {
+fn messages_name_the_drive() {
     for (link, own, named) in [(HUB, two(), Some("drive 2")), ("sim:", ONE, None)] {
         let mut desk = in_control(link);
         act(&mut desk, Hiperdrive::SelectDrive(own));
@@ -155,7 +155,7 @@ fn what_is_told_names_the_drive() {
 
 /// Issue 21.7: the values sent during a motion, and those set meanwhile.
 #[test]
-fn a_speed_that_waits_is_told_from_the_one_that_is_sent() {
+fn the_pending_speed_is_shown_apart_from_the_sent_one() {
     let mut desk = in_control("sim:");
     until_free(&mut desk, ONE);
     let (before, after) =
@@ -235,27 +235,27 @@ fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: i
 
 /// Issue 21.7: text typed for one drive is in the entries of that drive.
 #[test]
-fn what_is_typed_for_one_drive_stands_on_its_page() {
+fn typed_values_are_kept_per_drive() {
     let mut screen = on_screen();
     target(&screen).focus();
     screen.steps();
     target(&screen).type_text("12345");
     screen.steps();
-    assert!(stands(&screen, "12345"));
+    assert!(has_entry(&screen, "12345"));
     choose(&mut screen, two());
-    assert!(!stands(&screen, "12345"));
+    assert!(!has_entry(&screen, "12345"));
     choose(&mut screen, ONE);
-    assert!(stands(&screen, "12345"));
+    assert!(has_entry(&screen, "12345"));
 }
 
 /// Returns whether some entry has this in it.
-fn stands(screen: &Screen, text: &str) -> bool {
+fn has_entry(screen: &Screen, text: &str) -> bool {
     screen.harness.query_all_by(|node| node.value().is_some_and(|own| own.contains(text))).next().is_some()
 }
 
 /// Issue 21.7: the buttons that select a drive show its state, whichever drive is shown.
 #[test]
-fn the_buttons_of_the_drives_show_their_states() {
+fn drive_buttons_show_the_drive_states() {
     let mut screen = on_screen();
     let says = |screen: &Screen, words: &str| screen.harness.query_by_label(words).is_some();
     let shown = while_it_moves_on(

@@ -11,7 +11,7 @@ use encoder_studio::devices::hiperdrive::jobs::Motion;
 use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive};
 
 use crate::hiperdrive::number;
-use crate::hiperdrive_stop::{begin, in_hand, moving, pointer, until_it_stands};
+use crate::hiperdrive_stop::{begin, in_hand, moving, pointer, until_stopped};
 use crate::screen::Screen;
 
 fn event(key: Key, pressed: bool) -> Event {
@@ -80,7 +80,7 @@ fn on_pad() -> Screen {
 
 /// Issue 21.2: 8 of 8 times it ran.
 #[test]
-fn a_key_that_is_held_in_another_window_moves_nothing_when_the_keyboard_comes_back() {
+fn a_key_held_in_another_window_moves_nothing_when_focus_returns() {
     for key in [Key::Space, Key::Enter] {
         let mut screen = on_pad();
         leave(&mut screen, Key::A);
@@ -98,7 +98,7 @@ fn a_key_that_is_held_in_another_window_moves_nothing_when_the_keyboard_comes_ba
 
 /// Issue 21.2: a jog that ends because the window loses the keyboard focus does not begin again while the key is held.
 #[test]
-fn a_jog_that_a_change_of_the_window_ends_does_not_begin_again() {
+fn a_jog_ended_by_a_window_change_does_not_restart() {
     let mut screen = on_pad();
     down(&mut screen, Key::Space);
     assert!(is_held(&screen));
@@ -107,7 +107,7 @@ fn a_jog_that_a_change_of_the_window_ends_does_not_begin_again() {
     come_back(&mut screen);
     repeats(&mut screen, Key::Space);
     assert!(!is_under_way(screen.studio()));
-    until_it_stands(&screen);
+    until_stopped(&screen);
     // All of it between two frames.
     up(&mut screen, Key::Space);
     down(&mut screen, Key::Space);
@@ -122,7 +122,7 @@ fn a_jog_that_a_change_of_the_window_ends_does_not_begin_again() {
 /// Issue 21.2: buttons that begin a motion with a click are pressed once by a held key, and not by one that was held in
 /// another window.
 #[test]
-fn a_key_that_repeats_itself_presses_no_button() {
+fn a_key_repeat_presses_no_button() {
     let mut screen = in_hand();
     let step = |screen: &mut Screen| screen.button("hd_run.forth").focus();
     step(&mut screen);
@@ -143,7 +143,7 @@ fn a_key_that_repeats_itself_presses_no_button() {
 
 /// Issue 21.2: if a key repeats by an immediate release and press, the two may be in frames that are far apart.
 #[test]
-fn a_repetition_that_is_split_over_two_pictures_moves_nothing() {
+fn a_key_repeat_split_over_two_frames_moves_nothing() {
     let split = |screen: &mut Screen, key| {
         for _ in 0..8 {
             picture(screen, [event(key, false)]);
@@ -155,7 +155,7 @@ fn a_repetition_that_is_split_over_two_pictures_moves_nothing() {
     down(&mut screen, Key::Space);
     assert!(is_held(&screen));
     split(&mut screen, Key::Space);
-    until_it_stands(&screen);
+    until_stopped(&screen);
     up(&mut screen, Key::Space);
     // A click begins this one.
     focus(&mut screen, "hd_run.forth");
@@ -171,7 +171,7 @@ fn a_repetition_that_is_split_over_two_pictures_moves_nothing() {
 
 /// Issue 21.2: Space stops with any keyboard focus, and presses nothing else.
 #[test]
-fn space_stops_what_moves_wherever_the_keyboard_is() {
+fn space_stops_motion_with_any_focus() {
     let mut screen = in_hand();
     let places = [None, Some("hd_move.go"), Some("hd_run.forth"), Some("hd_jog.up"), Some("shell.help")];
     for (place, modifiers) in places.into_iter().zip([Modifiers::NONE, Modifiers::SHIFT].into_iter().cycle()) {
@@ -188,14 +188,14 @@ fn space_stops_what_moves_wherever_the_keyboard_is() {
         repeats(&mut screen, Key::Space);
         assert!(!is_under_way(screen.studio()), "{place:?}");
         up(&mut screen, Key::Space);
-        until_it_stands(&screen);
+        until_stopped(&screen);
         screen.steps();
     }
 }
 
 /// Issue 21.2: in a text entry Space is a character, and also a stop if a drive moves.
 #[test]
-fn space_in_a_text_entry_is_typed_and_stops_what_moves() {
+fn space_in_a_text_entry_is_typed_and_stops_motion() {
     for moves in [false, true] {
         let mut screen = if moves { moving() } else { in_hand() };
         let label = screen.say("hd_move.target");
@@ -217,7 +217,7 @@ fn space_in_a_text_entry_is_typed_and_stops_what_moves() {
 
 /// Issue 21.2: any key while the pointer holds a pad ends the motion and has no other effect.
 #[test]
-fn any_key_while_the_pointer_holds_a_pad_stops() {
+fn any_key_during_a_pointer_jog_stops() {
     let mut screen = in_hand();
     for key in [Key::Space, Key::Enter, Key::F1, Key::A] {
         // The button that Enter would press.
@@ -234,14 +234,14 @@ fn any_key_while_the_pointer_holds_a_pad_stops() {
         assert!(!is_under_way(screen.studio()), "{key:?}");
         up(&mut screen, key);
         pointer(&mut screen, place, false);
-        until_it_stands(&screen);
+        until_stopped(&screen);
         screen.steps();
     }
 }
 
 /// Issue 22.29: the write button accepts a key only after the key was released on the open review.
 #[test]
-fn a_review_takes_a_key_only_after_it_was_seen_up() {
+fn a_review_accepts_a_key_only_after_its_release() {
     let mut screen = in_hand();
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, Hiperdrive::Edit(Box::new(Edit::Set(number(24), 7)))));

@@ -25,7 +25,7 @@ fn status(desk: &Desk) -> StatusWord {
     target.with(|station| station.drive(ONE).unwrap().actual(Moment::default()).status)
 }
 
-fn stands(desk: &Desk) -> bool {
+fn is_at_standstill(desk: &Desk) -> bool {
     status(desk).has(StatusBit::StandingStill)
 }
 
@@ -57,26 +57,26 @@ fn jog(desk: &mut Desk) {
 
 /// Waits for the standstill without polling the window: the stop has been requested before.
 #[track_caller]
-fn until_standing(desk: &Desk) {
+fn until_standstill(desk: &Desk) {
     let began = Instant::now();
-    while !stands(desk) {
+    while !is_at_standstill(desk) {
         assert!(began.elapsed() < LONG, "it still moves");
         std::thread::sleep(Duration::from_millis(1));
     }
 }
 
 #[test]
-fn a_jog_turns_the_drive_for_as_long_as_it_is_held() {
+fn a_jog_turns_the_drive_while_it_is_held() {
     let mut desk = in_control("sim:");
     assert!(!desk.studio.moves() && unit(&desk).may_move(ONE).is_ok());
     assert_eq!(unit(&desk).moves.jog_effort(ONE), Effort::JOG);
     jog(&mut desk);
-    assert!(desk.studio.moves() && !stands(&desk));
+    assert!(desk.studio.moves() && !is_at_standstill(&desk));
     let sent = unit(&desk).moves.sent(ONE).unwrap();
     assert_eq!((sent.speed.get(), sent.torque.get()), (10, 25));
     drive(&mut desk, Motor::JogRelease);
     assert!(!unit(&desk).moves.is_held(), "at once");
-    until_standing(&desk);
+    until_standstill(&desk);
     desk.until("the window knows it", |studio| !studio.moves());
     let where_it_stands = unit(&desk).actual(ONE).unwrap().position;
     assert!(where_it_stands != 0);
@@ -84,34 +84,34 @@ fn a_jog_turns_the_drive_for_as_long_as_it_is_held() {
     drive(&mut desk, Motor::JogHold);
     drive(&mut desk, Motor::JogPress { direction: Direction::Clockwise, repeated: true });
     desk.settle();
-    assert!(stands(&desk) && !unit(&desk).moves.is_held());
+    assert!(is_at_standstill(&desk) && !unit(&desk).moves.is_held());
     assert!(warned(&desk).is_empty());
 }
 
 #[test]
-fn a_jog_that_nobody_says_is_held_ends_by_itself() {
+fn a_jog_that_is_not_refreshed_ends_by_itself() {
     let mut desk = in_control("sim:");
     jog(&mut desk);
-    let before = desk.times_told("hd_end.stale");
+    let before = desk.notice_count("hd_end.stale");
     // Frames are drawn without the button.
     desk.until("it stands", |studio| !studio.moves());
-    assert!(stands(&desk) && !unit(&desk).moves.is_held());
-    assert_eq!(desk.times_told("hd_end.stale"), before + 1);
+    assert!(is_at_standstill(&desk) && !unit(&desk).moves.is_held());
+    assert_eq!(desk.notice_count("hd_end.stale"), before + 1);
     drive(&mut desk, Motor::JogHold);
     desk.settle();
-    assert!(stands(&desk), "an act that has ended does not begin again");
+    assert!(is_at_standstill(&desk), "an act that has ended does not begin again");
 }
 
 #[test]
-fn a_window_that_stands_still_stops_what_moves() {
+fn a_frozen_window_stops_motion() {
     let mut desk = in_control("sim:");
     set_off(&mut desk);
-    until_standing(&desk);
+    until_standstill(&desk);
     assert!(status(&desk).has(StatusBit::StandingStill) && !status(&desk).has(StatusBit::TargetReached));
 }
 
 #[test]
-fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
+fn hiding_the_jog_pad_ends_a_jog_immediately() {
     type Cover = fn(&mut Desk);
     let covers: [(&str, Cover); 14] = [
         ("focus", |desk| desk.act(Action::LetGo)),
@@ -162,7 +162,7 @@ fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
 }
 
 #[test]
-fn a_move_goes_on_in_another_tab_and_ends_by_stop() {
+fn a_move_continues_in_another_tab_and_ends_with_stop() {
     let mut desk = in_control("sim:");
     let goes_on = while_it_moves(&mut desk, |desk| {
         desk.act(Action::ShowTab(crate::tabs::BISS));
@@ -175,7 +175,7 @@ fn a_move_goes_on_in_another_tab_and_ends_by_stop() {
     });
     assert!(goes_on, "{}", crate::support::log(&desk.studio));
     desk.act(Action::Escape);
-    until_standing(&desk);
+    until_standstill(&desk);
     desk.until("the window knows it", |studio| !studio.moves());
     assert!(desk.studio.selected_device().is_none() || desk.studio.settings.tab == crate::tabs::BISS);
 }
@@ -208,11 +208,11 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
     drive(&mut desk, Motor::Expert(true));
     assert!(unit(&desk).may_run_endlessly(ONE).is_ok(), "factory limits and scaling");
     desk.settle();
-    assert!(stands(&desk));
+    assert!(is_at_standstill(&desk));
 }
 
 #[test]
-fn states_are_led_to_and_a_fault_is_acknowledged() {
+fn states_can_be_requested_and_a_fault_acknowledged() {
     let mut desk = in_control("sim:");
     assert_eq!(unit(&desk).reachable(ONE), [State::Ready]);
     drive_until(
@@ -243,11 +243,11 @@ fn states_are_led_to_and_a_fault_is_acknowledged() {
 }
 
 #[test]
-fn locks_say_what_to_do() {
+fn locks_name_a_remedy() {
     let mut desk = in_control("sim:?hub=4&drives=1");
     assert_eq!(unit(&desk).moves.locks(ONE), [Lock::NotRequested], "as a hub comes from the factory");
     drive(&mut desk, Motor::Step { by: 64 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_lock.not_requested"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.not_requested"]);
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Set(number(186), 255));
     assert!(matches!(unit(&desk).marks()[..], [Mark::NoTimeout { .. }]));
@@ -256,17 +256,17 @@ fn locks_say_what_to_do() {
 }
 
 #[test]
-fn a_run_ends_at_once_where_its_panel_is_out_of_sight() {
+fn a_run_ends_immediately_when_its_panel_is_hidden() {
     let mut desk = in_control("sim:");
     let run = Motor::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd };
     drive_until(&mut desk, |_| run, "it runs", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Moving));
     desk.act(Action::ShowTab(crate::tabs::BISS));
-    until_standing(&desk);
+    until_standstill(&desk);
     desk.until("the window knows it", |studio| !studio.moves());
 }
 
 #[test]
-fn limits_that_somebody_else_has_set_are_read_before_anything_moves() {
+fn limits_set_by_another_master_are_read_before_any_motion() {
     let mut desk = read("sim:");
     let target = unit(&desk).target.clone().unwrap();
     let set = |number_: u16, value: i64| {
@@ -282,13 +282,13 @@ fn limits_that_somebody_else_has_set_are_read_before_anything_moves() {
     });
     assert!(unit(&desk).could_run_endlessly(ONE).is_err(), "they are not the factory's");
     drive(&mut desk, Motor::Move { target: 65_537 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
 
 /// Issue 21.4: a drive outside its limits reports it, the pad that leads further out is blocked with its reason, and can be
 /// permitted for one press at a time, at 10 % speed and 25 % torque.
 #[test]
-fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
+fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     let mut desk = in_control("sim:?position=33488896&defect=runs-on");
     let target = unit(&desk).target.clone().unwrap();
     target.with(|station| station.drive(ONE).unwrap().turn_by_hand(Moment::default(), 20_000.0));
@@ -303,7 +303,7 @@ fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
     assert!(own.may_jog(ONE, down).is_ok());
     drive(&mut desk, Motor::JogPress { direction: up, repeated: false });
     desk.studio.poll();
-    assert!(stands(&desk) && !unit(&desk).moves.is_held(), "nothing begins");
+    assert!(is_at_standstill(&desk) && !unit(&desk).moves.is_held(), "nothing begins");
     for _ in 0..2 {
         let free = |desk: &mut Desk| {
             drive(desk, Motor::FreeOutward(up));
@@ -335,7 +335,7 @@ fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
 /// Issue 21.4: with only status bit 15, and the position well inside, the inward direction is not known: nothing moves, and
 /// each pad can be permitted for one press.
 #[test]
-fn outside_by_bit_15_alone_both_pads_are_blocked_until_one_is_freed() {
+fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
     let mut desk = in_control("sim:?defect=says-outside");
     desk.until("what it says is known", |studio| {
         let own = studio.hiperdrive().unwrap();
@@ -365,13 +365,17 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_one_is_freed() {
     }
     desk.studio.poll();
     drive(&mut desk, Motor::Move { target: 65_536 });
-    assert!(desk.told(Severity::Warning).contains(&"hd_refused.unclear"), "{:?}", desk.told(Severity::Warning));
-    assert!(stands(&desk));
+    assert!(
+        desk.notice_ids(Severity::Warning).contains(&"hd_refused.unclear"),
+        "{:?}",
+        desk.notice_ids(Severity::Warning)
+    );
+    assert!(is_at_standstill(&desk));
 }
 
 /// Issue 21.11: unreadable settings may contain a lock: nothing moves before they are read.
 #[test]
-fn settings_that_cannot_be_read_lock_what_is_in_hand() {
+fn unreadable_settings_lock_motion() {
     let mut desk = in_control("sim:");
     let path = desk.outside.store().settings_path();
     let _ = std::fs::remove_file(&path);

@@ -59,7 +59,7 @@ fn each_drive_of_a_hub_has_a_recording() {
 
 /// Issue 21.12: unit, pitch and scale.
 #[test]
-fn no_unit_and_no_scale_forgets_a_recording() {
+fn a_recording_survives_unit_and_scale_changes() {
     let mut desk = read("sim:");
     until_recorded(&mut desk, 3);
     let before = positions(&desk);
@@ -86,7 +86,7 @@ fn no_unit_and_no_scale_forgets_a_recording() {
 
 /// Issue 21.12: the table of one drive is complete if another one is shown while it is written.
 #[test]
-fn a_table_is_written_while_another_drive_is_shown() {
+fn a_table_is_exported_while_another_drive_is_shown() {
     let mut desk = read("sim:?hub=4&drives=1,0,1");
     until_recorded(&mut desk, 5);
     let path = desk.outside.path("table.csv");

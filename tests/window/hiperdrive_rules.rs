@@ -38,7 +38,7 @@ fn set(desk: &Desk, of: u16, value: i64) {
 }
 
 #[test]
-fn what_rules_a_drive_in_hand_is_read_whatever_is_polled() {
+fn limits_under_control_are_read_at_any_polling_rate() {
     for pace in [None, Some(Duration::from_secs(3600))] {
         let mut desk = in_control("sim:");
         command(&mut desk, DeviceCommand::Poll(pace));
@@ -61,17 +61,17 @@ fn what_rules_a_drive_in_hand_is_read_whatever_is_polled() {
 }
 
 #[test]
-fn another_drive_of_a_hub_moves_by_what_was_read_since_it_is_shown() {
+fn a_newly_selected_drive_moves_only_with_freshly_read_limits() {
     let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
     assert!(unit(&desk).may_move(two()).is_ok());
     set(&desk, 260, 65_536);
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     drive(&mut desk, Motor::Move { target: 65_537 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_lock.old"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.old"]);
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(two()).is_ok());
     assert_eq!(unit(&desk).limits(two()), Some((-33_488_896, 65_536)), "by what it has now");
     drive(&mut desk, Motor::Move { target: 65_537 });
-    assert_eq!(desk.told(Severity::Warning), ["hd_lock.old", "hd_refused.outside"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lock.old", "hd_refused.outside"]);
     let to_64 = |own: &Unit| Motor::Step { by: 64 - own.actual(two()).unwrap().position };
     drive_until(&mut desk, to_64, "it moves", |studio| {
         studio.hiperdrive().unwrap().actual(two()).is_some_and(|own| own.position == 64)
@@ -133,7 +133,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
 }
 
 #[test]
-fn what_cannot_be_read_stops_what_moves_until_it_can() {
+fn unreadable_limits_stop_motion_until_readable() {
     let (mut desk, bad) = over_a_bad_stream();
     set_off(&mut desk);
     bad.store(true, Ordering::SeqCst);
@@ -143,13 +143,13 @@ fn what_cannot_be_read_stops_what_moves_until_it_can() {
     });
     assert!(unit(&desk).moves.is_open() && unit(&desk).session.is_polling(), "it is seen all the same");
     drive(&mut desk, Motor::Step { by: 64 });
-    assert_eq!(desk.told(Severity::Warning).last(), Some(&"hd_lock.old"));
+    assert_eq!(desk.notice_ids(Severity::Warning).last(), Some(&"hd_lock.old"));
     let began = Instant::now();
     desk.until("some time passes", |studio| {
         assert!(studio.hiperdrive().unwrap().may_move(ONE).is_err());
         began.elapsed() > Duration::from_secs(2)
     });
-    assert_eq!(desk.times_told("hd_end.rules"), 1);
+    assert_eq!(desk.notice_count("hd_end.rules"), 1);
     bad.store(false, Ordering::SeqCst);
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
     desk.until("what was told is over", |studio| {
@@ -158,15 +158,15 @@ fn what_cannot_be_read_stops_what_moves_until_it_can() {
     assert!(unit(&desk).moves.is_open() && began.elapsed() < LONG);
 }
 
-fn rules_stand(studio: &Studio) -> bool {
+fn has_rules_notice(studio: &Studio) -> bool {
     studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.rules"))
 }
 
 #[test]
-fn what_could_not_be_read_is_over_where_the_control_is_given_back() {
+fn the_notice_of_unreadable_limits_ends_with_control() {
     let (mut desk, bad) = over_a_bad_stream();
     bad.store(true, Ordering::SeqCst);
-    desk.until("that is told", rules_stand);
+    desk.until("that is told", has_rules_notice);
     // Before the next reading.
     bad.store(false, Ordering::SeqCst);
     act(&mut desk, Hiperdrive::Give);
@@ -174,7 +174,7 @@ fn what_could_not_be_read_is_over_where_the_control_is_given_back() {
         let own = studio.hiperdrive().unwrap();
         !own.moves.is_open() && own.session.is_ready()
     });
-    assert!(!rules_stand(&desk.studio));
+    assert!(!has_rules_notice(&desk.studio));
 }
 
 fn fail(desk: &Desk, own: DriveNumber) {
@@ -182,26 +182,26 @@ fn fail(desk: &Desk, own: DriveNumber) {
     target.with(|station| station.drive(own).unwrap().fail(Moment::default(), ErrorCode::BLOCK_FORWARD));
 }
 
-fn fault_stands(studio: &Studio) -> bool {
+fn has_fault_notice(studio: &Studio) -> bool {
     studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.fault"))
 }
 
 /// Drive 2 has failed before; drive 1 fails while it moves, which is reported, and drive 2 recovers.
 #[test]
-fn a_fault_of_one_drive_is_not_over_where_another_recovers() {
+fn a_fault_notice_does_not_end_with_another_drives_recovery() {
     let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(two()).is_ok());
     set_off(&mut desk);
     fail(&desk, two());
-    desk.until("its fault is told", fault_stands);
+    desk.until("its fault is told", has_fault_notice);
     act(&mut desk, Hiperdrive::SelectDrive(ONE));
     desk.until("the other may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
     set_off(&mut desk);
     fail(&desk, ONE);
     desk.until("both have failed", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Fault));
-    desk.until("that is told", |studio| fault_stands(studio) && studio.hiperdrive().unwrap().session.is_ready());
-    assert_eq!(desk.times_told("hd_end.fault"), 2);
+    desk.until("that is told", |studio| has_fault_notice(studio) && studio.hiperdrive().unwrap().session.is_ready());
+    assert_eq!(desk.notice_count("hd_end.fault"), 2);
     act(&mut desk, Hiperdrive::SelectDrive(two()));
     drive_until(
         &mut desk,
@@ -210,14 +210,14 @@ fn a_fault_of_one_drive_is_not_over_where_another_recovers() {
         |studio| studio.hiperdrive().unwrap().state(two()) == Some(State::Ready),
     );
     desk.settle();
-    assert!(fault_stands(&desk.studio), "the other has not");
+    assert!(has_fault_notice(&desk.studio), "the other has not");
     act(&mut desk, Hiperdrive::SelectDrive(ONE));
-    drive_until(&mut desk, |_| Motor::Acknowledge, "all have recovered", |studio| !fault_stands(studio));
+    drive_until(&mut desk, |_| Motor::Acknowledge, "all have recovered", |studio| !has_fault_notice(studio));
 }
 
 /// A reading of all states that began before a fault ends after it.
 #[test]
-fn a_reading_from_before_a_fault_does_not_say_that_it_is_over() {
+fn a_reading_from_before_a_fault_does_not_end_its_notice() {
     let mut desk = in_control("sim:?hub=4&drives=1,1,1,1&requested=1");
     for _ in 0..3 {
         set_off(&mut desk);
@@ -228,19 +228,19 @@ fn a_reading_from_before_a_fault_does_not_say_that_it_is_over() {
         desk.until("it has failed", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Fault));
         desk.until("everything is read", |studio| studio.hiperdrive().unwrap().session.is_ready());
         desk.settle();
-        assert!(fault_stands(&desk.studio));
+        assert!(has_fault_notice(&desk.studio));
         drive_until(
             &mut desk,
             |_| Motor::Acknowledge,
             "it has recovered",
-            |studio| !fault_stands(studio) && studio.hiperdrive().unwrap().may_move(ONE).is_ok(),
+            |studio| !has_fault_notice(studio) && studio.hiperdrive().unwrap().may_move(ONE).is_ok(),
         );
     }
 }
 
 /// A drive that is locked for two reasons has one place to confirm its limits.
 #[test]
-fn limits_are_confirmed_at_one_place() {
+fn limits_are_confirmed_in_one_place() {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let is_ready = |studio: &Studio, open: bool| {
         let own = studio.hiperdrive();

@@ -84,7 +84,7 @@ pub(crate) fn pointer(screen: &mut Screen, pos: Pos2, pressed: bool) {
 }
 
 /// Waits for the standstill without drawing a frame.
-pub(crate) fn until_it_stands(screen: &Screen) {
+pub(crate) fn until_stopped(screen: &Screen) {
     let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
     let began = Instant::now();
     let moves = |own: &DriveView| own.actual.status.state() == State::Moving || own.phase != Phase::Idle;
@@ -101,12 +101,12 @@ fn stopped_by_a_press() -> (Screen, Pos2) {
     screen.harness.hover_at(place);
     screen.harness.step();
     pointer(&mut screen, place, true);
-    until_it_stands(&screen);
+    until_stopped(&screen);
     (screen, place)
 }
 
 #[test]
-fn a_click_that_stops_a_drive_ends_nothing_else_however_soon_it_stands() {
+fn a_click_that_stops_a_drive_stops_nothing_else() {
     let (mut screen, place) = stopped_by_a_press();
     // Two frames of a quarter of a second: still a click.
     screen.harness.step();
@@ -121,7 +121,7 @@ fn a_click_that_stops_a_drive_ends_nothing_else_however_soon_it_stands() {
 }
 
 #[test]
-fn a_second_click_in_a_fright_ends_nothing_else() {
+fn a_quick_second_click_stops_nothing_else() {
     let (mut screen, place) = stopped_by_a_press();
     for pressed in [false, true, false] {
         pointer(&mut screen, place, pressed);
@@ -132,7 +132,7 @@ fn a_second_click_in_a_fright_ends_nothing_else() {
 }
 
 #[test]
-fn escape_that_is_held_or_hit_again_in_a_fright_ends_nothing_but_the_motion() {
+fn held_or_repeated_escape_stops_only_the_motion() {
     for is_held in [true, false] {
         let mut screen = moving();
         // A move continues under a dialog, which the next Esc would close.
@@ -140,7 +140,7 @@ fn escape_that_is_held_or_hit_again_in_a_fright_ends_nothing_but_the_motion() {
         assert!(moves(&screen));
         screen.harness.key_down(Key::Escape);
         screen.harness.step();
-        until_it_stands(&screen);
+        until_stopped(&screen);
         for _ in 0..8 {
             if !is_held {
                 screen.harness.key_up(Key::Escape);
@@ -157,13 +157,13 @@ fn escape_that_is_held_or_hit_again_in_a_fright_ends_nothing_but_the_motion() {
 }
 
 #[test]
-fn a_click_behind_the_stop_of_the_page_ends_nothing_else() {
+fn a_click_after_the_page_stop_stops_nothing_else() {
     let mut screen = moving();
     let [above, page] = places(&screen, "hd_bar.stop")[..] else { panic!() };
     screen.harness.hover_at(page);
     screen.harness.step();
     pointer(&mut screen, page, true);
-    until_it_stands(&screen);
+    until_stopped(&screen);
     // Two frames of a quarter of a second: still a click.
     screen.harness.step();
     screen.harness.step();
@@ -178,7 +178,7 @@ fn a_click_behind_the_stop_of_the_page_ends_nothing_else() {
 
 /// After a pause its button resumes: a second press in panic is not a request for that. A later one is.
 #[test]
-fn a_second_click_on_pause_in_a_fright_does_not_go_on() {
+fn a_quick_second_click_on_pause_does_not_resume() {
     let mut screen = moving();
     let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
     let phase = || motion.view().drives[0].phase;
@@ -210,12 +210,12 @@ fn a_second_click_on_pause_in_a_fright_does_not_go_on() {
 
 /// Esc with a modifier is Esc all the same while something moves.
 #[test]
-fn escape_with_a_modifier_stops_as_well() {
+fn escape_with_a_modifier_stops() {
     for modifiers in [Modifiers::CTRL, Modifiers::ALT, Modifiers::SHIFT] {
         let mut screen = moving();
         screen.harness.key_press_modifiers(modifiers, Key::Escape);
         screen.harness.step();
-        until_it_stands(&screen);
+        until_stopped(&screen);
         let ended = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().view().drives[0].ended;
         assert!(matches!(ended, Some((_, Ended::Stopped))), "{modifiers:?}: {ended:?}");
     }
@@ -223,7 +223,7 @@ fn escape_with_a_modifier_stops_as_well() {
 
 /// Esc is already down when the motion starts: the system repeats the key.
 #[test]
-fn escape_that_is_held_stops_what_begins_meanwhile() {
+fn held_escape_stops_a_newly_started_motion() {
     let mut screen = in_hand();
     screen.harness.key_down(Key::Escape);
     screen.steps();
@@ -235,7 +235,7 @@ fn escape_that_is_held_stops_what_begins_meanwhile() {
 }
 
 /// Returns a drive that is watched here, and moved by another master.
-fn moved_by_somebody_else() -> Screen {
+fn moved_by_another_master() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let own = |studio: &Studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready());
     screen.until("it is read", own);
@@ -250,8 +250,8 @@ fn moved_by_somebody_else() -> Screen {
 
 /// The motion of another host cannot be stopped here: Esc closes the open dialog.
 #[test]
-fn escape_closes_what_is_open_while_somebody_else_moves_a_drive() {
-    let mut screen = moved_by_somebody_else();
+fn escape_closes_dialogs_while_another_master_moves_a_drive() {
+    let mut screen = moved_by_another_master();
     screen.key(Key::F1);
     screen.key(Key::Escape);
     assert!(screen.studio().hiperdrive().unwrap().session.is_polling(), "the help is closed, and it is still watched");
@@ -261,8 +261,8 @@ fn escape_closes_what_is_open_while_somebody_else_moves_a_drive() {
 
 /// Nor does it prevent STOP from ending a job; it counts like any other click.
 #[test]
-fn stop_ends_what_runs_while_somebody_else_moves_a_drive() {
-    let mut screen = moved_by_somebody_else();
+fn stop_ends_jobs_while_another_master_moves_a_drive() {
+    let mut screen = moved_by_another_master();
     let polls = |screen: &Screen| screen.studio().hiperdrive().unwrap().session.is_polling();
     let place = stop(&screen);
     screen.harness.hover_at(place);
@@ -275,7 +275,7 @@ fn stop_ends_what_runs_while_somebody_else_moves_a_drive() {
 
 /// Issue 23: an action of another kind was meant for something that does not exist here.
 #[test]
-fn an_action_of_another_kind_is_told_and_stops_what_moves() {
+fn an_action_of_another_kind_is_reported_and_stops_motion() {
     let mut screen = moving();
     let id = screen.studio().hiperdrive().unwrap().session.id;
     screen.act(Action::device(id, encoder_studio::devices::ssi::state::SsiAction::Check));

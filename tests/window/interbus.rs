@@ -94,7 +94,7 @@ fn write(desk: &mut Desk) -> String {
 }
 
 #[test]
-fn a_virtual_encoder_is_read_by_itself() {
+fn a_virtual_encoder_is_read_automatically() {
     let mut desk = read(CAMS);
     // Issue 22.3: each of the eight programs may have been stored when it was left.
     desk.until("stores are counted", |studio| studio.interbus().unwrap().stores() == Some(8));
@@ -102,7 +102,7 @@ fn a_virtual_encoder_is_read_by_itself() {
     let parameters = own.staged.device().unwrap().parameters;
     assert_eq!((parameters.steps, parameters.revolutions), (3600, 1));
     assert!(own.position().is_some() && !own.is_dirty());
-    assert!(desk.told(Severity::Warning).is_empty());
+    assert!(desk.notice_ids(Severity::Warning).is_empty());
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
 }
 
 #[test]
-fn what_an_encoder_sends_is_chosen_and_followed() {
+fn the_mode_of_an_encoder_can_be_selected() {
     let mut desk = read(CAMS);
     act(&mut desk, Interbus::Select(StartupMode::Cams(program(1))));
     desk.until("outputs come", |studio| {
@@ -157,7 +157,7 @@ fn what_an_encoder_sends_is_chosen_and_followed() {
 }
 
 #[test]
-fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
+fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
     let mut desk = connected(&format!("modbus:{GATE}"));
     desk.until("a word has come", |studio| {
         studio.interbus().is_some_and(|own| own.record.last().is_some() && own.session.is_ready())
@@ -168,13 +168,13 @@ fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
     assert_eq!(sent(&desk), 0, "no OUT word");
     wish(&mut desk, DeviceCommand::Read);
     desk.settle();
-    assert_eq!((desk.times_told("ib_stop.first"), sent(&desk)), (1, 0));
+    assert_eq!((desk.notice_count("ib_stop.first"), sent(&desk)), (1, 0));
     // Issue 22.31: a profile of its content selects cam programs.
     command(&mut desk, DeviceCommand::AskSave);
     act(&mut desk, Interbus::Save("k3.ron".into()));
     desk.settle();
     assert!(desk.studio.take_file_question().is_none());
-    assert_eq!((desk.times_told("ib_stop.first"), sent(&desk)), (3, 0));
+    assert_eq!((desk.notice_count("ib_stop.first"), sent(&desk)), (3, 0));
     act(&mut desk, Interbus::Stopped(true));
     wish(&mut desk, DeviceCommand::Read);
     desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());
@@ -193,7 +193,7 @@ fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
 }
 
 #[test]
-fn a_table_is_looked_at_before_it_is_taken_and_says_what_became_of_each_edge() {
+fn a_pasted_table_is_previewed_with_the_rounding_of_each_edge() {
     let mut desk = read(CAMS);
     // A machine of 360 degrees over 3600 steps: a tenth of a degree is a step.
     act(&mut desk, Interbus::SetScale(Scale::degrees(3600.0, 0).unwrap()));

@@ -28,7 +28,7 @@ fn closed_while_writing(mut desk: Desk) -> Desk {
 }
 
 #[test]
-fn a_write_whose_session_is_closed_is_waited_for_and_told() {
+fn a_write_of_a_closed_session_is_awaited_and_reported() {
     let mut desk = closed_while_writing(Desk::at_port(""));
     desk.act(Action::Close);
     desk.settle();
@@ -36,13 +36,13 @@ fn a_write_whose_session_is_closed_is_waited_for_and_told() {
     assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Running);
     desk.wire().release();
     desk.until("it may close", |studio| studio.may_close());
-    assert!(desk.told(Severity::Warning).contains(&"write.cancelled"));
+    assert!(desk.notice_ids(Severity::Warning).contains(&"write.cancelled"));
     assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
     assert_eq!(desk.wire().field(0)[..3], *b"XMD");
 }
 
 #[test]
-fn a_wire_is_opened_again_only_after_the_write_on_it_has_ended() {
+fn a_wire_is_reopened_only_after_its_write_has_ended() {
     let mut desk = closed_while_writing(Desk::at_port(""));
     let sent = desk.wire().sent();
     desk.open(&format!("serial:{PORT}"));
@@ -50,14 +50,14 @@ fn a_wire_is_opened_again_only_after_the_write_on_it_has_ended() {
     assert_eq!((desk.phase(), desk.wire().sent()), (&Phase::Opening, sent));
     desk.wire().release();
     desk.until_read();
-    assert!(desk.told(Severity::Warning).contains(&"write.cancelled"));
+    assert!(desk.notice_ids(Severity::Warning).contains(&"write.cancelled"));
     assert_eq!(desk.encoder().staged.on_device(0, 0), Some(b'X'));
 }
 
 /// The disk takes the edit only when the test lets it.
 #[cfg(unix)]
 #[test]
-fn the_draft_of_a_closed_session_is_waited_for() {
+fn the_draft_of_a_closed_session_is_awaited() {
     let mut desk = Desk::begun("");
     let draft = desk.outside.path("data/drafts/hiperface-virtual/37-GB0450179.ron");
     std::fs::create_dir_all(draft.parent().unwrap()).unwrap();
@@ -75,7 +75,7 @@ fn the_draft_of_a_closed_session_is_waited_for() {
 
 /// The first attempt is late, after another one has connected.
 #[test]
-fn what_an_earlier_attempt_opened_is_not_used() {
+fn a_link_from_an_earlier_attempt_is_not_used() {
     let mut desk = Desk::fresh("");
     desk.outside.patience.job = Duration::from_millis(50);
     desk.studio = desk.outside.studio();
@@ -94,7 +94,7 @@ fn what_an_earlier_attempt_opened_is_not_used() {
 }
 
 #[test]
-fn a_session_whose_thread_is_dead_is_lost_with_what_it_did() {
+fn a_session_with_a_dead_thread_is_lost_with_its_job() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.wire().kill();
@@ -118,7 +118,7 @@ fn a_session_whose_thread_is_dead_is_lost_with_what_it_did() {
 }
 
 #[test]
-fn closing_does_not_wait_for_ever_for_a_job_and_longer_for_a_write() {
+fn closing_waits_briefly_for_a_job_and_longer_for_a_write() {
     let mut desk = Desk::impatient("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);

@@ -43,7 +43,7 @@ fn with_a_profile(desk: &mut Desk) {
 }
 
 #[test]
-fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_later() {
+fn a_stopped_restore_reports_progress_and_can_be_completed() {
     let mut desk = Desk::begun("");
     with_a_profile(&mut desk);
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
@@ -89,7 +89,7 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
 }
 
 #[test]
-fn a_cable_pulled_while_writing_leaves_a_report_and_the_edits() {
+fn a_cable_pulled_during_a_write_leaves_a_report_and_the_edits() {
     let mut desk = Desk::at_port("");
     for (address, byte) in [(0, b'a'), (2, b'b'), (4, b'c')] {
         desk.put(0, address, &[byte]);
@@ -116,7 +116,7 @@ fn a_cable_pulled_while_writing_leaves_a_report_and_the_edits() {
 }
 
 #[test]
-fn a_cable_pulled_while_something_is_read_is_told_once() {
+fn a_cable_pulled_while_reading_is_reported_once() {
     let mut desk = Desk::at_port("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);
@@ -125,7 +125,7 @@ fn a_cable_pulled_while_something_is_read_is_told_once() {
     desk.wire().release();
     desk.until("it is lost", lost);
     desk.settle();
-    assert_eq!(desk.told(Severity::Error), ["link.lost"]);
+    assert_eq!(desk.notice_ids(Severity::Error), ["link.lost"]);
     let last = desk.studio.services.jobs().next_back().unwrap();
     assert!(matches!(&last.end, JobEnd::Failed(why) if why.id() == "link.lost") && last.until.is_some());
     let frames = desk.encoder().session.trace.lines();
@@ -134,7 +134,7 @@ fn a_cable_pulled_while_something_is_read_is_told_once() {
 
 /// Another encoder on the same cable: the edits wait for the one they were made for.
 #[test]
-fn edits_do_not_go_onto_another_encoder_and_come_back_with_their_own() {
+fn edits_return_only_with_their_own_encoder() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
@@ -147,7 +147,7 @@ fn edits_do_not_go_onto_another_encoder_and_come_back_with_their_own() {
     desk.until_ready();
     desk.settle();
     assert!(desk.edits().is_empty());
-    assert_eq!(desk.times_told("session.other_encoder"), 1);
+    assert_eq!(desk.notice_count("session.other_encoder"), 1);
     desk.put(0, 1, b"Y");
     desk.until_kept();
 
@@ -159,7 +159,7 @@ fn edits_do_not_go_onto_another_encoder_and_come_back_with_their_own() {
     desk.until("the first is read", |studio| serial(studio) == Some("GB0450179"));
     desk.until("its edits are back", |studio| studio.hiperface().unwrap().staged.is_dirty());
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
-    assert_eq!(desk.times_told("session.draft_back"), 1);
+    assert_eq!(desk.notice_count("session.draft_back"), 1);
     desk.until_ready();
     desk.write();
     assert_eq!(desk.wire().field(0)[..2], *b"XM");
@@ -172,7 +172,7 @@ fn serial(studio: &Studio) -> Option<&str> {
 
 /// The adapter stays plugged in, its encoder does not: no link is lost, and the program is not told.
 #[test]
-fn an_encoder_exchanged_behind_the_adapter_is_noticed_before_anything_is_planned() {
+fn an_encoder_swapped_behind_the_adapter_is_detected_before_planning() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
@@ -182,25 +182,25 @@ fn an_encoder_exchanged_behind_the_adapter_is_noticed_before_anything_is_planned
     desk.until_ready();
     desk.settle();
     assert!(desk.encoder().session.review.is_none() && desk.edits().is_empty());
-    assert_eq!(desk.times_told("session.other_encoder"), 1);
+    assert_eq!(desk.notice_count("session.other_encoder"), 1);
     assert_eq!(desk.wire().wear(), 0);
 }
 
 /// Without edits, only the discarded plan is reported.
 #[test]
-fn a_plan_for_an_encoder_that_was_exchanged_is_discarded_and_that_is_told() {
+fn a_plan_for_a_swapped_encoder_is_discarded_with_a_notice() {
     let mut desk = Desk::at_port("");
     desk.wire().exchange("serial=OTHER0001");
     desk.ask(Hiperface::Plan(Change::ShiftPosition { steps: 12 }));
     desk.until("the other is read", |studio| serial(studio) == Some("OTHER0001"));
     desk.until_ready();
     assert!(desk.encoder().session.review.is_none());
-    assert_eq!((desk.times_told("session.plan_of_another"), desk.times_told("session.other_encoder")), (1, 0));
+    assert_eq!((desk.notice_count("session.plan_of_another"), desk.notice_count("session.other_encoder")), (1, 0));
 }
 
 /// The survey after the replug is stopped: the encoder is not identified, and the edits are not offered to it.
 #[test]
-fn a_stopped_reading_does_not_let_edits_through_to_another_encoder() {
+fn a_stopped_reading_offers_no_edits_to_another_encoder() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.until_kept();
@@ -223,7 +223,7 @@ fn a_stopped_reading_does_not_let_edits_through_to_another_encoder() {
 }
 
 #[test]
-fn a_new_address_is_followed_by_the_session_and_by_the_next_one() {
+fn a_new_address_is_used_by_this_and_the_next_session() {
     let mut desk = Desk::at_port("");
     let address = encoder_studio::devices::hiperface::state::forms::address("41").unwrap();
     desk.ask(Hiperface::Plan(Change::SetAddress(address)));
@@ -235,17 +235,17 @@ fn a_new_address_is_followed_by_the_session_and_by_the_next_one() {
     desk.wire().unplug();
     desk.until("it is lost", lost);
     desk.wire().plug();
-    let errors = desk.told(Severity::Error).len();
+    let errors = desk.notice_ids(Severity::Error).len();
     desk.command(DeviceCommand::Reconnect);
     desk.until_read();
-    assert_eq!(desk.told(Severity::Error).len(), errors);
+    assert_eq!(desk.notice_ids(Severity::Error).len(), errors);
     let link = format!("serial:{PORT}?address=0x41");
     assert_eq!(desk.encoder().session.source, encoder_studio::app::session::Source::Link(link.parse().unwrap()));
 }
 
 /// The cable is pulled after the address was changed and before it is read back.
 #[test]
-fn what_an_interrupted_write_did_is_followed() {
+fn a_change_by_an_interrupted_write_is_followed() {
     let mut desk = Desk::at_port("");
     let address = encoder_studio::devices::hiperface::state::forms::address("41").unwrap();
     desk.ask(Hiperface::Plan(Change::SetAddress(address)));
@@ -268,7 +268,7 @@ fn what_an_interrupted_write_did_is_followed() {
 }
 
 #[test]
-fn other_settings_are_followed_from_the_restart_on() {
+fn changed_settings_are_followed_after_the_restart() {
     let mut desk = Desk::at_port("");
     let stored = desk.encoder().identity.as_ref().unwrap().label.settings;
     let format = CharacterFormat { baud: Baud::new(19_200).unwrap(), parity: Parity::Odd };
@@ -308,7 +308,7 @@ fn other_settings_are_followed_from_the_restart_on() {
 
 /// The link is open without an answer: that is neither connected nor lost.
 #[test]
-fn an_encoder_that_does_not_answer_is_not_connected() {
+fn a_silent_encoder_is_not_shown_as_connected() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.wire().exchange("fault=silent-after:0");
@@ -344,7 +344,7 @@ fn an_encoder_that_does_not_answer_is_not_connected() {
 }
 
 #[test]
-fn access_codes_go_to_no_other_encoder_on_the_link() {
+fn access_codes_are_not_sent_to_another_encoder() {
     let mut desk = Desk::at_port("codes=0:9D");
     let code = encoder_studio::devices::hiperface::state::forms::access_code("9D").unwrap();
     desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
@@ -361,7 +361,7 @@ fn access_codes_go_to_no_other_encoder_on_the_link() {
 }
 
 #[test]
-fn connecting_again_to_a_wire_that_is_written_is_refused() {
+fn reconnecting_during_a_write_is_refused() {
     let mut desk = Desk::at_port("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -371,14 +371,14 @@ fn connecting_again_to_a_wire_that_is_written_is_refused() {
     desk.wire().wait_until_held();
     desk.open(&format!("serial:{PORT}?address=0x40"));
     desk.command(DeviceCommand::Reconnect);
-    assert_eq!(desk.times_told("session.busy"), 1);
+    assert_eq!(desk.notice_count("session.busy"), 1);
     assert!(desk.encoder().session.is_writing());
     desk.wire().release();
     desk.until_written();
 }
 
 #[test]
-fn connecting_again_while_something_is_read_ends_that() {
+fn reconnecting_while_reading_ends_the_job() {
     let mut desk = Desk::at_port("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);
@@ -387,11 +387,11 @@ fn connecting_again_while_something_is_read_ends_that() {
     assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
     desk.wire().release();
     desk.until_read();
-    assert!(desk.told(Severity::Error).is_empty());
+    assert!(desk.notice_ids(Severity::Error).is_empty());
 }
 
 #[test]
-fn live_values_go_on_around_a_job_and_end_with_the_cable() {
+fn live_values_continue_around_a_job_and_end_with_the_cable() {
     let mut desk = Desk::at_port("rpm=60");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     assert!(desk.studio.is_live() && desk.studio.can_stop());
@@ -403,7 +403,7 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
     let points = desk.encoder().record.positions();
     desk.until("samples go on", |studio| studio.hiperface().unwrap().record.positions() > points + 10);
     assert_eq!(desk.bad_positions(), 0);
-    assert!(desk.told(Severity::Warning).is_empty());
+    assert!(desk.notice_ids(Severity::Warning).is_empty());
 
     desk.wire().unplug();
     desk.until("it is lost", lost);
@@ -413,12 +413,12 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
         desk.studio.poll();
         std::thread::sleep(Duration::from_millis(10));
     }
-    assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
+    assert_eq!(desk.notice_ids(Severity::Error), ["link.lost"], "once");
 }
 
 /// The failure was in transit when the user made a new request: it belongs to the earlier request.
 #[test]
-fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
+fn a_late_failure_does_not_affect_newer_live_values() {
     let mut desk = Desk::at_port("");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
@@ -435,7 +435,7 @@ fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
     let points = desk.encoder().record.positions();
     desk.until("samples go on", |studio| studio.hiperface().unwrap().record.positions() > points + 3);
     assert!(desk.studio.is_live());
-    assert_eq!(desk.times_told("session.poll_failed"), 0);
+    assert_eq!(desk.notice_count("session.poll_failed"), 0);
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn ready(screen: &mut Screen) {
 
 /// Issue 21.7: a notice and a running job appear and disappear without user input.
 #[test]
-fn what_appears_elsewhere_exchanges_no_button() {
+fn notices_and_progress_do_not_move_buttons() {
     for (tab, scheme, port, reads) in KINDS {
         let mut screen = Screen::opened_in(tab, &format!("{scheme}:{port}"), SIZE);
         ready(&mut screen);
@@ -93,7 +93,7 @@ fn what_appears_elsewhere_exchanges_no_button() {
 
 /// Issue 21.7: a click during which a notice disappears, or appears.
 #[test]
-fn a_click_counts_whatever_appears_between_its_press_and_its_release() {
+fn a_click_counts_despite_layout_changes_during_it() {
     for comes in [true, false] {
         let mut screen = Screen::begun(SIZE);
         if !comes {
@@ -119,7 +119,7 @@ fn a_click_counts_whatever_appears_between_its_press_and_its_release() {
 
 /// Issue 22.29: keyboard focus on a button of a review that is still planned is not on any button of the completed plan.
 #[test]
-fn a_review_that_becomes_ready_takes_no_key_for_a_button_before() {
+fn a_review_becoming_ready_ignores_a_key_pressed_before() {
     let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);
     ready(&mut screen);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });

@@ -32,7 +32,7 @@ fn open(desk: &mut Desk, path: &std::path::Path) {
 }
 
 #[test]
-fn a_saved_profile_is_the_encoder() {
+fn a_saved_profile_matches_the_encoder() {
     let (desk, path) = saved();
     let profile = Document::parse(&read_text(&path).unwrap(), program().studio.formats)
         .unwrap()
@@ -46,7 +46,7 @@ fn a_saved_profile_is_the_encoder() {
 }
 
 #[test]
-fn a_profile_of_an_encoder_holds_what_it_has_and_says_what_is_not_in_it() {
+fn a_profile_of_a_locked_encoder_lists_missing_values() {
     let mut desk = Desk::at_port("codes=0:9D");
     let path = desk.outside.path("locked.ron");
     desk.ask(Hiperface::Save(path.clone()));
@@ -75,7 +75,7 @@ fn a_profile_of_an_encoder_holds_what_it_has_and_says_what_is_not_in_it() {
 }
 
 #[test]
-fn saving_asks_for_a_file_named_after_the_encoder() {
+fn saving_suggests_a_file_named_after_the_encoder() {
     let mut desk = Desk::begun("");
     desk.command(DeviceCommand::AskSave);
     let suggested = "SKM36-GB0450179.ron".into();
@@ -91,14 +91,14 @@ fn saving_asks_for_a_file_named_after_the_encoder() {
 
 /// Two saves at once: the second is refused, and the first goes to its own file.
 #[test]
-fn a_refused_save_does_not_lead_another_astray() {
+fn a_refused_save_does_not_redirect_another() {
     let mut desk = Desk::begun("");
     let (first, second) = (desk.outside.path("first.ron"), desk.outside.path("second.ron"));
     desk.wire().hold_at(0x4A, 1);
     desk.ask(Hiperface::Save(first.clone()));
     desk.wire().wait_until_held();
     desk.ask(Hiperface::Save(second.clone()));
-    assert_eq!(desk.times_told("session.busy"), 1);
+    assert_eq!(desk.notice_count("session.busy"), 1);
     desk.wire().release();
     desk.until("it is saved", |_| first.exists());
     desk.settle();
@@ -106,19 +106,19 @@ fn a_refused_save_does_not_lead_another_astray() {
 }
 
 #[test]
-fn a_profile_that_cannot_be_read_is_told_and_left() {
+fn an_unreadable_profile_is_reported_and_not_changed() {
     let mut desk = Desk::begun("");
     let path = desk.outside.path("broken.ron");
     for (content, id) in
         [("(schema: 1,, )", "profile.invalid"), ("(schema: 99, device: \"hiperface\")", "profile.schema")]
     {
         fs::write(&path, content).unwrap();
-        let before = desk.told(Severity::Error).len();
+        let before = desk.notice_ids(Severity::Error).len();
         desk.act(Action::Open(path.clone()));
         desk.until("it is told", |studio| {
             studio.services.log.notices().filter(|own| own.severity == Severity::Error).count() > before
         });
-        assert_eq!(*desk.told(Severity::Error).last().unwrap(), id);
+        assert_eq!(*desk.notice_ids(Severity::Error).last().unwrap(), id);
         assert_eq!(fs::read_to_string(&path).unwrap(), content);
     }
     desk.act(Action::Open(desk.outside.path("none.ron")));
@@ -134,18 +134,18 @@ fn a_profile_of_a_newer_schema_is_neither_saved_nor_written() {
     let newer = read_text(&path).unwrap().replace("schema: 1", "schema: 9");
     fs::write(&path, &newer).unwrap();
     open(&mut desk, &path);
-    assert_eq!(desk.times_told("profile.newer"), 1);
+    assert_eq!(desk.notice_count("profile.newer"), 1);
     desk.put(0, 0, b"X");
     desk.ask(Hiperface::Save(path.clone()));
-    assert_eq!(desk.times_told("profile.newer"), 2);
+    assert_eq!(desk.notice_count("profile.newer"), 2);
     desk.command(DeviceCommand::WriteInto(encoder));
-    assert_eq!((desk.times_told("profile.newer"), desk.encoder().session.name().as_str()), (3, "mine.ron"));
+    assert_eq!((desk.notice_count("profile.newer"), desk.encoder().session.name().as_str()), (3, "mine.ron"));
     assert_eq!(fs::read_to_string(&path).unwrap(), newer);
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 }
 
 #[test]
-fn a_profile_read_again_keeps_its_edits() {
+fn a_reloaded_profile_keeps_its_edits() {
     let (mut desk, path) = saved();
     open(&mut desk, &path);
     assert_eq!(desk.encoder().session.name(), "mine.ron");
@@ -177,7 +177,7 @@ fn a_profile_read_again_keeps_its_edits() {
 }
 
 #[test]
-fn a_profile_is_not_protected_by_what_it_says_about_protection() {
+fn an_open_profile_ignores_its_own_write_protection() {
     let mut desk = Desk::fresh("");
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperface");
     let path = desk.outside.path("ready-made.ron");
@@ -190,7 +190,7 @@ fn a_profile_is_not_protected_by_what_it_says_about_protection() {
 }
 
 #[test]
-fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
+fn a_profile_is_restored_to_another_encoder_only_with_permission() {
     let (mut desk, path) = saved();
     refused_by_another(&mut desk, &path, &[(0, b"X")]);
     let mut options = desk.review().options().unwrap();
@@ -244,7 +244,7 @@ fn allow_another(desk: &mut Desk) {
 
 /// Issue 22.7: with both permissions, the values to set up again are in the review, at its end, and after an interruption.
 #[test]
-fn what_comes_from_another_mounting_is_named_until_the_end() {
+fn values_of_another_mounting_are_named_until_the_end() {
     let (mut desk, path) = saved();
     onto_another(&mut desk, &path);
     let before = sheet(&desk);
@@ -278,7 +278,7 @@ fn what_comes_from_another_mounting_is_named_until_the_end() {
 
 /// Issue 22.8: a field with bytes of unknown meaning is a question, and left unchanged unless it is answered otherwise.
 #[test]
-fn bytes_of_unknown_meaning_are_a_question_of_the_review() {
+fn the_review_asks_about_bytes_of_unknown_meaning() {
     let (mut desk, path) = saved();
     onto_another(&mut desk, &path);
     let [question] = &sheet(&desk).questions[..] else { panic!() };
@@ -299,7 +299,7 @@ fn bytes_of_unknown_meaning_are_a_question_of_the_review() {
 
 /// Issue 22.9: another type of encoder is named, and needs an explicit permission.
 #[test]
-fn another_type_of_encoder_needs_a_permit_of_its_own() {
+fn another_type_of_encoder_needs_a_separate_permission() {
     let (mut desk, path) = saved();
     refused_by_another(&mut desk, &path, &[(0, b"X")]);
     desk.toggle(Permit::OtherDevice);
@@ -313,7 +313,7 @@ fn another_type_of_encoder_needs_a_permit_of_its_own() {
 
 /// Issue 22.14: data that were read can be saved although the connection is lost; the file says that it is not current.
 #[test]
-fn what_was_read_is_saved_when_the_line_is_lost() {
+fn read_values_can_be_saved_after_the_line_is_lost() {
     let mut desk = Desk::at_port("");
     let fields = desk.encoder().staged.device().to_vec();
     desk.put(0, 0, b"X");
@@ -341,7 +341,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
 
 /// A typed path replaces nothing without a question.
 #[test]
-fn a_file_that_is_there_is_replaced_only_when_that_is_confirmed() {
+fn an_existing_file_is_replaced_only_after_confirmation() {
     let mut desk = Desk::begun("");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("kept.ron");
@@ -368,7 +368,7 @@ fn a_file_that_is_there_is_replaced_only_when_that_is_confirmed() {
 
 /// Issue 22.24: a relative path is the same file for as long as the window is open, whichever way it was entered.
 #[test]
-fn a_relative_path_is_the_same_file_when_it_is_saved() {
+fn a_relative_path_is_saved_to_the_same_file() {
     let (mut desk, path) = saved();
     let (work, home) = (desk.outside.path("work"), desk.outside.path("home"));
     for folder in [&work, &home] {
@@ -402,7 +402,7 @@ fn a_relative_path_is_the_same_file_when_it_is_saved() {
 
 /// Issue 22.24: a link to a recording leads to the same file at the next start, from any folder.
 #[test]
-fn a_link_to_a_recording_is_remembered_with_its_whole_path() {
+fn a_link_to_a_recording_is_remembered_with_its_full_path() {
     let mut desk = Desk::fresh("");
     desk.open("replay:monday.trace");
     let expected = format!("replay:{}", desk.outside.path("work").join("monday.trace").display());

@@ -42,7 +42,7 @@ fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
 
 /// The 4096 turns end during the recording: without unwrapping, position and speed would jump by 4096 turns.
 #[test]
-fn the_end_of_the_range_is_no_spike() {
+fn a_wrap_at_the_end_of_the_range_is_no_spike() {
     let mut desk = Desk::begun("rpm=600&position=16600000");
     desk.command(FAST);
     desk.until("the range has ended", |studio| {
@@ -93,7 +93,7 @@ fn a_pulled_cable_leaves_a_gap_and_loses_nothing() {
 }
 
 #[test]
-fn another_encoder_begins_another_recording() {
+fn another_encoder_starts_another_recording() {
     let mut desk = Desk::at_port("rpm=60");
     desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 20);
@@ -115,7 +115,7 @@ fn the_recording_is_saved_as_a_table() {
     let path = desk.outside.path("samples.csv");
     let question = |visible| FileQuestion::Table { owner: desk_of, visible, suggested: "x.csv".into() };
     desk.act(Action::Chosen(question(false), path.clone()));
-    assert_eq!(desk.told(Severity::Warning), ["recorder.nothing_to_write"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["recorder.nothing_to_write"]);
     desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 50);
     desk.act(Action::Stop);
@@ -144,7 +144,7 @@ fn the_recording_is_saved_as_a_table() {
 }
 
 #[test]
-fn a_picture_is_saved() {
+fn a_snapshot_is_saved() {
     let mut desk = Desk::begun("");
     let picture = Picture::new(1, 1, vec![1, 2, 3]).unwrap();
     desk.act(Action::AskPicture(picture));
@@ -156,7 +156,7 @@ fn a_picture_is_saved() {
 }
 
 #[test]
-fn what_is_watched_is_recorded_beside_the_position() {
+fn watched_values_are_recorded_with_the_position() {
     let mut desk = Desk::begun("rpm=60&temperature=37");
     for what in [Watch::Analogue(0x48), Watch::Analogue(0x07), Watch::Counter] {
         desk.ask(Hiperface::Watch(what, true));
@@ -178,7 +178,7 @@ fn what_is_watched_is_recorded_beside_the_position() {
 }
 
 #[test]
-fn a_position_that_is_read_while_polling_disturbs_nothing() {
+fn reading_a_position_while_polling_disturbs_nothing() {
     let mut desk = Desk::begun("rpm=600");
     desk.command(FAST);
     for round in 1..=5 {
@@ -197,7 +197,7 @@ fn a_position_that_is_read_while_polling_disturbs_nothing() {
 
 /// Issue 21.12: a closed session discards its recording. Elsewhere, too, the question comes from two minutes on.
 #[test]
-fn minutes_of_recording_are_asked_for_before_a_session_is_closed() {
+fn closing_a_session_with_minutes_of_recording_asks_first() {
     let mut desk = Desk::begun("");
     let id = desk.encoder().session.id;
     desk.command(FAST);

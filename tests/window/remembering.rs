@@ -23,7 +23,7 @@ fn restarted(desk: Desk) -> Desk {
 }
 
 #[test]
-fn looks_language_layout_and_links_survive() {
+fn theme_language_layout_and_links_are_remembered() {
     let mut desk = Desk::begun("");
     let first = (desk.studio.settings.theme, desk.studio.settings.language);
     assert_eq!(first, (ColorScheme::Dark, Language::English));
@@ -55,12 +55,12 @@ fn a_link_that_did_not_open_is_not_remembered() {
     let mut desk = Desk::fresh("");
     desk.open("serial:/dev/nothing");
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
-    assert_eq!(desk.told(Severity::Error), ["link.not_found"]);
+    assert_eq!(desk.notice_ids(Severity::Error), ["link.not_found"]);
     assert!(desk.studio.settings.links(crate::tabs::HIPERFACE).is_empty());
 }
 
 #[test]
-fn broken_settings_are_told_and_left_until_something_changes() {
+fn broken_settings_are_reported_and_kept_until_a_change() {
     for broken in [b"(theme: Mauve, language: German)".as_slice(), b"\xFF\xFE", b""] {
         let desk = Desk::fresh("");
         let path = desk.outside.store().settings_path();
@@ -68,7 +68,7 @@ fn broken_settings_are_told_and_left_until_something_changes() {
         fs::write(&path, broken).unwrap();
         let mut desk = restarted(desk);
         desk.settle();
-        assert_eq!(desk.told(Severity::Warning), ["session.settings_broken"]);
+        assert_eq!(desk.notice_ids(Severity::Warning), ["session.settings_broken"]);
         let aside = desk.outside.path("config/settings.ron.broken");
         let words = desk.studio.services.log.standing().unwrap().texts[0].words(Language::English);
         assert!(words.contains(&path.display().to_string()) && words.contains(&aside.display().to_string()), "{words}");
@@ -84,22 +84,22 @@ fn broken_settings_are_told_and_left_until_something_changes() {
 }
 
 #[test]
-fn settings_that_cannot_be_read_are_left() {
+fn unreadable_settings_are_not_overwritten() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
     fs::create_dir_all(&path).unwrap();
     let mut desk = restarted(desk);
-    assert_eq!(desk.told(Severity::Warning), ["session.settings_unread"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["session.settings_unread"]);
     desk.act(Action::SetTheme(ColorScheme::Light));
     desk.settle();
     assert!(path.is_dir());
-    assert_eq!(desk.told(Severity::Warning).len(), 1);
+    assert_eq!(desk.notice_ids(Severity::Warning).len(), 1);
 }
 
 /// The disk answers late: its settings apply, except for those that the user has changed meanwhile.
 #[cfg(unix)]
 #[test]
-fn settings_that_come_late_hold_and_are_not_overwritten_before() {
+fn settings_that_load_late_apply_and_are_not_overwritten() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
     let mut settings = Settings::of(encoder_studio::kinds::program().studio);
@@ -108,7 +108,7 @@ fn settings_that_come_late_hold_and_are_not_overwritten_before() {
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
     let mut desk = restarted(desk);
-    assert_eq!(desk.told(Severity::Warning), ["session.settings_slow"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["session.settings_slow"]);
     desk.act(Action::SetLanguage(Language::German));
     desk.settle();
     assert!(!path.is_file(), "nothing was written in its place");
@@ -133,7 +133,7 @@ fn the_access_codes_of_a_virtual_encoder_are_not_remembered() {
 }
 
 #[test]
-fn settings_that_cannot_be_kept_are_told_once() {
+fn unwritable_settings_are_reported_once() {
     let mut desk = Desk::fresh("");
     fs::write(desk.outside.path("config"), "a file in the way").unwrap();
     for theme in [ColorScheme::Light, ColorScheme::Dark, ColorScheme::Light] {
@@ -141,7 +141,7 @@ fn settings_that_cannot_be_kept_are_told_once() {
         desk.until("it is told", |studio| studio.services.log.standing().is_some());
         desk.settle();
     }
-    assert_eq!(desk.told(Severity::Warning), ["session.settings_not_kept"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["session.settings_not_kept"]);
     desk.act(Action::Close);
     desk.until("it may close", |studio| studio.may_close());
 }

@@ -35,7 +35,7 @@ fn is_open(studio: &Studio) -> bool {
     studio.selected_device().is_some_and(|own| *own.phase() == Phase::Offline)
 }
 
-fn says(path: &Path) -> String {
+fn file_text(path: &Path) -> String {
     fs::read_to_string(path).unwrap()
 }
 
@@ -60,7 +60,7 @@ fn is_asked(studio: &Studio) -> bool {
 
 /// Issue 22.25: the open file is written without a question, another one needs an answer.
 #[test]
-fn saving_writes_the_open_file_and_asks_for_another() {
+fn saving_writes_the_open_file_and_save_as_asks_for_another() {
     let (mut desk, path) = opened(OWN);
     desk.put(0, 0, b"X");
     save(&mut desk);
@@ -68,7 +68,7 @@ fn saving_writes_the_open_file_and_asks_for_another() {
     assert!(desk.studio.question.is_none() && desk.studio.diverged.is_none());
     assert_eq!(desk.studio.take_file_question(), None);
     // Issue 22.26: one byte is one place.
-    assert_eq!(says(&path), OWN.replace("\"00 01", "\"58 01"));
+    assert_eq!(file_text(&path), OWN.replace("\"00 01", "\"58 01"));
     desk.command(DeviceCommand::AskSave);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
 
@@ -80,7 +80,7 @@ fn saving_writes_the_open_file_and_asks_for_another() {
 
 /// Issue 22.25: changes by an editor are not replaced without a question, and each answer to it has the stated effect.
 #[test]
-fn what_others_wrote_meanwhile_is_asked_about() {
+fn saving_over_a_changed_file_asks_first() {
     let theirs = OWN.replace("as wired", "as rewired").replace("01 02", "AA 02").replace("// end", "// theirs");
     let begun = || {
         let (mut desk, path) = opened(OWN);
@@ -88,7 +88,7 @@ fn what_others_wrote_meanwhile_is_asked_about() {
         fs::write(&path, &theirs).unwrap();
         save(&mut desk);
         desk.until("it is asked", is_asked);
-        assert_eq!(says(&path), theirs, "nothing was written");
+        assert_eq!(file_text(&path), theirs, "nothing was written");
         (desk, path)
     };
     let (mut desk, path) = begun();
@@ -106,54 +106,54 @@ fn what_others_wrote_meanwhile_is_asked_about() {
     desk.act(Action::Resolve(Resolve::Merge));
     assert!(desk.studio.diverged.is_some());
     desk.act(Action::Escape);
-    assert!(desk.studio.diverged.is_none() && says(&path) == theirs && desk.encoder().staged.is_dirty());
+    assert!(desk.studio.diverged.is_none() && file_text(&path) == theirs && desk.encoder().staged.is_dirty());
 
     let (mut desk, path) = begun();
     desk.act(Action::Resolve(Resolve::Reload));
     desk.settle();
-    assert_eq!(says(&path), theirs);
+    assert_eq!(file_text(&path), theirs);
     assert!(!desk.encoder().staged.is_dirty());
     assert_eq!(desk.encoder().staged.on_device(0, 1), Some(0xAA));
 
     let (mut desk, path) = begun();
     desk.act(Action::Resolve(Resolve::KeepMine));
     desk.until("it is saved", is_saved);
-    assert_eq!(says(&path), OWN.replace("\"00 01", "\"58 01").replace("// end", "// theirs"));
+    assert_eq!(file_text(&path), OWN.replace("\"00 01", "\"58 01").replace("// end", "// theirs"));
 
     let (mut desk, path) = begun();
     desk.act(Action::Resolve(Resolve::Take(1, Side::Mine)));
     desk.act(Action::Resolve(Resolve::Merge));
     desk.until("it is saved", is_saved);
-    assert_eq!(says(&path), theirs.replace("\"00 AA", "\"58 01"));
+    assert_eq!(file_text(&path), theirs.replace("\"00 AA", "\"58 01"));
     // The saved content is the open one: the next save finds no difference.
     desk.put(0, 2, b"Z");
     save(&mut desk);
     desk.until("it is saved", is_saved);
-    assert!(desk.studio.diverged.is_none() && says(&path).contains("58 01 5A"));
+    assert!(desk.studio.diverged.is_none() && file_text(&path).contains("58 01 5A"));
 
     let (mut desk, path) = begun();
     desk.act(Action::Resolve(Resolve::Take(1, Side::Theirs)));
     desk.act(Action::Resolve(Resolve::Merge));
     desk.until("the edit is none any more", is_saved);
-    assert_eq!(says(&path), theirs);
+    assert_eq!(file_text(&path), theirs);
 }
 
 /// Issue 22.25: comments alone are no difference, and remain; a deleted file is written again; an invalid one is reported.
 #[test]
-fn only_what_a_file_says_is_a_difference() {
+fn only_changed_values_count_as_a_difference() {
     let (mut desk, path) = opened(OWN);
     let commented = OWN.replace("// the motor", "// the motor of axis 2");
     fs::write(&path, &commented).unwrap();
     desk.put(0, 0, b"X");
     save(&mut desk);
     desk.until("it is saved", is_saved);
-    assert_eq!(says(&path), commented.replace("\"00 01", "\"58 01"));
+    assert_eq!(file_text(&path), commented.replace("\"00 01", "\"58 01"));
 
     fs::remove_file(&path).unwrap();
     desk.put(0, 1, b"Y");
     save(&mut desk);
     desk.until("it is saved", is_saved);
-    assert_eq!(says(&path), commented.replace("\"00 01", "\"58 59"));
+    assert_eq!(file_text(&path), commented.replace("\"00 01", "\"58 59"));
 
     fs::write(&path, "(schema: 1, ").unwrap();
     desk.put(0, 2, b"Z");
@@ -164,10 +164,10 @@ fn only_what_a_file_says_is_a_difference() {
     assert!(!diverged.can_reload() && !diverged.can_merge() && diverged.can_keep_mine());
     desk.act(Action::Resolve(Resolve::KeepMine));
     desk.until("it is saved", is_saved);
-    assert!(says(&path).contains("58 59 5A"));
+    assert!(file_text(&path).contains("58 59 5A"));
 
     // A file of a newer version of the program is never replaced by an older form.
-    let newer = says(&path).replace("schema: 1", "schema: 2");
+    let newer = file_text(&path).replace("schema: 1", "schema: 2");
     fs::write(&path, &newer).unwrap();
     desk.put(0, 3, b"W");
     save(&mut desk);
@@ -175,12 +175,12 @@ fn only_what_a_file_says_is_a_difference() {
     desk.act(Action::Resolve(Resolve::KeepMine));
     desk.settle();
     assert!(desk.studio.diverged.as_ref().is_some_and(|own| !own.can_keep_mine()));
-    assert_eq!(says(&path), newer);
+    assert_eq!(file_text(&path), newer);
 }
 
 /// Issue 22.26: comments that have no place in the saved text are named before it is saved.
 #[test]
-fn comments_that_would_go_are_asked_about() {
+fn saving_asks_before_losing_comments() {
     let rows = "\"00 01 02 03 04 05 06 07\", // name plate\r\n\"08 09 0A 0B 0C 0D 0E 0F\"";
     let text = OWN.replace("\"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"", rows);
     let (mut desk, path) = opened(&text);
@@ -191,24 +191,24 @@ fn comments_that_would_go_are_asked_about() {
     assert_eq!(question.text.id(), "question.comments");
     let words = question.text.words(encoder_studio::app::Language::English);
     assert!(words.contains("name plate") && !words.contains("the motor"), "{words}");
-    assert_eq!(says(&path), text);
+    assert_eq!(file_text(&path), text);
     desk.act(Action::Escape);
     assert!(desk.encoder().staged.is_dirty());
     save(&mut desk);
     desk.until("it is asked", |studio| studio.question.is_some());
     desk.act(Action::Confirm);
     desk.until("it is saved", is_saved);
-    assert!(says(&path).starts_with("// bench 3\r\n") && says(&path).contains("// the motor\r\n"));
+    assert!(file_text(&path).starts_with("// bench 3\r\n") && file_text(&path).contains("// the motor\r\n"));
 }
 
 /// Issue 22.26: the byte order mark of a file remains.
 #[test]
-fn a_byte_order_mark_stays() {
+fn a_byte_order_mark_is_kept() {
     let (mut desk, path) = opened(&format!("\u{FEFF}{OWN}"));
     desk.put(0, 0, b"X");
     save(&mut desk);
     desk.until("it is saved", is_saved);
-    assert_eq!(says(&path), format!("\u{FEFF}{}", OWN.replace("\"00 01", "\"58 01")));
+    assert_eq!(file_text(&path), format!("\u{FEFF}{}", OWN.replace("\"00 01", "\"58 01")));
 }
 
 /// Issue 22.28: a save ends the earlier notices about its document, and not those about another one.
@@ -249,7 +249,7 @@ fn a_save_settles_the_notices_of_its_own_document() {
 
 /// Issue 22.28: a measuring range below the cams of a profile is reported on every page, and again with a save.
 #[test]
-fn cams_beyond_a_smaller_range_are_told_at_once_and_when_saved() {
+fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     let mut desk = Desk::fresh("");
     let path = desk.outside.path("cams.ron");
     let text = "(schema: 1, device: \"interbus\",\n\
@@ -273,13 +273,13 @@ fn cams_beyond_a_smaller_range_are_told_at_once_and_when_saved() {
     let standing = desk.studio.services.log.standing().unwrap();
     let ids: Vec<_> = standing.texts.iter().map(|text| text.id()).collect();
     assert_eq!((standing.severity, ids), (Severity::Warning, vec!["session.saved", "cams.mark_beyond"]));
-    assert_eq!(says(&path), text.replace("steps: 3600", "steps: 1800"));
+    assert_eq!(file_text(&path), text.replace("steps: 3600", "steps: 1800"));
 }
 
 /// Issue 22.27: changes of a colleague in a closed file remain, and so do earlier edits, for a layout, parameters and cams
 /// alike; also if the file is only read again.
 #[test]
-fn edits_of_an_earlier_time_leave_what_others_changed() {
+fn restored_edits_keep_changes_by_others() {
     let ssi = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
     let drive = "(schema: 1, device: \"hiperdrive\",\n  drives: [(number: 1, parameters: {\n    166: 50,\n    186: 5,\n  })],\n)\n";
     let cams = "(schema: 1, device: \"interbus\",\n\
@@ -321,7 +321,7 @@ fn edits_of_an_earlier_time_leave_what_others_changed() {
             save(&mut desk);
             desk.until("it is saved", |studio| !studio.selected_device().unwrap().is_dirty());
             assert!(desk.studio.diverged.is_none());
-            assert_eq!(says(&path), theirs.replace(from, to), "{crashes}");
+            assert_eq!(file_text(&path), theirs.replace(from, to), "{crashes}");
         }
     }
 }
@@ -329,7 +329,7 @@ fn edits_of_an_earlier_time_leave_what_others_changed() {
 /// Issue 22.27: earlier edits that result in no valid layout together with the changes of a colleague are left out, with a
 /// message.
 #[test]
-fn edits_that_fit_no_more_are_left_out_and_told() {
+fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
     let theirs = text.replace("multiturn: 12, singleturn: 12", "steps: 3600");
     let mut desk = Desk::fresh("");
@@ -350,12 +350,12 @@ fn edits_that_fit_no_more_are_left_out_and_told() {
     let problem = |studio: &Studio| studio.ssi().and_then(|own| own.designer.problem()).map(|own| own.id());
     desk.until("it is told", |studio| problem(studio) == Some("ssi.draft_unfit"));
     assert!(is_open(&desk.studio) && !desk.studio.selected_device().unwrap().is_dirty());
-    assert_eq!(says(&path), theirs);
+    assert_eq!(file_text(&path), theirs);
 }
 
 /// Issue 22.27: a draft of an earlier version, which contained the complete layout, still opens.
 #[test]
-fn a_draft_of_a_whole_layout_still_opens() {
+fn a_draft_of_a_complete_layout_still_opens() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
     let (mut desk, path) = opened(text);
     let id = desk.studio.selected_device().unwrap().id();

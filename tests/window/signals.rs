@@ -59,7 +59,7 @@ fn shown(studio: &Studio) -> Option<&Origin> {
 }
 
 #[test]
-fn a_capture_is_opened_dropped_and_asked_for_without_any_session() {
+fn a_capture_can_be_opened_without_a_session() {
     let mut desk = Desk::fresh("");
     assert!(desk.studio.hiperface().is_none());
     let path = desk.file("circle.CSV", &circle(4));
@@ -86,7 +86,7 @@ fn a_capture_is_opened_dropped_and_asked_for_without_any_session() {
 }
 
 #[test]
-fn the_examples_are_as_good_as_their_names() {
+fn the_examples_are_judged_as_named() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(Example::Healthy));
     desk.until_measured();
@@ -115,7 +115,7 @@ fn is_amplitude(what: &FindingKind) -> bool {
 }
 
 #[test]
-fn a_table_that_cannot_be_read_says_which_row_and_what_was_shown_stays() {
+fn an_unreadable_table_names_the_row_and_keeps_the_view() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(Example::Healthy));
     desk.until_measured();
@@ -144,7 +144,7 @@ fn a_table_that_cannot_be_read_says_which_row_and_what_was_shown_stays() {
     assert!(problem.contains("row 7, column 2"), "{problem}");
     desk.open_capture(&PathBuf::from("/nowhere/at.all.csv"));
     assert_eq!(desk.problem(), "file.not_found");
-    assert!(desk.told(Severity::Error).contains(&"signal.empty"), "the log keeps it");
+    assert!(desk.notice_ids(Severity::Error).contains(&"signal.empty"), "the log keeps it");
     assert!(desk.studio.services.log.standing().is_none(), "it stands beside its cause");
     desk.signals(Signals::Example(Example::Healthy));
     desk.until_measured();
@@ -152,7 +152,7 @@ fn a_table_that_cannot_be_read_says_which_row_and_what_was_shown_stays() {
 }
 
 #[test]
-fn what_was_found_out_is_corrected_and_found_out_again() {
+fn detected_columns_can_be_overridden_and_detected_again() {
     let mut desk = Desk::fresh("");
     let path = desk.file("columns.csv", "a;b;c;d;e\n0;1;2,5;3;2,5\n1;2;2,5;4;2,5\n2;1;2,5;5;2,5\n");
     desk.open_capture(&path);
@@ -190,7 +190,7 @@ fn what_was_found_out_is_corrected_and_found_out_again() {
 }
 
 #[test]
-fn data_without_an_ellipse_are_shown_and_refused_with_the_reason() {
+fn data_without_an_ellipse_is_shown_and_refused_with_a_reason() {
     let mut desk = Desk::fresh("");
     let quarter: String = circle(1).lines().take(20).fold(String::new(), |text, line| text + line + "\n");
     for (name, text, told) in [
@@ -209,7 +209,7 @@ fn data_without_an_ellipse_are_shown_and_refused_with_the_reason() {
 }
 
 #[test]
-fn reading_is_given_up_and_a_stale_capture_is_dropped() {
+fn reading_can_be_cancelled_and_a_stale_capture_is_dropped() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(Example::Healthy));
     desk.until_measured();
@@ -221,7 +221,7 @@ fn reading_is_given_up_and_a_stale_capture_is_dropped() {
     desk.until_measured();
     assert_eq!(shown(&desk.studio), Some(&Origin::Table(TableSource::Example(Example::Healthy))));
     assert_eq!(desk.studio.signals().table().unwrap().place, TableSource::Example(Example::Healthy));
-    assert_eq!(desk.told(Severity::Note), ["signal.cancelled"]);
+    assert_eq!(desk.notice_ids(Severity::Note), ["signal.cancelled"]);
     assert!(!desk.studio.can_stop());
     // The later one counts, whichever is read sooner.
     desk.act(Action::Open(large));
@@ -236,7 +236,7 @@ fn reading_is_given_up_and_a_stale_capture_is_dropped() {
 }
 
 #[test]
-fn periods_stay_within_what_can_be() {
+fn periods_are_clamped_to_their_range() {
     let mut desk = Desk { studio: Outside::new("").studio(), outside: Outside::new("") };
     for (wanted, taken) in [(0, 1), (512, 512), (u32::MAX, 65_536)] {
         desk.signals(Signals::SetPeriods(wanted));
@@ -245,7 +245,7 @@ fn periods_stay_within_what_can_be() {
 }
 
 #[test]
-fn a_capture_is_put_aside_and_stays_while_others_come() {
+fn a_kept_capture_stays_while_others_are_opened() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Keep);
     assert!(desk.studio.signals().comparison().is_none(), "there is nothing to keep");
@@ -281,7 +281,7 @@ impl Desk {
 }
 
 #[test]
-fn the_virtual_encoder_is_measured_again_and_again_as_it_is_set() {
+fn the_virtual_encoder_is_measured_repeatedly_with_its_settings() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Set(Quantity::Periods, 512.0));
     desk.source(SourceAction::Start);
@@ -312,7 +312,7 @@ fn is_good(findings: &[DiagnosisFinding]) -> bool {
 }
 
 #[test]
-fn what_is_held_stays_and_what_is_stopped_comes_no_more() {
+fn holding_freezes_the_measurement_and_stopping_ends_it() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Start);
     desk.until_live("it is measured", |own| own.ellipse.offset_cosine_v.abs() < 1e-3);
@@ -360,7 +360,7 @@ fn a_setting_out_of_range_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn a_window_that_nobody_draws_loses_samples_and_says_how_many() {
+fn a_window_that_is_not_drawn_counts_lost_samples() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Set(Quantity::Rate, 1_000_000.0));
     desk.source(SourceAction::Start);
@@ -376,7 +376,7 @@ fn a_window_that_nobody_draws_loses_samples_and_says_how_many() {
 }
 
 #[test]
-fn a_file_takes_the_place_of_the_virtual_encoder() {
+fn a_file_replaces_the_virtual_encoder() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Start);
     desk.until_live("it is measured", |_| true);
@@ -391,7 +391,7 @@ fn a_file_takes_the_place_of_the_virtual_encoder() {
 }
 
 #[test]
-fn the_scope_shows_a_capture_and_the_virtual_encoder_and_is_written_as_a_table_that_can_be_read() {
+fn the_scope_shows_captures_and_live_signals_and_exports_a_readable_table() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Example(Example::Healthy));
     desk.until_measured();
@@ -425,7 +425,7 @@ fn the_scope_shows_a_capture_and_the_virtual_encoder_and_is_written_as_a_table_t
 }
 
 #[test]
-fn what_became_worse_since_the_kept_capture_is_told() {
+fn findings_worse_than_the_kept_capture_are_reported() {
     let mut desk = Desk::fresh("");
     desk.source(SourceAction::Start);
     desk.until_live("it is measured", |_| true);

@@ -52,11 +52,11 @@ fn the_virtual_adapter_is_measured_like_a_capture() {
     desk.signals(Signals::Source(SourceAction::Stop));
     assert!(!desk.studio.signals().source().is_running());
     assert!(desk.studio.signals().measurement().is_some(), "what was measured last stays");
-    assert!(desk.told(Severity::Warning).is_empty());
+    assert!(desk.notice_ids(Severity::Warning).is_empty());
 }
 
 #[test]
-fn an_adapter_behind_a_network_streams_without_a_gap_and_is_told_to_stop() {
+fn a_network_adapter_streams_without_a_gap_and_is_stopped() {
     let served = Served::new("rpm=60");
     let mut desk = Desk::fresh("");
     for round in 1..=3 {
@@ -68,11 +68,11 @@ fn an_adapter_behind_a_network_streams_without_a_gap_and_is_told_to_stop() {
     }
     desk.until("it was told to stop", |_| served.asked(&Request::AnalogStream { on: false }) == 3);
     assert_eq!(served.asked(&Request::AnalogStream { on: true }), 3);
-    assert!(desk.told(Severity::Warning).is_empty(), "{:?}", desk.told(Severity::Warning));
+    assert!(desk.notice_ids(Severity::Warning).is_empty(), "{:?}", desk.notice_ids(Severity::Warning));
 }
 
 #[test]
-fn a_window_that_closes_tells_the_adapter_to_stop_first() {
+fn a_closing_window_stops_the_adapter_first() {
     let served = Served::new("rpm=60");
     let mut desk = Desk::fresh("");
     begin(&mut desk, &served.link(), 20_000);
@@ -83,14 +83,14 @@ fn a_window_that_closes_tells_the_adapter_to_stop_first() {
 }
 
 #[test]
-fn a_connection_that_is_closed_is_told_and_can_be_begun_again() {
+fn a_lost_connection_is_reported_and_can_be_restarted() {
     let served = Served::new("rpm=60");
     let mut desk = Desk::fresh("");
     begin(&mut desk, &served.link(), 20_000);
     desk.until("samples come", |studio| recorded(studio).0 > 100);
     served.cut();
     desk.until("it is told", |studio| !studio.signals().source().is_running());
-    assert_eq!(desk.told(Severity::Error), ["link.lost"]);
+    assert_eq!(desk.notice_ids(Severity::Error), ["link.lost"]);
     assert_eq!(desk.studio.signals().source().adapter_problem().map(|text| text.id()), Some("link.lost"));
     desk.signals(Signals::Source(SourceAction::StartAdapter));
     assert!(desk.studio.signals().source().adapter_problem().is_none());
@@ -98,7 +98,7 @@ fn a_connection_that_is_closed_is_told_and_can_be_begun_again() {
 }
 
 #[test]
-fn what_is_wrong_is_said_where_the_link_stands() {
+fn link_errors_are_shown_at_the_link_entry() {
     for (link, problem, asked) in [
         ("", "adapter.link", false),
         ("sim:?bridge=off", "adapter.link", false),
@@ -116,14 +116,14 @@ fn what_is_wrong_is_said_where_the_link_stands() {
         let source = desk.studio.signals().source();
         assert_eq!(source.adapter_problem().map(|text| text.id()), Some(problem), "{link}");
         assert!(!source.is_running(), "{link}");
-        assert_eq!(desk.told(Severity::Error), if asked { vec![problem] } else { vec![] }, "{link}");
+        assert_eq!(desk.notice_ids(Severity::Error), if asked { vec![problem] } else { vec![] }, "{link}");
         desk.signals(Signals::Source(SourceAction::SetLink("sim:".to_owned())));
         assert!(desk.studio.signals().source().adapter_problem().is_none(), "another link is another try");
     }
 }
 
 #[test]
-fn the_adapter_that_was_asked_is_remembered_and_one_that_is_none_is_not() {
+fn a_valid_adapter_link_is_remembered_and_an_invalid_one_is_not() {
     let mut desk = Desk::fresh("");
     begin(&mut desk, "sim:?rpm=60", 10_000);
     begin(&mut desk, "serial:/dev/ttyUSB0", 10_000);
@@ -136,7 +136,7 @@ fn the_adapter_that_was_asked_is_remembered_and_one_that_is_none_is_not() {
 
 /// The virtual adapter with `supply=switched` supplies its encoder only on command; 0.3 W at 8 V are 37 mA.
 #[test]
-fn the_encoder_is_supplied_as_it_was_chosen_and_only_then() {
+fn the_encoder_is_supplied_only_as_chosen() {
     let mut desk = Desk::fresh("");
     let amplitude = |studio: &Studio| {
         let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
@@ -157,7 +157,7 @@ fn the_encoder_is_supplied_as_it_was_chosen_and_only_then() {
 }
 
 #[test]
-fn what_runs_goes_on_while_another_link_is_refused_and_the_virtual_encoder_takes_its_place() {
+fn a_source_keeps_running_until_a_valid_one_replaces_it() {
     let mut desk = Desk::fresh("");
     begin(&mut desk, "sim:?rpm=6", 10_000);
     desk.until("samples come", |studio| recorded(studio).0 > 100);
@@ -179,12 +179,12 @@ fn the_adapter_is_chosen_started_held_and_stopped() {
         let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
         screen.act(Action::ShowTab(crate::tabs::SIGNALS));
         screen.click("adapter.open");
-        screen.look_at_signals();
+        screen.check_signals_pages();
         screen.act(Action::tool(Signals::Source(SourceAction::SetLink("bridge:/dev/there-is-none".to_owned()))));
         screen.click("adapter.start");
         screen.until("it is told", |studio| studio.signals().source().adapter_problem().is_some());
         assert!(screen.shows("/dev/there-is-none does not exist."));
-        screen.look_at_signals();
+        screen.check_signals_pages();
         screen.click("adapter.close");
         assert!(!screen.has_button("adapter.start"), "what was wrong has been read");
         screen.click("adapter.open");
@@ -198,7 +198,7 @@ fn the_adapter_is_chosen_started_held_and_stopped() {
         assert!(!screen.has_button("adapter.start"), "the card is closed when the adapter runs");
         assert!(screen.shows(&screen.say("signals.virtual_adapter")) && screen.shows(&screen.say("shell.virtual")));
         assert!(screen.shows(&screen.say("virtual.running")));
-        screen.look_at_signals();
+        screen.check_signals_pages();
         screen.click("virtual.hold");
         assert!(screen.studio().signals().source().is_held());
         screen.click("shell.stop");

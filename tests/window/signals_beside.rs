@@ -28,7 +28,7 @@ fn table() -> String {
 }
 
 #[test]
-fn the_reference_column_and_the_periods_tell_dnl_and_inl() {
+fn reference_and_periods_yield_dnl_and_inl() {
     let mut desk = Desk::fresh("");
     let path = desk.outside.path("reference.csv");
     std::fs::write(&path, table()).unwrap();
@@ -66,7 +66,7 @@ fn the_virtual_encoder_has_a_reference() {
 }
 
 #[test]
-fn both_are_shown_and_the_offset_is_taken_over() {
+fn both_positions_are_shown_and_the_offset_is_adopted() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), [1280.0, 1400.0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     let path = screen.outside.path("reference.csv");
@@ -74,7 +74,7 @@ fn both_are_shown_and_the_offset_is_taken_over() {
     screen.act(Action::tool(Signals::SetPeriods(64)));
     screen.act(Action::Open(path));
     screen.until("it is read", |studio| studio.signals().measurement().is_some());
-    screen.look_at_signals();
+    screen.check_signals_pages();
     screen.click("page.error");
     // An offset of 1 % is ±0.573° / 64 = 0.00895°, an eccentricity of 0.01° 36″; 50 samples per period add a little.
     assert!(screen.shows(&screen.say("nonlinearity.inl_raw")));

@@ -34,7 +34,7 @@ impl Screen {
 
 /// Section 1: 512 periods at 12 000/min are 102.4 kHz; after 10 kΩ and 47 pF they lag by 16.825°.
 #[test]
-fn the_input_circuit_is_reckoned_while_it_is_typed() {
+fn the_input_circuit_is_computed_while_typing() {
     let mut screen = Screen::calculator("page.input_circuit");
     screen.retype("input.periods", "512");
     screen.retype("input.speed", "12000");
@@ -57,7 +57,7 @@ fn the_input_circuit_is_reckoned_while_it_is_typed() {
 
 /// Section 4: A = 2A5Fh and φ = 0.02 are 339.02 of 1024 periods; a fifth of a period further φ is half a period off.
 #[test]
-fn absolute_and_analogue_are_brought_together_while_they_are_typed() {
+fn absolute_and_analog_positions_are_synchronised_while_typing() {
     let mut screen = Screen::calculator("page.synchronise");
     let value = |screen: &Screen| {
         let label = screen.say("synchronise.ring");
@@ -88,7 +88,7 @@ fn absolute_and_analogue_are_brought_together_while_they_are_typed() {
 
 /// The virtual SKM36 at step 24: counts 409 and 511, according to its own signals.
 #[test]
-fn both_positions_are_read_from_the_encoder_that_is_shown() {
+fn both_positions_are_read_from_the_selected_encoder() {
     let mut screen = Screen::opened(Outside::new("position=3224"), None, TALL);
     screen.until("the encoder is read", |studio| {
         studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
@@ -111,7 +111,7 @@ fn both_positions_are_read_from_the_encoder_that_is_shown() {
 }
 
 #[test]
-fn a_shaft_that_turns_is_no_reading() {
+fn a_turning_shaft_yields_no_reading() {
     let mut desk = Desk::begun("rpm=60");
     desk.ask(Hiperface::ReadRest);
     desk.until("it is told", |studio| studio.signals().synchronise().problem.is_some());

@@ -19,7 +19,7 @@ fn recorded(studio: &Studio) -> (u64, Vec<u64>) {
 }
 
 #[test]
-fn what_passed_while_it_was_held_is_a_gap_in_the_scope() {
+fn time_on_hold_is_a_gap_in_the_scope() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Source(SourceAction::Start));
     desk.until("samples come", |studio| recorded(studio).0 > 1_000);
@@ -62,7 +62,7 @@ fn periods_are_not_assumed() {
 }
 
 #[test]
-fn periods_of_the_source_count_for_what_is_shown_also_while_it_stands() {
+fn periods_of_a_stopped_source_apply_to_its_measurement() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Source(SourceAction::Start));
     desk.until("it is measured", |studio| studio.signals().measurement().is_some());
@@ -81,7 +81,7 @@ fn periods_of_the_source_count_for_what_is_shown_also_while_it_stands() {
 }
 
 #[test]
-fn lost_samples_are_told_until_the_next_start() {
+fn lost_samples_are_shown_until_the_next_start() {
     let mut desk = Desk::fresh("");
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Rate, 1_000_000.0)));
     desk.signals(Signals::Source(SourceAction::Start));
@@ -97,7 +97,7 @@ fn lost_samples_are_told_until_the_next_start() {
 }
 
 #[test]
-fn a_file_that_is_being_read_does_not_take_the_place_of_a_source_started_meanwhile() {
+fn a_file_being_read_does_not_replace_a_newer_source() {
     let mut desk = Desk::fresh("");
     let path = desk.outside.path("large.csv");
     std::fs::write(&path, circle(2_000)).unwrap();
@@ -130,7 +130,7 @@ fn a_kept_capture_keeps_no_samples() {
 }
 
 #[test]
-fn a_kept_capture_is_judged_by_the_limits_that_are_chosen() {
+fn a_kept_capture_is_judged_by_the_selected_limits() {
     let mut desk = Desk::fresh("");
     // 0.84 V: too little for HIPERFACE, good for AFS/AFM60.
     desk.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 0.42)));

@@ -19,7 +19,7 @@ impl Screen {
     }
 
     #[track_caller]
-    pub(crate) fn look_at_signals(&mut self) {
+    pub(crate) fn check_signals_pages(&mut self) {
         for language in [Language::English, Language::German] {
             for theme in [ColorScheme::Dark, ColorScheme::Light] {
                 self.act(Action::SetLanguage(language));
@@ -40,28 +40,28 @@ fn every_page_is_drawn_at_every_size_with_a_capture_and_without() {
     for size in SIZES {
         let mut screen = Screen::opened(Outside::new(""), Some(HANGING), size);
         screen.act(Action::ShowTab(crate::tabs::SIGNALS));
-        screen.look_at_signals();
+        screen.check_signals_pages();
         assert!(screen.shows(&screen.say("signals.nothing")));
         assert!(!screen.shows(&screen.say("shell.empty")), "it needs no session");
         for example in Example::ALL {
             screen.signals(Signals::Example(example));
             screen.click("signals.table");
-            screen.look_at_signals();
+            screen.check_signals_pages();
             screen.click("signals.table");
         }
         let path = screen.outside.path("straight-line.csv");
         std::fs::write(&path, "0,1,1\n1,2,2\n2,3,3\n3,4,4\n4,5,5\n5,6,6\n6,7,7\n").unwrap();
         screen.signals(Signals::Open(path.clone()));
-        screen.look_at_signals();
+        screen.check_signals_pages();
         std::fs::write(&path, "0,1,1\n1,2,?\n").unwrap();
         screen.signals(Signals::Open(path));
-        screen.look_at_signals();
+        screen.check_signals_pages();
         assert!(screen.shows("row 2, column 3"));
     }
 }
 
 #[test]
-fn the_tab_is_reached_by_key_and_by_click_and_filled_by_an_example() {
+fn the_tab_opens_by_key_and_click_and_loads_an_example() {
     let mut screen = Screen::begun(SIZES[0]);
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Num6);
     screen.steps();
@@ -82,7 +82,7 @@ fn the_tab_is_reached_by_key_and_by_click_and_filled_by_an_example() {
 }
 
 #[test]
-fn the_figure_tells_its_value_and_is_shown_corrected() {
+fn the_figure_has_an_accessible_value_and_a_corrected_view() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(Example::WithErrors));
@@ -103,7 +103,7 @@ fn the_figure_tells_its_value_and_is_shown_corrected() {
 
 /// Issue 22.14: the error of reading a capture is on every page of the tab.
 #[test]
-fn a_failed_capture_is_said_on_every_page() {
+fn a_failed_capture_is_shown_on_every_page() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     let path = screen.outside.path("broken.csv");
@@ -117,7 +117,7 @@ fn a_failed_capture_is_said_on_every_page() {
 }
 
 #[test]
-fn periods_are_typed_and_refused_in_words() {
+fn invalid_periods_are_refused_with_a_message() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(Example::Healthy));
@@ -153,7 +153,7 @@ fn a_capture_is_kept_and_compared_in_two_columns() {
     screen.click("compare.keep");
     assert!(!screen.is_enabled("compare.keep"), "it would be compared with itself");
     screen.signals(Signals::Example(Example::Healthy));
-    screen.look_at_signals();
+    screen.check_signals_pages();
     screen.click("page.quality");
     assert!(screen.shows("Compared with offset-gain-phase.csv"));
     // 1.0020 V − 0.8928 V, and 0.40 % − 8.00 %.
@@ -166,7 +166,7 @@ fn a_capture_is_kept_and_compared_in_two_columns() {
 }
 
 #[test]
-fn a_pair_of_voltages_is_looked_up_both_ways() {
+fn a_pair_of_voltages_is_converted_exactly_and_by_table() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);
     screen.act(Action::ShowTab(crate::tabs::SIGNALS));
     screen.signals(Signals::Example(Example::Healthy));
@@ -187,7 +187,7 @@ fn the_virtual_encoder_is_started_set_held_and_stopped() {
         screen.until("it is measured", measured);
         assert!(screen.shows(&screen.say("shell.virtual")) && screen.shows(&screen.say("virtual.running")));
         screen.click("virtual.settings");
-        screen.look_at_signals();
+        screen.check_signals_pages();
         let slider = screen.words(&encoder_studio::app::explain::signal::quantity(Quantity::Noise));
         assert!(screen.harness.query_all_by_role_and_label(egui::Role::Slider, &slider).next().is_some());
         screen.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 7.0)));

@@ -94,7 +94,7 @@ fn a_layout_needs_no_device() {
 }
 
 #[test]
-fn what_cannot_work_is_refused_and_changes_nothing() {
+fn impossible_layouts_are_refused_and_change_nothing() {
     let mut desk = layout();
     let before = encoder(&desk).design().clone();
     let refused = |desk: &mut Desk, field, input, id: &str| {
@@ -121,7 +121,7 @@ fn what_cannot_work_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn a_frame_changed_by_hand_comes_back_to_its_family() {
+fn a_frame_edited_by_hand_can_return_to_its_family() {
     let mut desk = layout();
     edit(&mut desk, Edit::Family("atm60".to_owned()));
     assert!(encoder(&desk).design().settings.is_some());
@@ -150,7 +150,7 @@ fn a_frame_changed_by_hand_comes_back_to_its_family() {
 }
 
 #[test]
-fn a_layout_is_saved_opened_and_kept_over_a_crash() {
+fn a_layout_is_saved_opened_and_survives_a_crash() {
     let mut desk = layout();
     act(&mut desk, Ssi::Enter(Field::Singleturn, Input::Number(12)));
     wish(&mut desk, DeviceCommand::AskSave);
@@ -227,7 +227,7 @@ fn every_export_is_written() {
 }
 
 #[test]
-fn words_of_an_adapter_come_into_the_live_plot() {
+fn words_of_an_adapter_are_plotted_live() {
     let mut desk = connected("sim:?ssi=ahm36,code=gray&rpm=60");
     let own = encoder(&desk);
     assert_eq!(own.designer.family().unwrap().key, "ahm36", "what the virtual encoder sends");
@@ -249,7 +249,7 @@ fn words_of_an_adapter_come_into_the_live_plot() {
 }
 
 #[test]
-fn another_number_of_clocks_is_told_to_the_adapter() {
+fn another_number_of_clocks_is_sent_to_the_adapter() {
     let mut desk = connected("sim:?ssi=atm60,code=gray&rpm=6");
     edit(&mut desk, Edit::Family("ahm36".to_owned()));
     desk.until("the adapter is told", |studio| {
@@ -265,7 +265,7 @@ fn another_number_of_clocks_is_told_to_the_adapter() {
 }
 
 #[test]
-fn the_layout_is_found_live_and_taken() {
+fn a_layout_found_live_can_be_adopted() {
     let mut desk = connected("sim:?ssi=afm60,code=gray&rpm=20");
     edit(&mut desk, Edit::Free);
     let clocks = encoder(&desk).clocks();
@@ -297,7 +297,7 @@ fn the_layout_is_found_live_and_taken() {
 }
 
 #[test]
-fn a_layout_of_a_profile_is_taken_for_an_encoder() {
+fn a_layout_of_a_profile_is_used_for_an_encoder() {
     let mut desk = connected("sim:?ssi=ahm36&rpm=6");
     let live = encoder(&desk).session.id;
     desk.act(Action::New(crate::tabs::SSI));
@@ -313,7 +313,7 @@ fn a_layout_of_a_profile_is_taken_for_an_encoder() {
 }
 
 #[test]
-fn each_new_layout_has_a_name_and_a_draft_of_its_own() {
+fn each_new_layout_has_a_separate_name_and_draft() {
     let mut desk = layout();
     edit(&mut desk, Edit::Family("ttk70".to_owned()));
     desk.act(Action::New(crate::tabs::SSI));
@@ -334,7 +334,7 @@ fn each_new_layout_has_a_name_and_a_draft_of_its_own() {
 }
 
 #[test]
-fn another_link_to_the_same_wire_says_how_it_is_read() {
+fn another_link_to_the_same_wire_changes_the_reading_settings() {
     let mut desk = layout();
     let reading = |desk: &Desk| {
         let reading = &encoder(desk).design().profile.reading;
@@ -351,7 +351,7 @@ fn another_link_to_the_same_wire_says_how_it_is_read() {
 }
 
 #[test]
-fn an_encoder_is_called_by_its_family() {
+fn an_encoder_is_named_after_its_family() {
     let mut desk = connected("sim:?ssi=ahm36");
     let before = encoder(&desk).session.name();
     edit(&mut desk, Edit::Family("ttk70".to_owned()));
@@ -361,7 +361,7 @@ fn an_encoder_is_called_by_its_family() {
 }
 
 #[test]
-fn an_adapter_without_ssi_is_named() {
+fn an_adapter_without_ssi_is_reported() {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.open("sim:?version=2");
@@ -373,7 +373,7 @@ fn an_adapter_without_ssi_is_named() {
 }
 
 #[test]
-fn the_device_check_says_what_is_wrong() {
+fn the_device_check_reports_faults() {
     let verdicts = |link: &str| {
         let mut desk = connected(link);
         act(&mut desk, Ssi::Check);
@@ -386,7 +386,7 @@ fn the_device_check_says_what_is_wrong() {
 }
 
 #[test]
-fn the_virtual_encoder_sends_the_layout_on_the_board() {
+fn the_virtual_encoder_sends_the_edited_layout() {
     let mut desk = connected("sim:?ssi=afs60&rpm=6");
     assert_eq!(encoder(&desk).link_to_send(), None);
     edit(&mut desk, Edit::Family("ahm36".to_owned()));
@@ -408,7 +408,7 @@ fn the_virtual_encoder_sends_the_layout_on_the_board() {
 
 /// Reference section 8: AHS36 with 12 bits, its error bit fixed on clock 15 or following on 13.
 #[test]
-fn a_boundary_is_dragged_as_the_family_is_set() {
+fn dragging_a_boundary_changes_the_family_settings() {
     let mut desk = layout();
     edit(&mut desk, Edit::Family("ahs36".to_owned()));
     act(&mut desk, Ssi::Move(Handle::StepsEnd, 12));
@@ -424,7 +424,7 @@ fn a_boundary_is_dragged_as_the_family_is_set() {
 }
 
 #[test]
-fn families_of_the_users_own_are_known_and_broken_ones_told() {
+fn user_families_are_loaded_and_broken_ones_reported() {
     let mut desk = Desk::fresh("");
     let folder = desk.outside.store().device_folder("ssi");
     std::fs::create_dir_all(&folder).unwrap();
@@ -436,5 +436,5 @@ fn families_of_the_users_own_are_known_and_broken_ones_told() {
     desk.until("it is known", |studio| studio.ssi().unwrap().designer.families().named("mine").is_some());
     edit(&mut desk, Edit::Family("mine".to_owned()));
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "mine");
-    assert_eq!(desk.told(Severity::Warning), ["store.ssi_family"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["store.ssi_family"]);
 }

@@ -12,7 +12,7 @@ use encoder_studio::link::{Direction, LinkUrl};
 use crate::support::{Desk, OTHER_PORT};
 
 #[test]
-fn it_begins_with_the_virtual_encoder_read_and_polling_off() {
+fn the_studio_starts_with_the_virtual_encoder_and_no_polling() {
     let desk = Desk::begun("");
     let encoder = desk.encoder();
     assert_eq!(encoder.session.phase, Phase::Connected);
@@ -27,12 +27,12 @@ fn it_begins_with_the_virtual_encoder_read_and_polling_off() {
     assert_eq!(encoder.counter, Some(0));
     assert_eq!(encoder.session.line().unwrap().polling(), None);
     assert!(!desk.studio.can_stop() && !desk.studio.is_live());
-    assert!(desk.told(Severity::Warning).is_empty());
+    assert!(desk.notice_ids(Severity::Warning).is_empty());
     assert_eq!(desk.studio.settings.links(crate::tabs::HIPERFACE), ["sim:"]);
 }
 
 #[test]
-fn nothing_is_sent_while_nobody_asks() {
+fn nothing_is_sent_without_a_request() {
     let mut desk = Desk::begun("");
     let (sent, frames) = (desk.wire().sent(), desk.encoder().session.trace.lines().len());
     assert_eq!(
@@ -56,7 +56,7 @@ fn every_frame_is_shown_with_its_meaning() {
 }
 
 #[test]
-fn each_read_is_a_job_that_ends_as_done() {
+fn each_read_is_a_job_that_succeeds() {
     let mut desk = Desk::begun("");
     let jobs = desk.studio.services.jobs().len();
     let id = desk.encoder().session.id;
@@ -80,16 +80,16 @@ fn each_read_is_a_job_that_ends_as_done() {
 }
 
 #[test]
-fn what_the_encoder_does_not_have_is_an_answer() {
+fn a_missing_value_is_a_result_and_not_a_warning() {
     let mut desk = Desk::begun("");
     desk.ask(Hiperface::ReadAnalogue(0x07));
     desk.until_ready();
     assert!(desk.encoder().analogue[&0x07].is_err());
-    assert!(desk.told(Severity::Warning).is_empty(), "it stands where it was asked for");
+    assert!(desk.notice_ids(Severity::Warning).is_empty(), "it stands where it was asked for");
 }
 
 #[test]
-fn a_restart_is_followed_by_a_fresh_reading() {
+fn a_restart_triggers_a_fresh_reading() {
     let mut desk = Desk::begun("");
     let surveys = desk.wire().count(0x52);
     desk.ask(Hiperface::Reset);
@@ -101,13 +101,13 @@ fn a_restart_is_followed_by_a_fresh_reading() {
 }
 
 #[test]
-fn a_job_beside_another_is_refused_with_a_sentence() {
+fn a_second_job_is_refused_with_a_message() {
     let mut desk = Desk::begun("");
     desk.wire().hold_at(0x50, 1);
     desk.ask(Hiperface::ReadStatus);
     desk.wire().wait_until_held();
     desk.ask(Hiperface::ReadCounter);
-    assert_eq!(desk.told(Severity::Warning), ["session.busy"]);
+    assert_eq!(desk.notice_ids(Severity::Warning), ["session.busy"]);
     desk.wire().release();
     desk.until_ready();
 }

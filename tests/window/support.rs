@@ -408,14 +408,14 @@ impl Desk {
     }
 
     /// Returns the names of the texts in all notices of at least this severity.
-    pub(crate) fn told(&self, least: Severity) -> Vec<&'static str> {
+    pub(crate) fn notice_ids(&self, least: Severity) -> Vec<&'static str> {
         let notices = self.studio.services.log.notices().filter(|notice| notice.severity >= least);
         notices.flat_map(|notice| notice.texts.iter().map(encoder_studio::app::Text::id)).collect()
     }
 
     /// Returns the number of times that a text was reported.
-    pub(crate) fn times_told(&self, id: &str) -> usize {
-        self.told(Severity::Note).iter().filter(|own| **own == id).count()
+    pub(crate) fn notice_count(&self, id: &str) -> usize {
+        self.notice_ids(Severity::Note).iter().filter(|own| **own == id).count()
     }
 }
 

@@ -145,7 +145,7 @@ pub(crate) fn foreign_to(language: Language) -> BTreeSet<&'static str> {
 }
 
 #[test]
-fn no_name_stands_twice_in_the_table() {
+fn text_ids_are_unique() {
     let mut names = BTreeSet::new();
     for line in CATALOGUES.into_iter().flat_map(|own| own.source().lines()) {
         let name = line.strip_prefix("    \"").and_then(|line| line.split_once("\": (")).map(|(name, _)| name);

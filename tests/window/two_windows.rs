@@ -48,7 +48,7 @@ fn together(windows: [&mut Desk; 2], what: &str, condition: impl Fn(&Desk, &Desk
 }
 
 /// Returns whether the file contains these words.
-fn says(desk: &Desk, words: &[&str]) -> bool {
+fn settings_contain(desk: &Desk, words: &[&str]) -> bool {
     let text = fs::read_to_string(desk.outside.store().settings_path()).unwrap_or_default();
     words.iter().all(|word| text.contains(word))
 }
@@ -84,7 +84,7 @@ fn is_locked(desk: &Desk) -> bool {
 
 /// Issue 21.11: settings are merged by key, however often the windows take turns.
 #[test]
-fn what_each_window_has_changed_survives_the_others_write() {
+fn changes_of_each_window_survive_the_others_write() {
     let (mut first, mut second) = two();
     first.act(Action::SetTheme(ColorScheme::Light));
     first.studio.settings.use_link(crate::tabs::HIPERFACE, "tcp:first:1");
@@ -92,9 +92,9 @@ fn what_each_window_has_changed_survives_the_others_write() {
     second.act(Action::KeepSize(1500, 900));
     second.studio.settings.use_link(crate::tabs::HIPERFACE, "tcp:second:1");
     let all = ["Light", "German", "1500", "tcp:first:1", "tcp:second:1"];
-    together([&mut first, &mut second], "both are kept", |first, _| says(first, &all));
+    together([&mut first, &mut second], "both are kept", |first, _| settings_contain(first, &all));
     first.act(Action::KeepLayout("(a layout)".to_owned()));
-    together([&mut first, &mut second], "it is kept", |first, _| says(first, &["(a layout)"]));
+    together([&mut first, &mut second], "it is kept", |first, _| settings_contain(first, &["(a layout)"]));
     let kept = found(&first);
     assert_eq!((kept.theme, kept.language, kept.size), (ColorScheme::Light, Language::German, Some((1500, 900))));
     assert_eq!(kept.layout.as_deref(), Some("(a layout)"));
@@ -108,7 +108,7 @@ fn what_each_window_has_changed_survives_the_others_write() {
 /// Issue 21.11: limits that one window has marked are locked in another one that controls the drives, without any write or
 /// read by it, and in one that is opened later, whatever the other writes.
 #[test]
-fn limits_that_another_window_marks_are_locked_here() {
+fn limits_marked_by_another_window_are_locked() {
     let (mut first, mut second) = two();
     let mut bystander = first.outside.studio();
     let path = first.outside.store().settings_path();
@@ -122,7 +122,7 @@ fn limits_that_another_window_marks_are_locked_here() {
     drive(&mut second, Motor::Step { by: 64 });
     assert_eq!(unit(&second).may_move(ONE).unwrap_err().id(), "hd_lock.limits");
     second.act(Action::SetTheme(ColorScheme::Light));
-    together([&mut first, &mut second], "that is kept", |first, _| says(first, &["Light"]));
+    together([&mut first, &mut second], "that is kept", |first, _| settings_contain(first, &["Light"]));
     bystander.act(Action::SetLanguage(Language::German));
     first.until("that is kept", |_| fs::read_to_string(&path).is_ok_and(|text| text.contains("German")));
     let mut later = Desk { studio: first.outside.studio(), outside: Outside::new("") };
@@ -142,23 +142,23 @@ fn limits_are_confirmed_in_each_window() {
     together([&mut first, &mut second], "both are locked", |_, second| is_locked(second));
     drive(&mut second, Motor::ConfirmLimits(ONE));
     assert!(!is_locked(&second));
-    together([&mut first, &mut second], "that is kept", |first, _| says(first, &["unconfirmed: []"]));
+    together([&mut first, &mut second], "that is kept", |first, _| settings_contain(first, &["unconfirmed: []"]));
     assert!(is_locked(&first) && !is_locked(&second));
     // After any write on either side.
     first.act(Action::SetTheme(ColorScheme::Light));
     second.act(Action::SetLanguage(Language::German));
-    together([&mut first, &mut second], "that is kept", |first, _| says(first, &["Light", "German"]));
+    together([&mut first, &mut second], "that is kept", |first, _| settings_contain(first, &["Light", "German"]));
     let began = Instant::now();
     together([&mut first, &mut second], "some time passes", |_, _| began.elapsed() > Duration::from_secs(3));
     assert!(is_locked(&first) && !is_locked(&second));
     scale(&mut first, 100);
     together([&mut first, &mut second], "the other one is locked again", |_, second| is_locked(second));
-    assert!(says(&first, &["unconfirmed: [", "1,"]));
+    assert!(settings_contain(&first, &["unconfirmed: [", "1,"]));
 }
 
 /// Issue 21.11: text typed for a drive in one window remains in it, and is saved together with that of another one.
 #[test]
-fn what_is_typed_for_a_drive_stays_in_its_window() {
+fn values_typed_for_a_drive_stay_in_their_window() {
     let (mut first, mut second) = two();
     with_drives(&mut first);
     with_drives(&mut second);
@@ -168,7 +168,7 @@ fn what_is_typed_for_a_drive_stays_in_its_window() {
     act(&mut second, Hiperdrive::SetPitch(two, pitch(5_000_000)));
     act(&mut second, Hiperdrive::SetMeasure(Measure::Degrees));
     let all = ["1: 4000000", "2: 5000000", "Degrees"];
-    together([&mut first, &mut second], "both are kept", |first, _| says(first, &all));
+    together([&mut first, &mut second], "both are kept", |first, _| settings_contain(first, &all));
     assert_eq!((unit(&first).pitch(two), unit(&second).pitch(ONE)), (None, None));
     assert_eq!(unit(&first).measure, Measure::Steps);
     let mut later = Desk { studio: first.outside.studio(), outside: Outside::new("") };
@@ -194,8 +194,8 @@ fn studio_of_process() -> (Studio, String) {
 }
 
 #[test]
-#[ignore = "run in processes of their own by `processes_that_write_at_once_lose_nothing`"]
-fn a_process_that_uses_links() {
+#[ignore = "run in processes of their own by `concurrent_processes_lose_no_settings`"]
+fn process_using_links() {
     let (mut studio, name) = studio_of_process();
     let path = Store::at(env::var_os(FOLDER).unwrap().as_ref()).settings_path();
     for number in 0..6 {
@@ -211,9 +211,9 @@ fn a_process_that_uses_links() {
 
 /// Issue 21.11: twice six links, as many as are remembered, written by two processes as fast as they can.
 #[test]
-fn processes_that_write_at_once_lose_nothing() {
+fn concurrent_processes_lose_no_settings() {
     let desk = Desk::fresh("");
-    let windows = ["one", "two"].map(|name| process(&desk, "a_process_that_uses_links", name));
+    let windows = ["one", "two"].map(|name| process(&desk, "process_using_links", name));
     for mut window in windows {
         assert!(window.wait().unwrap().success());
     }
@@ -224,8 +224,8 @@ fn processes_that_write_at_once_lose_nothing() {
 }
 
 #[test]
-#[ignore = "run in a process of its own by `a_process_that_is_killed_leaves_a_whole_file_and_no_lock`"]
-fn a_process_that_writes_for_ever() {
+#[ignore = "run in a process of its own by `a_killed_process_leaves_a_complete_file_and_no_lock`"]
+fn process_writing_forever() {
     let (mut studio, name) = studio_of_process();
     for number in 0_u32.. {
         studio.act(Action::KeepSize(number, 900));
@@ -236,12 +236,12 @@ fn a_process_that_writes_for_ever() {
 
 /// Issue 21.11: a writer that is killed at any moment.
 #[test]
-fn a_process_that_is_killed_leaves_a_whole_file_and_no_lock() {
+fn a_killed_process_leaves_a_complete_file_and_no_lock() {
     let mut desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
     for round in 0..8_u64 {
         let _ = fs::remove_file(&path);
-        let mut window = process(&desk, "a_process_that_writes_for_ever", "killed");
+        let mut window = process(&desk, "process_writing_forever", "killed");
         let began = Instant::now();
         while !path.exists() {
             assert!(began.elapsed() < LONG, "it never wrote");
@@ -264,7 +264,7 @@ fn a_process_that_is_killed_leaves_a_whole_file_and_no_lock() {
 /// Issue 21.11: with a folder that cannot be written, only the settings are lost, and motion remains possible.
 #[cfg(unix)]
 #[test]
-fn settings_that_cannot_be_kept_keep_no_drive_from_moving() {
+fn unwritable_settings_do_not_prevent_motion() {
     let mut desk = Desk::fresh("");
     fs::write(desk.outside.path("config"), "a file in the way").unwrap();
     with_drives(&mut desk);

@@ -34,7 +34,7 @@ impl Screen {
 }
 
 #[test]
-fn the_page_is_gone_through_by_hand() {
+fn the_page_works_by_clicks_and_keys() {
     let mut screen = Screen::begun(TALL);
     screen.click("page.commutation");
     assert!(!screen.is_enabled("commutation.read_one") && !screen.is_enabled("commutation.store"));
@@ -75,7 +75,7 @@ fn the_page_is_gone_through_by_hand() {
 }
 
 #[test]
-fn what_is_wrong_with_an_entry_stands_beside_it() {
+fn entry_errors_are_shown_next_to_the_entry() {
     let mut screen = Screen::begun(TALL);
     screen.click("page.commutation");
     let numbers = [

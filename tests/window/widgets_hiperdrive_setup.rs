@@ -50,7 +50,7 @@ impl Screen {
 }
 
 #[test]
-fn lamps_are_clicked_until_they_look_like_the_real_ones() {
+fn clicking_leds_sets_the_observed_states() {
     let mut screen = page("sim:", "page.diagnosis");
     assert!(screen.shows("The connected drives are exactly the requested ones. No drive has an error."));
     screen.press(Role::RadioButton, "Device: Bus adapter");
@@ -67,7 +67,7 @@ fn lamps_are_clicked_until_they_look_like_the_real_ones() {
 }
 
 #[test]
-fn an_address_is_typed_looked_at_and_written() {
+fn an_address_is_typed_checked_and_written() {
     let mut screen = page("sim:", "page.device");
     assert!(screen.shows("from a DHCP server") && !screen.is_enabled("hd_net.write"));
     screen.press(Role::RadioButton, "Address source: stored");
@@ -104,7 +104,7 @@ fn an_address_is_typed_looked_at_and_written() {
 }
 
 #[test]
-fn the_set_up_of_an_axis_says_what_is_missing_and_speaks_the_language() {
+fn axis_setup_names_missing_steps_in_the_language() {
     let mut screen = page("sim:?requested=0", "page.axis");
     screen.check_language();
     screen.click("hd_axis.begin");
@@ -125,7 +125,7 @@ fn the_set_up_of_an_axis_says_what_is_missing_and_speaks_the_language() {
 /// Reference 5: a spindle of 4 mm in steps of 0.01 mm has 400 steps per turn; 511 turns either way are 2044 mm, 204400
 /// steps.
 #[test]
-fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
+fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     let mut screen = page("sim:", "page.parameters");
     screen.press(Role::RadioButton, "Show: Scaling");
     assert!(!screen.is_enabled("hd_scale.set"), "without a pitch there is no scale");
@@ -170,7 +170,7 @@ fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
 /// A number is typed in the table. An invalid one remains there with its reason, and with its parameter when other lines
 /// are shown.
 #[test]
-fn parameters_are_typed_into_their_table() {
+fn parameters_can_be_typed_into_their_table() {
     let mut screen = page("sim:?hub=4&drives=1,0,1", "page.parameters");
     let row =
         |screen: &Screen, label: &str| screen.harness.query_by_role_and_label(Role::Row, label).map(|own| own.rect());
@@ -224,7 +224,7 @@ fn parameters_are_typed_into_their_table() {
 
 /// A second click that was meant for the previous step does not leave the next one.
 #[test]
-fn a_step_is_seen_before_it_can_be_left() {
+fn a_step_is_shown_before_it_can_be_left() {
     let mut screen = page("sim:", "page.axis");
     screen.click("hd_axis.begin");
     screen.steps();
@@ -240,7 +240,7 @@ fn a_step_is_seen_before_it_can_be_left() {
 
 /// The controls under a dialog are blocked, except for STOP.
 #[test]
-fn stop_is_reached_over_a_dialog() {
+fn stop_is_reachable_over_a_dialog() {
     let mut screen = page("sim:", "page.motion");
     let id = screen.studio().hiperdrive().unwrap().session.id;
     let act = |screen: &mut Screen, action| screen.act(Action::device(id, action));
@@ -260,7 +260,7 @@ fn stop_is_reached_over_a_dialog() {
 
 /// Issue 21.6 (i): whatever the drive reports, no clickable control moves, and the step remains until the user leaves it.
 #[test]
-fn nothing_in_a_step_moves_away_under_the_pointer() {
+fn the_layout_of_a_step_does_not_shift() {
     let mut screen = page("sim:", "page.axis");
     let advance = |screen: &mut Screen, step: AxisStep| {
         screen.click("hd_axis.next");

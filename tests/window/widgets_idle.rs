@@ -19,7 +19,7 @@ fn next_picture(screen: &Screen) -> Duration {
 }
 
 #[test]
-fn a_window_with_nothing_to_show_asks_for_no_picture() {
+fn an_idle_window_requests_no_frame() {
     let mut screen = Screen::begun(SIZE);
     for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE) {
         screen.click(page);
@@ -35,7 +35,7 @@ fn a_window_with_nothing_to_show_asks_for_no_picture() {
 }
 
 #[test]
-fn what_comes_back_from_a_thread_wakes_the_window() {
+fn results_from_a_thread_wake_the_window() {
     let mut screen = Screen::begun(SIZE);
     let wakes = screen.outside.wakes.clone();
     let before = wakes.load(std::sync::atomic::Ordering::SeqCst);
@@ -45,7 +45,7 @@ fn what_comes_back_from_a_thread_wakes_the_window() {
 }
 
 #[test]
-fn f5_reads_again() {
+fn f5_reloads() {
     let mut screen = Screen::begun(SIZE);
     let before = screen.outside.wire(PORT).count(0x56);
     screen.key(Key::F5);
@@ -60,7 +60,7 @@ fn f5_reads_again() {
 }
 
 #[test]
-fn control_enter_with_nothing_edited_says_so() {
+fn control_enter_without_edits_is_reported() {
     let mut screen = Screen::begun(SIZE);
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
     screen.steps();
@@ -69,7 +69,7 @@ fn control_enter_with_nothing_edited_says_so() {
 }
 
 #[test]
-fn the_close_button_of_the_system_asks_when_something_would_be_lost() {
+fn the_system_close_button_asks_before_losing_edits() {
     let mut screen = Screen::begun(SIZE);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
     let viewport = screen.harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();

@@ -54,7 +54,7 @@ impl Screen {
     }
 
     /// Returns the texts of chart and table for an edge.
-    fn said(&self, label: &str) -> (String, String) {
+    fn edge_values(&self, label: &str) -> (String, String) {
         let value = |role| self.of_role(role, label).accesskit_node().value().unwrap_or_default();
         (value(Role::Slider), value(Role::TextInput))
     }
@@ -64,12 +64,12 @@ impl Screen {
 fn an_edge_is_moved_in_the_chart_and_typed_in_the_table() {
     let mut screen = page();
     let (start, stop) = screen.cam(2);
-    assert_eq!(screen.said("Cam 2: start"), (start.to_string(), start.to_string()));
+    assert_eq!(screen.edge_values("Cam 2: start"), (start.to_string(), start.to_string()));
     screen.of_role(Role::Slider, "Cam 2: start").focus();
     screen.steps();
     screen.key(Key::ArrowRight);
     assert_eq!(screen.cam(2), (start + 1, stop));
-    assert_eq!(screen.said("Cam 2: start").1, (start + 1).to_string());
+    assert_eq!(screen.edge_values("Cam 2: start").1, (start + 1).to_string());
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     screen.steps();
     assert_eq!(screen.cam(2), (start, stop));
@@ -79,11 +79,11 @@ fn an_edge_is_moved_in_the_chart_and_typed_in_the_table() {
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     screen.of_role(Role::TextInput, "Cam 2: stop").type_text("1234");
     screen.key(Key::Enter);
-    assert_eq!((screen.cam(2), screen.said("Cam 2: stop").0), ((start, 1234), "1234".to_owned()));
+    assert_eq!((screen.cam(2), screen.edge_values("Cam 2: stop").0), ((start, 1234), "1234".to_owned()));
 }
 
 #[test]
-fn a_drag_is_one_step() {
+fn a_drag_is_one_undo_step() {
     let mut screen = page();
     let before = screen.cam(0);
     let from = screen.of_role(Role::Slider, "Cam 0: stop").rect().center();
@@ -105,7 +105,7 @@ fn a_drag_is_one_step() {
 }
 
 #[test]
-fn a_pasted_table_is_looked_at_before_it_is_taken() {
+fn a_pasted_table_is_previewed_before_it_is_accepted() {
     let mut screen = page();
     let before = screen.cam(0);
     let text = "name;start;stop\nfeed;100;200\nglue;300;350\nglue;700;750\n";
@@ -127,7 +127,7 @@ fn a_pasted_table_is_looked_at_before_it_is_taken() {
 }
 
 #[test]
-fn what_clashes_and_what_lies_beyond_the_range_is_marked_in_its_lane() {
+fn conflicts_and_out_of_range_cams_are_marked_in_their_lanes() {
     let mut screen = page();
     for number in [1, 2] {
         screen.edit_cams(Edit::Name { program: program(), cam: cam(number), name: "glue".to_owned() });
@@ -149,7 +149,7 @@ fn what_clashes_and_what_lies_beyond_the_range_is_marked_in_its_lane() {
 }
 
 #[test]
-fn the_ring_moves_the_same_cams() {
+fn the_ring_edits_the_same_cams() {
     let mut screen = page();
     screen.click("ib_cams.ring");
     let (start, stop) = screen.cam(3);

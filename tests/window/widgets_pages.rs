@@ -21,7 +21,7 @@ const PANELS: [&str; 4] = ["panel.live", "panel.trace", "panel.jobs", "panel.log
 const ALWAYS: [&str; 5] = ["shell.stop", "shell.connect", "shell.open", "shell.help", "shell.language"];
 
 /// Draws every page and panel in both themes and languages.
-fn look_at_everything(screen: &mut Screen, size: [f32; 2]) {
+fn check_every_page(screen: &mut Screen, size: [f32; 2]) {
     let window = Rect::from_min_size(egui::Pos2::ZERO, Vec2::from(size));
     for language in [Language::English, Language::German] {
         for theme in [ColorScheme::Dark, ColorScheme::Light] {
@@ -51,7 +51,7 @@ fn look_at_everything(screen: &mut Screen, size: [f32; 2]) {
 #[test]
 fn every_page_is_drawn_with_the_virtual_encoder() {
     for size in [LARGE, SMALL] {
-        look_at_everything(&mut Screen::begun(size), size);
+        check_every_page(&mut Screen::begun(size), size);
     }
 }
 
@@ -62,14 +62,14 @@ fn every_page_is_drawn_with_a_virtual_biss_encoder() {
         screen.until("it is read", |studio| {
             studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
         });
-        look_at_everything(&mut screen, size);
+        check_every_page(&mut screen, size);
     }
 }
 
 /// Issue 22.15: values written in mode 04 and never saved are reported above the registers and above the data, with the
 /// return to operation.
 #[test]
-fn registers_that_were_never_saved_are_told_with_the_way_back() {
+fn unsaved_registers_are_reported_with_a_remedy() {
     let outside = Outside::new("");
     outside.wire(KIT).enter(&[("0x6B", 0x2A), ("0x6A", 0x04), ("0x00:0x1A", 0x02), ("0x24:0x10", 0x5A)]);
     let mut studio = outside.studio();
@@ -95,7 +95,7 @@ fn registers_that_were_never_saved_are_told_with_the_way_back() {
 
 /// An encoder that refuses its position causes a message in the panel Live, which remains within a small window.
 #[test]
-fn a_position_that_is_refused_leaves_the_panel_within_the_window() {
+fn a_refused_position_keeps_the_panel_within_the_window() {
     let mut screen = Screen::opened(Outside::new("temperature=140&rpm=9000"), None, SMALL);
     screen.until("the encoder is read", |studio| studio.hiperface().is_some_and(|own| own.record.refused()));
     screen.act(Action::SetLanguage(Language::German));
@@ -113,7 +113,7 @@ fn every_page_is_drawn_with_a_virtual_ssi_encoder() {
         let id = screen.studio().ssi().unwrap().session.id;
         screen.act(Action::device(id, Ssi::Check));
         screen.until("it is checked", |studio| studio.ssi().unwrap().check.is_some());
-        look_at_everything(&mut screen, size);
+        check_every_page(&mut screen, size);
     }
 }
 
@@ -128,22 +128,22 @@ fn every_page_is_drawn_with_a_virtual_interbus_encoder() {
         let id = screen.studio().interbus().unwrap().session.id;
         screen.act(Action::device(id, Interbus::Check));
         screen.until("it is checked", |studio| studio.interbus().unwrap().check.is_some());
-        look_at_everything(&mut screen, size);
+        check_every_page(&mut screen, size);
     }
 }
 
 #[test]
-fn every_page_is_drawn_of_an_interbus_encoder_that_may_not_be_disturbed() {
+fn every_page_is_drawn_before_standstill_is_confirmed() {
     let mut screen = Screen::opened_in(crate::tabs::INTERBUS, &format!("modbus:{GATE}"), SMALL);
     screen.until("a word is read", |studio| studio.interbus().is_some_and(|own| own.record.last().is_some()));
-    look_at_everything(&mut screen, SMALL);
+    check_every_page(&mut screen, SMALL);
 }
 
 #[test]
 fn every_page_of_an_ssi_layout_is_drawn() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SMALL);
     screen.act(Action::ShowTab(crate::tabs::SSI));
-    look_at_everything(&mut screen, SMALL);
+    check_every_page(&mut screen, SMALL);
     // Any frame, with all optional parts.
     let id = screen.studio().ssi().unwrap().session.id;
     screen.act(Action::device(id, Ssi::Edit(Box::new(Edit::Free))));
@@ -157,21 +157,21 @@ fn every_page_of_an_ssi_layout_is_drawn() {
         screen.act(Action::device(id, action));
     }
     assert_eq!(screen.studio().ssi().unwrap().clocks(), 61);
-    look_at_everything(&mut screen, SMALL);
+    check_every_page(&mut screen, SMALL);
 }
 
 #[test]
-fn every_page_is_drawn_with_a_biss_encoder_that_is_not_there() {
+fn every_page_is_drawn_with_a_missing_biss_encoder() {
     let mut screen = Screen::opened_in(crate::tabs::BISS, "serial:/dev/nothing", SMALL);
     screen.until("it is told", |studio| studio.biss().is_some_and(|own| matches!(own.session.phase, Phase::Lost(_))));
-    look_at_everything(&mut screen, SMALL);
+    check_every_page(&mut screen, SMALL);
 }
 
 #[test]
 fn every_page_is_drawn_with_nothing_connected() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SMALL);
     screen.until("it is told", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
-    look_at_everything(&mut screen, SMALL);
+    check_every_page(&mut screen, SMALL);
     assert!(screen.has_button("shell.reconnect"));
     let id = screen.encoder().session.id;
     screen.act(Action::CloseSession(id));
@@ -183,12 +183,12 @@ fn every_page_is_drawn_with_nothing_connected() {
 #[test]
 fn every_page_is_drawn_while_a_link_opens() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SMALL);
-    look_at_everything(&mut screen, SMALL);
+    check_every_page(&mut screen, SMALL);
     assert!(screen.shows(&screen.say("shell.opening")));
 }
 
 #[test]
-fn every_page_is_drawn_with_all_that_an_encoder_tells() {
+fn every_page_is_drawn_with_all_values_of_an_encoder() {
     let mut screen = Screen::opened(Outside::new("model=sel37&rpm=60"), None, LARGE);
     let ready = |studio: &encoder_studio::app::Studio| {
         studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())
@@ -204,7 +204,7 @@ fn every_page_is_drawn_with_all_that_an_encoder_tells() {
         screen.until("it is done", ready);
     }
     screen.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
-    look_at_everything(&mut screen, LARGE);
+    check_every_page(&mut screen, LARGE);
     assert!(screen.encoder().record.positions() > 2);
     screen.click("shell.stop");
     assert!(!screen.studio().is_live());
@@ -219,12 +219,12 @@ fn every_page_of_a_profile_is_drawn() {
     std::fs::copy(folder.join("multiturn-skm36.ron"), &path).unwrap();
     screen.act(Action::Open(path));
     screen.until("it is open", |studio| studio.devices().len() == 2);
-    look_at_everything(&mut screen, SMALL);
+    check_every_page(&mut screen, SMALL);
     assert!(screen.shows(&screen.say("shell.offline")));
 }
 
 #[test]
-fn the_connection_dialog_opens_by_click_and_closes_with_escape() {
+fn the_connect_dialog_opens_by_click_and_closes_with_escape() {
     for size in [LARGE, SMALL] {
         let mut screen = Screen::begun(size);
         screen.click("shell.connect");
@@ -259,7 +259,7 @@ fn the_connection_dialog_opens_by_click_and_closes_with_escape() {
 }
 
 #[test]
-fn a_search_is_started_by_click_and_one_that_answers_is_chosen() {
+fn a_search_is_started_and_a_result_chosen_by_click() {
     let mut screen = Screen::opened(Outside::new("address=0x44"), None, LARGE);
     screen.act(Action::Connect(Connect::Open));
     screen.act(Action::Connect(Connect::Use(format!("serial:{PORT}"))));
@@ -276,7 +276,7 @@ fn a_search_is_started_by_click_and_one_that_answers_is_chosen() {
 }
 
 #[test]
-fn f1_helps_and_escape_closes_it() {
+fn f1_opens_help_and_escape_closes_it() {
     let mut screen = Screen::begun(SMALL);
     for (page, help) in encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE).into_iter().zip([
         "help.encoder",
@@ -299,7 +299,7 @@ fn f1_helps_and_escape_closes_it() {
 }
 
 #[test]
-fn the_language_and_the_theme_are_a_click_away() {
+fn language_and_theme_change_with_one_click() {
     let mut screen = Screen::begun(LARGE);
     let pages = encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE);
     let english: Vec<String> = pages.iter().map(|page| screen.say(page)).collect();
@@ -319,7 +319,7 @@ fn the_language_and_the_theme_are_a_click_away() {
 
 /// If the system has no dialogs, a path is typed.
 #[test]
-fn a_path_is_typed_where_there_is_no_dialog() {
+fn a_path_can_be_typed_without_a_file_dialog() {
     let mut screen = Screen::begun(SMALL);
     let session = screen.encoder().session.id;
     for question in [FileQuestion::Open, FileQuestion::Save { session, suggested: "x.ron".into() }] {

@@ -58,7 +58,7 @@ fn drag(screen: &mut Screen, button: PointerButton, from: Pos2, to: Pos2) {
 }
 
 #[test]
-fn it_stands_still_and_goes_on() {
+fn the_plot_pauses_and_continues() {
     let mut screen = recorded();
     assert!(recorder(&screen).follows());
     screen.click("recorder.pause");
@@ -75,7 +75,7 @@ fn it_stands_still_and_goes_on() {
 }
 
 #[test]
-fn a_box_is_looked_into_and_a_double_click_shows_everything() {
+fn dragging_zooms_into_a_box_and_a_double_click_shows_all() {
     let mut screen = recorded();
     screen.click("recorder.fit");
     let (whole_from, whole_to) = recorder(&screen).window();
@@ -143,7 +143,7 @@ fn cursors_are_shown_dragged_and_read() {
 }
 
 #[test]
-fn lines_are_hidden_and_seen_in_other_units() {
+fn lines_can_be_hidden_and_shown_in_other_units() {
     let mut screen = recorded();
     screen.click("recorder.lines");
     let speed = screen.say("recorder.speed");
@@ -161,7 +161,7 @@ fn lines_are_hidden_and_seen_in_other_units() {
 }
 
 #[test]
-fn a_trigger_is_typed_armed_and_switched_off() {
+fn a_trigger_can_be_set_armed_and_switched_off() {
     let mut screen = recorded();
     for (level, works) in [("high", false), ("", false), ("1e999", false), ("250,5", true)] {
         screen.click("recorder.trigger");
@@ -196,7 +196,7 @@ fn a_trigger_is_typed_armed_and_switched_off() {
 }
 
 #[test]
-fn the_plot_takes_the_place_of_the_page_and_goes_back() {
+fn the_plot_can_be_enlarged_and_restored() {
     let mut screen = recorded();
     let small = chart(&screen).width();
     screen.click("recorder.large");
@@ -230,7 +230,7 @@ fn the_keyboard_moves_and_zooms() {
 }
 
 #[test]
-fn a_table_is_asked_for_from_the_menu() {
+fn a_table_can_be_exported_from_the_menu() {
     let mut screen = recorded();
     let of = Of::Device(screen.encoder().session.id);
     screen.click("recorder.export");

@@ -20,7 +20,7 @@ const OWN: &str = "(schema: 1, device: \"hiperface\",\n\
 /// Issue 22.25: Ctrl+S writes the open file; if others have written it, both versions are shown side by side, in both
 /// languages, and each button has the stated effect.
 #[test]
-fn both_versions_stand_side_by_side() {
+fn both_versions_are_shown_side_by_side() {
     let outside = Outside::new("");
     let path = outside.path("own.ron");
     fs::write(&path, OWN).unwrap();

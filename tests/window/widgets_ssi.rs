@@ -20,7 +20,7 @@ fn layout() -> Screen {
 }
 
 #[test]
-fn a_boundary_that_was_just_moved_is_taken_back_by_key() {
+fn a_moved_boundary_is_undone_by_key() {
     let mut screen = layout();
     let dirty = |screen: &Screen| screen.studio().ssi().unwrap().is_dirty();
     let boundary = screen.say("ssi.strip_split");
@@ -35,7 +35,7 @@ fn a_boundary_that_was_just_moved_is_taken_back_by_key() {
 }
 
 #[test]
-fn words_that_come_while_one_types_are_not_taken_for_what_was_typed() {
+fn words_arriving_while_typing_do_not_replace_the_typed_text() {
     let mut screen = Screen::opened_in(crate::tabs::SSI, "sim:?ssi=afs60&rpm=6", SIZE);
     screen.until("a word is read", |studio| studio.ssi().is_some_and(|own| own.is_following()));
     let id = screen.studio().ssi().unwrap().session.id;

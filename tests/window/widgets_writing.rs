@@ -82,7 +82,7 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
 
 /// Issue 22.4: a write that needs a permission cannot be started without it.
 #[test]
-fn without_a_logbook_write_waits_for_its_permit() {
+fn without_a_logbook_the_write_button_needs_a_permission() {
     let mut screen = Screen::begun(SIZE);
     std::fs::create_dir_all(screen.outside.store().logbook_path()).unwrap();
     type_bytes(&mut screen, "58");
@@ -97,7 +97,7 @@ fn without_a_logbook_write_waits_for_its_permit() {
 }
 
 #[test]
-fn what_a_field_does_not_allow_cannot_be_pressed() {
+fn actions_a_field_does_not_allow_are_disabled() {
     let mut screen = Screen::begun(SIZE);
     screen.click("page.memory");
     assert!(screen.is_enabled("memory.delete"), "it is the last");
@@ -125,7 +125,7 @@ fn what_a_field_does_not_allow_cannot_be_pressed() {
 }
 
 #[test]
-fn stop_can_be_pressed_only_while_something_runs() {
+fn stop_is_enabled_only_while_a_job_runs() {
     let mut screen = Screen::begun(SIZE);
     assert!(!screen.is_enabled("shell.stop"));
     screen.outside.wire(PORT).hold_at(0x46, 1);
@@ -145,7 +145,7 @@ fn stop_can_be_pressed_only_while_something_runs() {
 }
 
 #[test]
-fn a_restore_is_stopped_half_way_by_click() {
+fn a_restore_can_be_stopped_by_click() {
     let mut screen = Screen::begun(SIZE);
     for address in [0, 2, 4] {
         let edit = Hiperface::Put { field: 0, address, bytes: vec![0] };
@@ -174,7 +174,7 @@ fn a_restore_is_stopped_half_way_by_click() {
 }
 
 #[test]
-fn a_pulled_cable_shows_the_way_back_and_keeps_the_edits() {
+fn a_pulled_cable_offers_to_reconnect_and_keeps_the_edits() {
     let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);
     screen.until("it is read", |studio| {
         studio.hiperface().is_some_and(|own| own.session.is_ready() && own.identity.is_some())
@@ -192,7 +192,7 @@ fn a_pulled_cable_shows_the_way_back_and_keeps_the_edits() {
 }
 
 #[test]
-fn closing_with_edits_asks_and_one_can_stay() {
+fn closing_with_edits_asks_and_can_be_declined() {
     let mut screen = Screen::begun(SIZE);
     type_bytes(&mut screen, "58");
     screen.act(Action::Close);
@@ -205,7 +205,7 @@ fn closing_with_edits_asks_and_one_can_stay() {
 }
 
 #[test]
-fn a_notice_stands_until_it_is_read() {
+fn a_notice_stays_until_dismissed() {
     let mut screen = Screen::begun(SIZE);
     screen.act(Action::Open(screen.outside.path("none.ron")));
     screen.until("it is told", |studio| studio.services.log.standing().is_some());

@@ -46,7 +46,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
     assert_eq!(desk.wire().field(0)[RATED], 0x23);
     assert_eq!(desk.encoder().staged.on_device(0, RATED), Some(0x23));
     assert!(!desk.encoder().staged.is_dirty());
-    assert_eq!(desk.times_told("session.written"), 1);
+    assert_eq!(desk.notice_count("session.written"), 1);
     desk.ask(Hiperface::CloseReview);
     assert!(desk.encoder().session.review.is_none());
 }
@@ -120,14 +120,14 @@ fn write_pressed_twice_writes_once() {
     desk.write_as_shown();
     desk.settle();
     assert_eq!((desk.wire().count(0x4B), desk.wire().wear()), (1, 1));
-    assert!(!desk.told(Severity::Note).contains(&"session.busy"));
+    assert!(!desk.notice_ids(Severity::Note).contains(&"session.busy"));
 }
 
 #[test]
-fn what_is_there_already_is_not_written() {
+fn equal_bytes_are_not_written() {
     let mut desk = Desk::begun("");
     desk.command(DeviceCommand::Review);
-    assert_eq!(desk.told(Severity::Note).last(), Some(&"session.nothing_edited"));
+    assert_eq!(desk.notice_ids(Severity::Note).last(), Some(&"session.nothing_edited"));
     desk.put(0, 0, b"E");
     assert!(!desk.encoder().staged.is_dirty(), "E stands there");
     desk.ask(Hiperface::Plan(Change::Store(vec![(FieldRange::new(0, 0, 1), b"E".to_vec())])));
@@ -138,7 +138,7 @@ fn what_is_there_already_is_not_written() {
 }
 
 #[test]
-fn edits_made_while_the_plan_is_shown_are_not_written_with_it() {
+fn edits_made_after_planning_are_not_written() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -151,7 +151,7 @@ fn edits_made_while_the_plan_is_shown_are_not_written_with_it() {
 }
 
 #[test]
-fn an_encoder_that_changed_since_the_plan_is_not_written() {
+fn an_encoder_changed_since_the_plan_is_not_written() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -165,7 +165,7 @@ fn an_encoder_that_changed_since_the_plan_is_not_written() {
 }
 
 #[test]
-fn consent_is_to_the_plan_that_was_drawn_and_to_no_other() {
+fn consent_covers_only_the_plan_that_was_shown() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -185,7 +185,7 @@ fn consent_is_to_the_plan_that_was_drawn_and_to_no_other() {
 }
 
 #[test]
-fn another_plan_is_not_forced_onto_a_worn_encoder_by_an_earlier_wish() {
+fn an_earlier_forced_write_does_not_force_another_plan() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.write();
@@ -202,7 +202,7 @@ fn another_plan_is_not_forced_onto_a_worn_encoder_by_an_earlier_wish() {
 }
 
 #[test]
-fn what_would_discard_edits_is_refused_until_they_are_written_or_taken_back() {
+fn changes_that_would_discard_edits_are_refused() {
     let mut desk = Desk::begun("");
     desk.put(0, 20, b"X");
     let (memory, first) = (desk.encoder().identity.as_ref().unwrap().memory.unwrap(), desk.encoder().field(0).unwrap());
@@ -221,7 +221,7 @@ fn what_would_discard_edits_is_refused_until_they_are_written_or_taken_back() {
 }
 
 #[test]
-fn a_field_whose_access_code_is_not_known_is_left_as_it_is() {
+fn a_field_with_an_unknown_access_code_is_not_changed() {
     let mut desk = Desk::at_port("codes=0:9D");
     let why = crate::texts::text("rules.code_unknown").with("field", 0).with("number", CodeNumber::ZERO);
     let small = FieldSize::from_bytes(16).unwrap();
@@ -239,24 +239,24 @@ fn a_field_whose_access_code_is_not_known_is_left_as_it_is() {
 }
 
 #[test]
-fn whether_an_access_code_fits_is_told_and_never_the_code() {
+fn an_access_code_is_checked_and_never_shown() {
     let mut desk = Desk::at_port("codes=0:9D");
     for (code, id) in [("1C", "session.code_wrong"), ("9D", "session.code_fits")] {
         let code = forms::access_code(code).unwrap();
         desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
         desk.until_ready();
-        assert_eq!(*desk.told(Severity::Note).last().unwrap(), id);
+        assert_eq!(*desk.notice_ids(Severity::Note).last().unwrap(), id);
     }
     let log = crate::support::log(&desk.studio);
     assert!(!log.contains("9D") && !log.contains("1C"), "{log}");
     desk.ask(Hiperface::UseCode { number: CodeNumber::new(2).unwrap(), code: forms::access_code("11").unwrap() });
     desk.until_ready();
-    assert_eq!(*desk.told(Severity::Note).last().unwrap(), "session.code_unused");
+    assert_eq!(*desk.notice_ids(Severity::Note).last().unwrap(), "session.code_unused");
 }
 
 /// Lists and backups that were asked for before the encoder was exchanged.
 #[test]
-fn what_comes_late_for_another_encoder_is_dropped() {
+fn late_results_for_another_encoder_are_dropped() {
     let mut desk = Desk::begun("");
     desk.put(0, 0, b"X");
     desk.write();
@@ -320,7 +320,7 @@ fn refused(desk: &mut Desk, change: Change) -> Text {
 }
 
 #[test]
-fn what_the_rules_of_the_fields_forbid_is_refused_with_the_reason() {
+fn changes_against_the_field_rules_are_refused_with_a_reason() {
     let mut desk = with_two_fields();
     let memory = desk.encoder().identity.as_ref().unwrap().memory.unwrap();
     let first = desk.encoder().field(0).unwrap().clone();
@@ -343,7 +343,7 @@ fn what_the_rules_of_the_fields_forbid_is_refused_with_the_reason() {
 }
 
 #[test]
-fn a_field_that_does_not_fit_is_refused() {
+fn a_field_exceeding_the_memory_is_refused() {
     let mut desk = Desk::begun("");
     // 112 blocks less the name plate's two: 13 fields of 128 bytes leave six blocks.
     let size = FieldSize::from_bytes(128).unwrap();
@@ -359,34 +359,34 @@ fn a_field_that_does_not_fit_is_refused() {
 }
 
 #[test]
-fn a_write_protected_field_takes_no_edit() {
+fn a_write_protected_field_cannot_be_edited() {
     let mut desk = Desk::begun("");
     change(&mut desk, Change::LockField { number: 0, lock: true });
     desk.put(0, 0, b"X");
     assert!(!desk.encoder().staged.is_dirty());
-    assert_eq!(desk.told(Severity::Error), ["plan.write_protected"]);
+    assert_eq!(desk.notice_ids(Severity::Error), ["plan.write_protected"]);
     change(&mut desk, Change::LockField { number: 0, lock: false });
     desk.put(0, 0, b"X");
     assert!(desk.encoder().staged.is_dirty());
 }
 
 #[test]
-fn an_edit_beyond_the_field_or_in_none_says_why() {
+fn an_edit_outside_a_field_is_refused_with_a_reason() {
     let mut desk = Desk::begun("");
     desk.put(0, 31, &[1, 2]);
     desk.put(3, 0, &[1]);
     assert!(desk.edits().is_empty());
-    let told = desk.told(Severity::Error);
+    let told = desk.notice_ids(Severity::Error);
     assert_eq!(told.len(), 2, "{told:?}");
     assert_ne!(told[0], told[1]);
 }
 
 #[test]
-fn a_field_behind_an_unknown_code_opens_with_it_and_keeps_its_edits_when_it_is_lost() {
+fn a_protected_field_opens_with_its_code_and_keeps_edits_after_losing_it() {
     let mut desk = Desk::at_port("codes=0:9D");
     assert_eq!(desk.encoder().field(0).unwrap().bytes, None);
     desk.put(0, 0, b"X");
-    assert_eq!(desk.told(Severity::Error), ["encoder.code_unknown"]);
+    assert_eq!(desk.notice_ids(Severity::Error), ["encoder.code_unknown"]);
     let code = encoder_studio::devices::hiperface::state::forms::access_code("9D").unwrap();
     desk.ask(Hiperface::UseCode { number: CodeNumber::ZERO, code });
     desk.until("the field is readable", |studio| studio.hiperface().unwrap().field(0).unwrap().bytes.is_some());

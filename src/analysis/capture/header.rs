@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_known_by_name() {
+    fn columns_are_recognized_by_name() {
         let plain = Some(Columns::PLAIN);
         for names in ["time|sin|cos", "Time [ms]|Sine (V)|Cosine (V)", "t/s|SIN_mV|COS_mV", "Zeit|Sinus|Kosinus"] {
             assert_eq!(named(names), plain, "{names}");
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn units_stand_behind_the_name() {
+    fn units_are_parsed_from_column_names() {
         let rows = [
             ("time [ms]", Some("ms")),
             ("t/\u{b5}s", Some("\u{b5}s")),

@@ -24,7 +24,7 @@ fn read(text: impl AsRef<[u8]>) -> Result<(Layout, Capture), CaptureError> {
 
 /// Each of them contains 0 s, 0.25 V, 0.5 V and then 0.001 s, −0.3 V, 0.4 V.
 #[test]
-fn the_same_table_in_many_ways() {
+fn equivalent_tables_parse_the_same() {
     let ways: [(&str, &[u8]); 17] = [
         ("plain", b"0,0.25,0.5\n0.001,-0.3,0.4\n"),
         ("no last line break", b"0,0.25,0.5\n0.001,-0.3,0.4"),
@@ -60,7 +60,7 @@ fn the_same_table_in_many_ways() {
 }
 
 #[test]
-fn what_was_found_out_is_told_and_can_be_corrected() {
+fn the_detected_layout_is_returned_and_can_be_overridden() {
     let text = b"Time (ms);A (mV);B (mV)\n0;1,5;2\n1;3;4\n";
     let (layout, _) = read(text).unwrap();
     let expected = Layout {
@@ -118,7 +118,7 @@ fn errors_name_row_and_column() {
 }
 
 #[test]
-fn a_table_longer_than_the_head_keeps_its_row_numbers() {
+fn row_numbers_are_right_beyond_the_sniffed_head() {
     let mut text: String = (0..20_000).map(|at| format!("{at}e-6,0.{at},-0.{at}\n")).collect();
     let (_, capture) = read_in(4096, text.as_bytes(), &TableHints::default()).unwrap();
     assert_eq!(capture.sine_v.len(), 20_000);
@@ -129,7 +129,7 @@ fn a_table_longer_than_the_head_keeps_its_row_numbers() {
 }
 
 #[test]
-fn a_reference_and_an_absolute_position_are_taken_where_they_fit() {
+fn reference_and_absolute_position_columns_are_recognized() {
     let both = (Some(vec![359.5, 0.25]), Some(vec![7_i64, -8]));
     let cases: [(&str, _); 7] = [
         ("t,sin,cos,reference,absolute\n0,.1,.2,359.5,7\n1,.1,.2,0.25,-8\n", both.clone()),
@@ -159,7 +159,7 @@ fn a_reference_and_an_absolute_position_are_taken_where_they_fit() {
 
 /// Issue 22.13: the first column of an oscilloscope that writes Start and Increment counts samples.
 #[test]
-fn start_and_increment_give_the_times() {
+fn start_and_increment_define_the_times() {
     let text =
         "X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-6.000e-03,2.000e-06,\n0,0.1,0.2,,\n1,0.3,0.4,,\n2,0.5,0.6,,\n";
     let (layout, capture) = read(text).unwrap();
@@ -184,7 +184,7 @@ fn start_and_increment_give_the_times() {
 /// Issue 22.13: rows without a value are left out and counted; so is a truncated last line. Six rows are enough for a
 /// measurement.
 #[test]
-fn rows_without_a_value_are_left_out() {
+fn rows_without_a_value_are_skipped() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
     for gap in ["6,,3", "6,NaN,3", "6,2,-inf", "6,OVERLOAD,3", "6,2,---", "6,2,\u{221e}", "6, ,3"] {
         let (_, capture) =
@@ -244,7 +244,7 @@ fn encodings_and_rows_of_units_do_not_reject_a_table() {
 
 /// Issue 22.13: rows without a value before the first complete one do not hide the names and units of the columns.
 #[test]
-fn rows_without_a_value_at_the_beginning_leave_the_header_as_it_is() {
+fn leading_rows_without_a_value_do_not_hide_the_header() {
     let rows = "2,3,4\n3,4,5\n4,5,6\n5,6,7\n6,7,8\n7,8,9\n";
     for gap in ["1,,", "1,OVERLOAD,OVERLOAD", "1,---,---", "1, , "] {
         let (layout, capture) = read(format!("t [ms],cos,sin [mV]\n0,,\n{gap}\n{rows}")).unwrap();
@@ -257,7 +257,7 @@ fn rows_without_a_value_at_the_beginning_leave_the_header_as_it_is() {
 
 /// Issue 22.13: a truncated last line is one line; the text after an open quotation mark is not.
 #[test]
-fn an_open_quotation_mark_swallows_no_rows() {
+fn an_unclosed_quotation_mark_swallows_no_rows() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
     for (open, column) in [("6,\"3,4", "in a value"), ("6,3,4,\"24 V", "in a note")] {
         let text = format!("t,sin,cos,note\n{six}{open}\n7,8,9\n8,9,1\n");
@@ -272,7 +272,7 @@ fn an_open_quotation_mark_swallows_no_rows() {
 
 /// Issue 22.13: an oscilloscope's sample numbers have a time whatever the channels are called, and are whole numbers.
 #[test]
-fn sample_numbers_are_whole_and_in_the_first_column() {
+fn sample_numbers_are_integers_in_the_first_column() {
     let (layout, capture) = read("X,sin,cos,Start,Increment\nSequence,V,V,1,0.5\n0,1,2,,\n1,3,4,,\n").unwrap();
     assert_eq!((layout.columns.time, capture.time_s), (Some(1), vec![1.0, 1.5]));
     let times = "X,CH1,CH2,Start,Increment\nSequence,V,V,1,0.5\n0,1,2,,\n0.5,3,4,,\n";
@@ -284,7 +284,7 @@ fn sample_numbers_are_whole_and_in_the_first_column() {
 
 /// Issue 22.13: 9.9E37 and 9.91E37 are the notation of SCPI instruments for an overload and a missing value.
 #[test]
-fn what_scpi_instruments_send_for_no_value_is_none() {
+fn scpi_overload_values_count_as_missing() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
     for gap in ["6,9.9E+37,3", "6,2,-9.9E37", "6,9.91E+37,3"] {
         let (_, capture) = read(format!("t,sin,cos\n{six}{gap}\n7,8,9\n")).unwrap();

@@ -78,7 +78,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn of_a_good_signal_nothing_is_said() {
+fn a_good_signal_has_no_findings() {
     let uneven = |time: f64| steady(time) + 0.3 * (TAU * 20.5 * time).sin() + 0.02 * (TAU * 300.0 * time).sin();
     let plain = |_, _, signal| signal;
     let slow = |time: f64| 3.0 * time;
@@ -100,7 +100,7 @@ fn of_a_good_signal_nothing_is_said() {
 }
 
 #[test]
-fn an_amplitude_that_changes_over_the_revolution_is_no_interference() {
+fn amplitude_variation_over_a_revolution_is_not_interference() {
     // 16 periods per revolution: 77 Hz beside the signal on both sides.
     let wobbling = |_, angle: f64, (sine, cosine)| {
         let amplitude = 1.0 + 0.04 * (angle / 16.0).cos();
@@ -121,7 +121,7 @@ fn an_amplitude_that_changes_over_the_revolution_is_no_interference() {
 }
 
 #[test]
-fn a_drive_is_told_by_its_frequency_and_amplitude() {
+fn interference_is_reported_with_frequency_and_amplitude() {
     for (volts, severity) in [(0.02, Severity::Warning), (0.002, Severity::Notice)] {
         for hertz in [8_000.0, 8_003.7, 1_300.0, 21_234.5] {
             let finding = made(steady, added(volts, -0.5 * volts, hertz)).finding();
@@ -138,7 +138,7 @@ fn a_drive_is_told_by_its_frequency_and_amplitude() {
 }
 
 #[test]
-fn also_while_the_speed_changes() {
+fn interference_is_found_while_the_speed_changes() {
     let finding = made(|time| 500.0 * time + 100.0 * time * time, added(0.02, 0.015, 8_000.0)).finding();
     let FindingKind::Interference { frequency_hz, volts, common, .. } = finding.kind else { panic!("{finding:?}") };
     near(frequency_hz, 8_000.0, 0.5);
@@ -147,7 +147,7 @@ fn also_while_the_speed_changes() {
 }
 
 #[test]
-fn the_mains_are_told_with_their_multiples() {
+fn mains_hum_is_reported_with_its_harmonics() {
     for mains in [50.0, 60.0] {
         let hum = |time: f64, _, (sine, cosine)| {
             let wave = 0.008 * (TAU * mains * time).sin() + 0.006 * (TAU * 3.0 * mains * time + 1.0).sin();
@@ -168,7 +168,7 @@ fn the_mains_are_told_with_their_multiples() {
 }
 
 #[test]
-fn noise_is_told_beside_the_lines() {
+fn noise_is_reported_separately_from_spectral_lines() {
     let mut random = fastrand::Rng::with_seed(9);
     let mut capture = made(steady, added(0.02, 0.0, 8_000.0));
     for value in capture.sine.iter_mut().chain(&mut capture.cosine) {
@@ -187,7 +187,7 @@ fn noise_is_told_beside_the_lines() {
 }
 
 #[test]
-fn a_third_harmonic_is_told_whatever_the_motion() {
+fn a_third_harmonic_is_found_at_any_motion() {
     let third =
         |_, angle: f64, (sine, cosine)| (sine + 0.01 * (3.0 * angle).sin(), cosine - 0.01 * (3.0 * angle).cos());
     for made in [made(steady, third), made(|time| 30.0 * time * time, third)] {
@@ -200,7 +200,7 @@ fn a_third_harmonic_is_told_whatever_the_motion() {
 }
 
 #[test]
-fn a_channel_that_is_cut_off_is_told_with_its_voltage() {
+fn a_clipped_channel_is_reported_with_its_voltage() {
     let cut = |_, _, (sine, cosine): (f64, f64)| (sine, cosine.min(0.45));
     let mut capture = made(steady, cut);
     // A converter at its limit has no noise.
@@ -218,7 +218,7 @@ fn a_channel_that_is_cut_off_is_told_with_its_voltage() {
 }
 
 #[test]
-fn broken_wires() {
+fn broken_wires_are_diagnosed() {
     let dead = |level: f64| move |_, _, (sine, _): (f64, f64)| (sine, level);
     let with = |level: f64, refcos: f64| Made {
         references: Some((vec![2.5; COUNT], vec![refcos; COUNT])),
@@ -267,7 +267,7 @@ fn levels_of_the_references_are_judged_by_the_family() {
 }
 
 #[test]
-fn spikes_are_told_and_are_no_interference() {
+fn spikes_are_reported_and_are_not_interference() {
     let mut capture = made(steady, |_, _, signal| signal);
     (0..20).for_each(|at| capture.sine[2_000 * at + 77] = 2.0);
     let finding = capture.finding();
@@ -285,7 +285,7 @@ fn spikes_are_told_and_are_no_interference() {
 }
 
 #[test]
-fn the_worst_comes_first_and_limits_are_the_family_s() {
+fn the_worst_finding_comes_first_and_limits_are_the_familys() {
     let mut capture = made(steady, |_, _, (sine, cosine)| (0.84 * sine + 0.06, 0.84 * cosine));
     capture.sine[9] = 3.0;
     let severities: Vec<Severity> = capture.diagnosed().findings.iter().map(|finding| finding.severity).collect();
@@ -296,7 +296,7 @@ fn the_worst_comes_first_and_limits_are_the_family_s() {
 }
 
 #[test]
-fn of_two_captures_it_is_told_what_became_worse() {
+fn comparing_captures_reports_worse_findings() {
     let off = made(steady, |_, _, signal| signal).diagnosed();
     let hum = |hum: f64, drive: f64, amplitude: f64| {
         made(steady, move |time, _, (sine, cosine)| {
@@ -339,7 +339,7 @@ fn ellipse(amplitude: f64, offset: f64, phase: f64) -> Made {
 }
 
 #[test]
-fn an_amplitude_that_changes_is_worse_only_where_it_leaves_its_limits() {
+fn an_amplitude_change_is_worse_only_outside_the_limits() {
     let at = |amplitude| ellipse(amplitude, 0.0, 0.0).diagnosed();
     for (from, to, worse) in [(1.0, 0.95, 0), (0.8, 1.0, 0), (1.0, 0.8, 1), (0.8, 0.7, 1), (0.7, 0.8, 0)] {
         let changes = compare(&at(from), &at(to));
@@ -355,7 +355,7 @@ fn an_amplitude_that_changes_is_worse_only_where_it_leaves_its_limits() {
 }
 
 #[test]
-fn what_comes_up_is_worse_whatever_it_is() {
+fn any_new_finding_counts_as_worse() {
     let good = made(steady, |_, _, signal| signal);
     let mut spikes = ellipse(1.0, 0.0, 0.0);
     (0..20).for_each(|at| spikes.sine[2_000 * at + 77] = 2.0);
@@ -393,7 +393,7 @@ fn what_comes_up_is_worse_whatever_it_is() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_told() {
+fn missing_comparisons_are_reported() {
     let good = made(steady, |_, _, signal| signal).diagnosed();
     let mut timeless = ellipse(1.0, 0.0, 0.0);
     timeless.time.clear();
@@ -410,7 +410,7 @@ fn what_cannot_be_compared_is_told() {
 }
 
 #[test]
-fn other_limits_are_judged_by_without_the_samples() {
+fn other_limits_apply_without_the_samples() {
     let mut capture = ellipse(0.84, 0.03, 0.0);
     capture.references = Some((vec![2.25; COUNT], vec![2.5; COUNT]));
     let record = capture.record();
@@ -423,7 +423,7 @@ fn other_limits_are_judged_by_without_the_samples() {
 }
 
 #[test]
-fn nothing_to_look_at_is_no_disaster() {
+fn empty_captures_are_diagnosed_without_a_panic() {
     for (time, values) in [(vec![], vec![]), (vec![0.0], vec![0.1]), (vec![0.0; 9], vec![f64::NAN; 9])] {
         let record = Record {
             samples: Samples { time_s: &time, sine_v: &values, cosine_v: &values },

@@ -27,13 +27,13 @@ fn assert_close(found: &Ellipse, expected: &Ellipse, tolerance: f64) {
 
 /// Section 7, `Test`: the coefficients were computed with Python.
 #[test]
-fn the_reference_coefficients_give_the_reference_ellipse() {
+fn the_reference_coefficients_yield_the_reference_ellipse() {
     let conic = Conic { a: 4.032_438_057, b: 4.445_762_958, c: 0.443_187_154, d: -0.148_001_908, e: 0.257_882_034 };
     assert_close(&conic.ellipse().unwrap(), &REFERENCE, 1e-9);
 }
 
 #[test]
-fn the_model_gives_the_voltages_of_section_7() {
+fn the_model_yields_the_voltages_of_section_7() {
     let rows = [
         (0.0, 0.52, -0.054_922),
         (40.0, 0.403_022_2, 0.256_578_6),
@@ -48,7 +48,7 @@ fn the_model_gives_the_voltages_of_section_7() {
 }
 
 #[test]
-fn three_hundred_and_sixty_points_and_six_give_back_what_was_put_in() {
+fn fits_of_360_and_6_points_recover_the_parameters() {
     for count in [360, 6] {
         let (sine, cosine) = signals(&REFERENCE, count, 0.0, 1.0);
         let found = Ellipse::fit(&sine, &cosine).unwrap();
@@ -66,7 +66,7 @@ fn three_hundred_and_sixty_points_and_six_give_back_what_was_put_in() {
 /// With 1 mV rms of noise on 360 points, section 7 found deviations of 1e-5 V, 4e-5 V, 6e-4, 0.0083° and 1e-4 V. A
 /// parameter of a fit to n points scatters by about σ·√(2/n) = 7.5e-5 V; the limits are five times that, twice for α, r.
 #[test]
-fn noise_moves_the_parameters_by_no_more_than_its_statistics_allow() {
+fn noise_moves_the_parameters_within_its_statistics() {
     let mut random = fastrand::Rng::with_seed(7);
     for _ in 0..50 {
         let (mut sine, mut cosine) = signals(&REFERENCE, 360, random.f64(), 1.0);
@@ -85,7 +85,7 @@ fn noise_moves_the_parameters_by_no_more_than_its_statistics_allow() {
 }
 
 #[test]
-fn unit_mean_level_and_resting_change_nothing() {
+fn the_fit_is_independent_of_unit_level_and_rest() {
     // Counts of a converter; 2.5 V with a signal of millivolts; and ten thousand samples of a shaft at rest.
     let wide = Ellipse { amplitude_v: 31_000.0, offset_cosine_v: 32_768.0, offset_sine_v: 32_700.0, ..REFERENCE };
     let (sine, cosine) = signals(&wide, 1000, 0.0, 1.0);
@@ -100,7 +100,7 @@ fn unit_mean_level_and_resting_change_nothing() {
 }
 
 #[test]
-fn in_pieces_as_in_one() {
+fn a_fit_in_chunks_equals_a_fit_in_one() {
     let (sine, cosine) = signals(&REFERENCE, 20_000, 0.1, 12.3);
     let mut moments = Moments::new(super::super::moments::Scale::new(0.0, 0.0, 0.5));
     for (sine, cosine) in sine.chunks(333).zip(cosine.chunks(333)) {
@@ -111,7 +111,7 @@ fn in_pieces_as_in_one() {
 }
 
 #[test]
-fn what_is_no_ellipse_is_refused_with_its_reason() {
+fn data_that_is_no_ellipse_is_refused_with_a_reason() {
     let (sine, cosine) = signals(&REFERENCE, 360, 0.0, 1.0);
     let zeros = vec![0.0; 360];
     let noisy: Vec<f64> = (0..360).map(|i| 1.25 + 0.001 * f64::from(i % 7)).collect();
@@ -145,7 +145,7 @@ fn what_is_no_ellipse_is_refused_with_its_reason() {
 }
 
 #[test]
-fn an_outline_goes_once_around_the_middle() {
+fn an_outline_goes_once_around_the_center() {
     let ellipse = Ellipse {
         amplitude_v: 0.5,
         offset_cosine_v: 0.25,

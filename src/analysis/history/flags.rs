@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_has_the_flags_of_its_samples_and_no_others() {
+    fn a_range_has_exactly_the_flags_of_its_samples() {
         let mut block = FlagBlock::default();
         block.mark(63, Flags::WARNING);
         block.mark(64, Flags::BREAK);
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn every_range_has_what_its_samples_have_one_by_one() {
+    fn flags_of_a_range_are_those_of_its_samples() {
         let mut random = fastrand::Rng::with_seed(4);
         for flagged in [1, 3, 40, 2_000] {
             let mut block = FlagBlock::default();
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn stretches_leave_bad_samples_out() {
+    fn good_stretches_exclude_bad_samples() {
         let mut block = FlagBlock::default();
         block.mark(1, Flags::WARNING);
         assert!(block.good(0..9).eq(std::iter::once(0..9)));

@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_f32_does_not_reach_is_infinite() {
+    fn values_beyond_f32_are_infinite() {
         assert_eq!((1e300).down(0.0), f32::NEG_INFINITY);
         assert_eq!((1e300).up(0.0), f32::INFINITY);
         assert_eq!(f64::MAX.down(f64::MIN), f32::NEG_INFINITY);

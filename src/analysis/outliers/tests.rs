@@ -48,7 +48,7 @@ impl Made {
 }
 
 #[test]
-fn a_single_spike_is_left_out_and_told() {
+fn a_single_spike_is_excluded_and_reported() {
     let mut capture = made(360, 1.0, 0.0);
     capture.sine[100] = 5.0;
     let told = capture.comes_out(1e-9);
@@ -62,7 +62,7 @@ fn a_single_spike_is_left_out_and_told() {
 /// 1 mV of noise on 100 000 samples: a parameter scatters by 1 mV·√(2/100 000) = 4.5 µV, r and α by twice that, as shares
 /// of 0.5 V; six of them.
 #[test]
-fn sparks_in_a_long_capture_leave_no_trace() {
+fn spikes_in_a_long_capture_do_not_change_the_fit() {
     let mut capture = made(100_000, 100.0, 1e-3);
     for at in 0..40 {
         capture.cosine[at * 2_399 + 17] += if at % 2 == 0 { 0.4 } else { -3.0 };
@@ -86,7 +86,7 @@ fn sparks_in_a_long_capture_leave_no_trace() {
 }
 
 #[test]
-fn a_spike_that_ruins_the_plain_fit_is_found_as_well() {
+fn a_spike_that_ruins_the_plain_fit_is_found() {
     let mut capture = made(400, 3.0, 5e-4);
     for at in [3, 200, 201, 399] {
         (capture.sine[at], capture.cosine[at]) = (-80.0, 120.0);
@@ -96,7 +96,7 @@ fn a_spike_that_ruins_the_plain_fit_is_found_as_well() {
 }
 
 #[test]
-fn what_belongs_to_the_signal_stays() {
+fn samples_of_the_signal_are_not_outliers() {
     let third = |share: f64| {
         let mut capture = made(20_000, 20.0, 5e-4);
         for (at, value) in capture.sine.iter_mut().enumerate() {
@@ -138,7 +138,7 @@ fn a_spike_does_not_revive_a_dead_channel() {
 }
 
 #[test]
-fn what_is_kept_is_what_is_not_left_out() {
+fn kept_ranges_complement_the_excluded_ranges() {
     type Ends = [(usize, usize)];
     let cases: [(usize, &Ends, &Ends); 4] = [
         (10, &[], &[(0, 10)]),

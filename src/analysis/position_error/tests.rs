@@ -47,7 +47,7 @@ impl Made {
 
 /// Section 6: peak to peak of the raw error in electrical degrees.
 #[test]
-fn raw_errors_of_section_6() {
+fn raw_errors_match_section_6() {
     let rows = [
         ("sine offset 1 %", Ellipse { offset_sine_v: 0.005, ..CIRCLE }, 1.1459),
         ("both offsets 1 %", Ellipse { offset_sine_v: 0.005, offset_cosine_v: 0.005, ..CIRCLE }, 1.6206),
@@ -72,7 +72,7 @@ fn raw_errors_of_section_6() {
 /// Section 7: mean removed, the error of the reference runs from 353.9708° − 360° at 0° and so on; computed point by point
 /// with Python at 720 angles: 9.97087° peak to peak.
 #[test]
-fn the_reference_error_is_found_and_taken_out() {
+fn the_reference_error_is_found_and_corrected() {
     let told = made(&REFERENCE, 360, |t| t, |_| 0.0).analysed().unwrap();
     let by_points = (0..720).map(|at| {
         let angle = f64::from(at).to_radians() / 2.0;
@@ -93,7 +93,7 @@ fn the_reference_error_is_found_and_taken_out() {
 /// An error of the angle of 0.3° at the fourth harmonic is in the raw and in the corrected curve, with noise of 1 mV in 0.5
 /// V: 0.115° per sample, of which an amplitude from n samples keeps 0.115°·√(2/n).
 #[test]
-fn harmonics_are_no_ellipse_and_stay() {
+fn harmonics_are_not_corrected() {
     for (count, periods) in [(2000, 1.0), (5000, 17.3), (200_000, 999.0)] {
         let amplitude = 0.3_f64.to_radians();
         // Over a single period an accelerating motion cannot be distinguished from an error: that one is even.
@@ -111,7 +111,7 @@ fn harmonics_are_no_ellipse_and_stay() {
 }
 
 #[test]
-fn an_unsteady_motion_is_not_taken_for_an_error() {
+fn uneven_motion_is_not_mistaken_for_an_error() {
     let there_and_back = made(&REFERENCE, 5000, |t| 3.0 * (TAU * t).sin(), |_| 0.0).noisy(1e-3, 4);
     let told = there_and_back.analysed().unwrap();
     assert_eq!(told.error.basis, Basis::Ellipse);
@@ -123,7 +123,7 @@ fn an_unsteady_motion_is_not_taken_for_an_error() {
 }
 
 #[test]
-fn without_times_the_samples_count_as_even() {
+fn without_times_samples_are_evenly_spaced() {
     let mut capture = made(&REFERENCE, 500, |t| 2.5 * t, |_| 0.0);
     capture.time.fill(0.0);
     let told = capture.analysed().unwrap();
@@ -132,7 +132,7 @@ fn without_times_the_samples_count_as_even() {
 }
 
 #[test]
-fn too_little_of_a_period_is_refused() {
+fn a_fraction_of_a_period_is_refused() {
     let quarter = made(&REFERENCE, 500, |t| 0.03 + 0.3 * t, |_| 0.0);
     assert!(matches!(quarter.analysed(), Err(AnalysisError::Coverage { octants: 3 })), "{:?}", quarter.analysed());
     let resting = made(&REFERENCE, 500, |_| 0.2, |_| 0.0);

@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn used_ports_come_first_then_adapters_with_a_name() {
+    fn used_ports_come_first_then_named_adapters() {
         let port = |path: &str, description: &str| PortInfo {
             path: path.to_owned(),
             description: description.to_owned(),

@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn each_is_told_in_both_languages() {
+    fn expected_values_are_explained_in_both_languages() {
         let mut told = BTreeSet::new();
         for own in samples() {
             let text = expected(&own);

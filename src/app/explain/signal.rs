@@ -277,7 +277,7 @@ mod tests {
     use crate::sim::sine_cosine::Settings;
 
     #[test]
-    fn a_finding_says_what_to_do_in_both_languages() {
+    fn findings_name_a_remedy_in_both_languages() {
         let said = |what| {
             let finding = DiagnosisFinding { severity: Severity::Warning, kind: what };
             [Language::English, Language::German].map(|language| diagnosis(&finding).words(language))
@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_out_of_range_is_told_with_its_range() {
+    fn a_setting_out_of_range_is_reported_with_its_range() {
         let said = |quantity, value| {
             let error = Settings::default().with(quantity, value).checked().unwrap_err();
             [Language::English, Language::German].map(|language| setting(&error).words(language))

@@ -57,7 +57,7 @@ impl Pad {
 
 /// Issue 21.2: the events of X11 when Space is held and the window loses and regains the keyboard focus.
 #[test]
-fn a_key_that_is_held_while_the_keyboard_goes_and_comes_holds_nothing() {
+fn a_key_held_while_focus_returns_starts_no_hold() {
     let mut pad = Pad::armed();
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
     assert_eq!(pad.picture(&[DOWN]), Some(Hold), "it repeats itself");
@@ -82,7 +82,7 @@ fn a_key_that_is_held_while_the_keyboard_goes_and_comes_holds_nothing() {
 
 /// Issue 21.2: after any change around the button, a key counts only after it was seen up.
 #[test]
-fn after_each_change_a_key_counts_only_once_it_was_seen_up() {
+fn after_any_change_a_key_counts_only_once_released() {
     type Change = fn(&mut Pad);
     let changes: [(&str, Change); 4] = [
         ("the keyboard was elsewhere in the window", |pad| {
@@ -121,7 +121,7 @@ fn after_each_change_a_key_counts_only_once_it_was_seen_up() {
 
 /// Issue 21.2: a pointer that is already pressed starts nothing, whatever becomes possible meanwhile.
 #[test]
-fn a_pointer_begins_a_hold_only_by_going_down() {
+fn a_hold_begins_only_with_a_new_pointer_press() {
     let mut pad = Pad::armed();
     pad.scene.enabled = false;
     assert_eq!(pad.picture(&[POINTER]), None);
@@ -148,7 +148,7 @@ fn a_pointer_begins_a_hold_only_by_going_down() {
 
 /// Issue 21.2: any key ends a hold by the pointer, any second input ends a hold by a key.
 #[test]
-fn whatever_comes_beside_what_holds_it_ends_it() {
+fn any_other_input_ends_a_hold() {
     let beside = [
         HoldInput::OtherKey,
         HoldInput::Modifiers,
@@ -186,7 +186,7 @@ fn whatever_comes_beside_what_holds_it_ends_it() {
 
 /// Issue 21.2: a key press while something moves is meant to stop it, even if it does not count as a press.
 #[test]
-fn a_key_stops_what_moves_and_begins_nothing() {
+fn a_key_stops_motion_and_starts_no_hold() {
     for armed in [false, true] {
         let mut pad = if armed { Pad::armed() } else { Pad::new() };
         pad.scene.moving = true;
@@ -203,7 +203,7 @@ fn a_key_stops_what_moves_and_begins_nothing() {
 
 /// Issue 21.2: a key that repeats by a release and an immediate press, which arrive in two frames of any distance.
 #[test]
-fn a_repetition_that_is_split_over_two_pictures_holds_nothing() {
+fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
         let mut pad = Pad::armed();
         pad.apart = apart;
@@ -218,7 +218,7 @@ fn a_repetition_that_is_split_over_two_pictures_holds_nothing() {
 
 /// Issue 22.29: a barcode scanner types Enter within milliseconds of the last digit.
 #[test]
-fn a_press_at_once_after_another_key_holds_nothing() {
+fn a_press_right_after_another_key_starts_no_hold() {
     let mut pad = Pad::armed();
     assert_eq!(pad.picture(&[HoldInput::OtherKey, DOWN]), None);
     assert_eq!(pad.lift(&[UP]), None);
@@ -231,7 +231,7 @@ fn a_press_at_once_after_another_key_holds_nothing() {
 
 /// Issue 21.2: a user's press a tenth of a second after the release, with no other event in between.
 #[test]
-fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
+fn a_release_requests_the_frame_that_rearms_the_key() {
     let mut pad = Pad::armed();
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
     assert_eq!(pad.state.next_picture(), None, "while it is held");
@@ -247,7 +247,7 @@ fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
 }
 
 #[test]
-fn what_is_over_within_a_picture_is_no_hold() {
+fn a_press_released_within_a_frame_starts_no_hold() {
     let mut pad = Pad::armed();
     assert_eq!(pad.picture(&[DOWN, UP]), None);
     assert_eq!(pad.picture(&[POINTER, HoldInput::PointerUp]), None);

@@ -34,7 +34,7 @@ fn ramp(recorder: &mut Recorder, group: GroupId, from: i64, to: i64) {
 }
 
 #[test]
-fn it_follows_the_newest_and_stands_still_when_asked() {
+fn the_view_follows_the_newest_sample_until_held() {
     let (mut recorder, group, _) = recorder(100 * MILLISECOND);
     assert_eq!(recorder.window(), (at(0), at(100)));
     ramp(&mut recorder, group, 0, 50);
@@ -55,7 +55,7 @@ fn it_follows_the_newest_and_stands_still_when_asked() {
 }
 
 #[test]
-fn zooming_keeps_what_is_under_the_pointer_and_has_limits() {
+fn zooming_keeps_the_point_under_the_pointer_and_is_limited() {
     let (mut recorder, group, _) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
     recorder.act(RecorderAction::Look(at(400), at(200)));
@@ -108,7 +108,7 @@ fn cursors_measure_on_the_raw_samples() {
 }
 
 #[test]
-fn a_cursor_where_nothing_was_recorded_reads_nothing() {
+fn a_cursor_outside_the_recording_reads_nothing() {
     let (mut recorder, group, [counts, _]) = recorder(1_000 * MILLISECOND);
     let slow = recorder.add_group(&[Kind::Whole], 100, None);
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
@@ -128,7 +128,7 @@ fn a_cursor_where_nothing_was_recorded_reads_nothing() {
 }
 
 #[test]
-fn a_held_picture_is_not_lost_for_newer_samples() {
+fn a_held_view_is_not_evicted_by_newer_samples() {
     let mut recorder = Recorder::new(100 * MILLISECOND);
     let group = recorder.add_group(&[Kind::Whole], 10_000, None);
     let scales = vec![Scale::new("unit.steps", 1.0, 0)];
@@ -151,7 +151,7 @@ fn a_held_picture_is_not_lost_for_newer_samples() {
 }
 
 #[test]
-fn in_a_finished_recording_a_trigger_is_looked_for_at_once() {
+fn a_trigger_searches_a_finished_recording_immediately() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
     recorder.finish();
@@ -170,7 +170,7 @@ fn state(recorder: &Recorder) -> TriggerState {
 }
 
 #[test]
-fn a_trigger_shows_what_was_before_it_and_holds() {
+fn a_trigger_shows_the_samples_before_it_and_holds() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 500);
     recorder.act(RecorderAction::SetScale(counts, 1));
@@ -190,7 +190,7 @@ fn a_trigger_shows_what_was_before_it_and_holds() {
 }
 
 #[test]
-fn each_kind_of_trigger_waits_for_its_own() {
+fn each_trigger_kind_fires_on_its_condition() {
     let values = [5.0, 1.0, 9.0, 3.0];
     for (when, level, fires) in [
         (When::Rising, 4.0, Some(3)),
@@ -213,7 +213,7 @@ fn each_kind_of_trigger_waits_for_its_own() {
 }
 
 #[test]
-fn nobody_has_seen_an_edge_across_a_gap() {
+fn an_edge_across_a_gap_does_not_trigger() {
     let (mut recorder, group, [_, volts]) = recorder(100 * MILLISECOND);
     arm(&mut recorder, volts, When::Rising, 5.0, false);
     add(&mut recorder, group, 0, 0, 1.0, Flags::NONE);
@@ -234,7 +234,7 @@ fn nobody_has_seen_an_edge_across_a_gap() {
 }
 
 #[test]
-fn a_repeated_trigger_shows_whole_pictures() {
+fn a_repeated_trigger_shows_complete_windows() {
     let (mut recorder, group, [_, volts]) = recorder(100 * MILLISECOND);
     arm(&mut recorder, volts, When::Rising, 0.0, true);
     let wave = |time: i64| if time % 70 < 35 { -1.0 } else { 1.0 };
@@ -245,7 +245,7 @@ fn a_repeated_trigger_shows_whole_pictures() {
 }
 
 #[test]
-fn a_removed_line_takes_its_samples_along() {
+fn removing_the_last_line_removes_its_samples() {
     let (mut recorder, group, [counts, volts]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 10);
     arm(&mut recorder, counts, When::Rising, 0.0, false);
@@ -257,7 +257,7 @@ fn a_removed_line_takes_its_samples_along() {
 }
 
 #[test]
-fn clearing_forgets_samples_and_nothing_else() {
+fn clearing_removes_only_the_samples() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
     recorder.act(RecorderAction::SetScale(counts, 1));
@@ -288,7 +288,7 @@ fn exported(recorder: &mut Recorder, visible: bool) -> Option<String> {
 }
 
 #[test]
-fn a_table_has_a_row_for_every_time_and_nothing_for_what_is_bad() {
+fn a_table_has_a_row_per_time_and_blanks_for_bad_samples() {
     let (mut recorder, group, [counts, volts]) = recorder(1_000 * MILLISECOND);
     let slow = recorder.add_group(&[Kind::Real], 100, None);
     let celsius = vec![Scale::new("unit.degrees", 1.0, 1)];
@@ -332,7 +332,7 @@ fn samples_without_times_are_counted() {
 }
 
 #[test]
-fn a_long_table_is_whole_and_can_be_given_up() {
+fn a_long_export_is_complete_and_can_be_cancelled() {
     let (mut recorder, group, _) = recorder(1_000 * MILLISECOND);
     ramp(&mut recorder, group, 0, 70_000);
     let text = exported(&mut recorder, false).unwrap();
@@ -358,7 +358,7 @@ fn a_long_table_is_whole_and_can_be_given_up() {
 
 /// A cancelled table leaves nothing, and the old file stays unchanged.
 #[test]
-fn a_table_whose_samples_go_is_given_up() {
+fn an_export_is_cancelled_when_its_samples_are_evicted() {
     for clear in [true, false] {
         let (mut recorder, group, _) = recorder(1_000 * MILLISECOND);
         ramp(&mut recorder, group, 0, 70_000);

@@ -36,7 +36,7 @@ fn samples(track: &Track<Nothing>, line: usize) -> Vec<(i64, f64, Flags)> {
 }
 
 #[test]
-fn a_stream_is_recorded_as_it_comes() {
+fn a_stream_is_recorded_completely() {
     let meaning = Meaning::of_turns(Some(1000), 1000.0);
     let mut track = Track::<Nothing>::default();
     // In portions of odd sizes.
@@ -54,7 +54,7 @@ fn a_stream_is_recorded_as_it_comes() {
 }
 
 #[test]
-fn what_is_missing_wrong_or_warned_is_marked_and_not_bridged() {
+fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
     let meaning = Meaning::of_turns(Some(1000), 1000.0);
     let mut track = Track::<Nothing>::default();
     let mut own = stream(0, 6);
@@ -88,7 +88,7 @@ fn what_is_missing_wrong_or_warned_is_marked_and_not_bridged() {
 /// Issue 22.21: one frame of ten is damaged; the speed is available as soon as a window has passed, and stays: 50 steps in
 /// 50 µs.
 #[test]
-fn damaged_frames_do_not_take_the_speed_away() {
+fn damaged_frames_do_not_interrupt_the_speed() {
     let meaning = Meaning::of_turns(Some(1000), 1000.0);
     for damaged in [10, 3] {
         let mut track = Track::<Nothing>::default();
@@ -112,7 +112,7 @@ fn damaged_frames_do_not_take_the_speed_away() {
 /// Issue 22.21: at 50 steps in 50 µs a shaft of 1000 steps completes a turn after 20 samples: this many damaged ones are
 /// not bridged, a few are.
 #[test]
-fn a_shaft_that_may_have_come_round_unseen_is_not_followed() {
+fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
     let meaning = Meaning::of_turns(Some(1000), 1000.0);
     for (missing, is_broken) in [(1, false), (3, false), (5, true), (30, true)] {
         let mut track = Track::<Nothing>::default();
@@ -148,7 +148,7 @@ fn steps(track: &Track<Nothing>, heading: &str) -> Vec<f64> {
 
 /// Issue 21.12: another scale. Earlier recordings stay under the old one, in the selected unit, and can be exported.
 #[test]
-fn another_meaning_leaves_what_was_recorded_under_the_old_one() {
+fn a_new_scale_keeps_recorded_samples_under_the_old_one() {
     let mut track = Track::<Nothing>::default();
     track.begin(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
     track.add(&seconds(0, 3), &Meaning::of_turns(None, 1000.0));
@@ -183,7 +183,7 @@ fn another_meaning_leaves_what_was_recorded_under_the_old_one() {
 
 /// Issue 21.12: an entered pitch is another unit for the same steps.
 #[test]
-fn another_unit_of_the_same_steps_is_seen_in_the_same_lines() {
+fn another_unit_of_the_same_steps_uses_the_same_lines() {
     let on_spindle = |millimetres: f64| {
         let mut meaning = Meaning::of_turns(None, 1000.0);
         meaning.scales[0].insert(0, Scale::new("unit.millimetres", millimetres / 1000.0, 3));
@@ -205,7 +205,7 @@ fn another_unit_of_the_same_steps_is_seen_in_the_same_lines() {
 
 /// Issue 21.12: a value that is no longer watched, and watched again.
 #[test]
-fn what_is_not_watched_any_more_keeps_its_samples() {
+fn a_value_no_longer_watched_keeps_its_samples() {
     let mut track = Track::<Nothing>::default();
     let watching = |second| Watching {
         at: Moment::after_start(Duration::from_secs(second)),
@@ -233,7 +233,7 @@ fn what_is_not_watched_any_more_keeps_its_samples() {
 
 /// Issue 21.12: another device. Elsewhere the user is asked before two minutes are lost.
 #[test]
-fn minutes_of_another_device_stay() {
+fn minutes_of_another_device_are_kept() {
     let meaning = Meaning::of_turns(None, 1000.0);
     for (count, lines) in [(120, 3), (121, 6)] {
         let mut track = Track::<Nothing>::default();
@@ -249,7 +249,7 @@ fn minutes_of_another_device_stay() {
 
 /// Issue 21.12: words of which only the newest are stored are decoded again, and the rest is not lost.
 #[test]
-fn what_cannot_be_read_anew_stays() {
+fn samples_that_cannot_be_decoded_again_are_kept() {
     let (before, after) = (Meaning::of_turns(None, 1000.0), Meaning::of_turns(None, 400.0));
     for (kept, ended) in [(5, 0), (4, 3)] {
         let mut track = Track::<Nothing>::default();

@@ -11,7 +11,7 @@ fn error(query: &str) -> Option<ConfigError> {
 }
 
 #[test]
-fn each_reads_its_own_settings() {
+fn each_device_reads_its_own_settings() {
     let query = "line=low&noise=0.5&ssi-error=error:2&ssi=ahm36,st=12&supply=switched&uart=hiperface&version=2&rpm=60";
     assert_eq!(error(query), None);
     let unknown = error("lin=low").unwrap().to_string();

@@ -23,7 +23,7 @@ fn commented(kind: &str) -> String {
 
 /// Issue 22.26: saving an unchanged profile leaves the text unchanged, for every kind and with any line ends.
 #[test]
-fn what_is_not_changed_stays_as_it_is_written() {
+fn unchanged_text_is_kept_verbatim() {
     for kind in program().studio.formats.kinds() {
         let text = commented(kind);
         for text in [text.replace('\n', "\r\n"), text] {
@@ -37,7 +37,7 @@ fn what_is_not_changed_stays_as_it_is_written() {
 /// Issue 22.26: a changed profile saved over a text has exactly its own content, and each comment of the user remains or is
 /// reported.
 #[test]
-fn any_profile_over_any_text_says_what_it_is_and_no_comment_goes_unnamed() {
+fn any_rewrite_is_exact_and_lists_lost_comments() {
     let all = ready_made();
     for (kind, text) in &all {
         for line_end in ["\n", "\r\n"] {
@@ -115,7 +115,7 @@ proptest::proptest! {
 
     /// Issue 22.26: comments and line ends between any words remain or are reported, for any profile saved over the text.
     #[test]
-    fn comments_between_any_words_stay_or_are_named(
+    fn comments_between_any_tokens_are_kept_or_listed(
         from in 0_usize..100,
         to in 0_usize..100,
         picks in proptest::collection::vec(0_usize..9, 1..200),

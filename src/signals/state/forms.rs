@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_are_numbers_as_people_write_them() {
+    fn entries_accept_common_number_notations() {
         for (text, value) in [("1", 1.0), (" 0,5 ", 0.5), ("-2.5", -2.5), ("1e-3", 0.001), ("+7", 7.0)] {
             assert_eq!(number(text), Ok(value), "{text}");
         }
@@ -48,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn periods_are_whole_and_in_range() {
+    fn periods_are_integers_in_range() {
         for (text, value) in [("1", 1), (" 1024 ", 1024), ("65536", 65_536)] {
             assert_eq!(periods(text), Ok(value), "{text}");
         }

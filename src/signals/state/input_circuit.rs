@@ -113,7 +113,7 @@ mod tests {
 
     /// Section 1: 102.4 kHz after 10 kΩ and 47 pF; 100 kHz are 1024 periods at 5859.375 rpm. Lag of the shaft: 1/1024.
     #[test]
-    fn the_rows_of_section_1() {
+    fn rows_match_section_1() {
         let rows = [
             ("512", "12000", "47p", 102_400.0, 16.825, 1.496, 0.95719, 17_578.125),
             ("1024", "5859,375", "22p", 100_000.0, 7.870, 0.700, 0.99058, 8_789.062_5),
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn the_course_ends_at_the_bandwidth() {
+    fn the_curve_ends_at_the_bandwidth() {
         let circuit = form("1024", "9000", "10k", "47p").circuit().unwrap();
         assert!(!circuit.is_within(), "153.6 kHz");
         let course = circuit.course(10);
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_reckoned_says_which_entry() {
+    fn invalid_input_names_its_entry() {
         for (form, id) in [
             (form("0", "6000", "10k", "47p"), "entry.whole"),
             (form("1000001", "6000", "10k", "47p"), "entry.whole"),

@@ -72,7 +72,7 @@ mod tests {
 
     /// The tables of section 3: intervals, largest error in radians, parts of a period.
     #[test]
-    fn tables_of_section_3() {
+    fn tables_match_section_3() {
         let expected =
             [(16, 3.17e-4, 19_830.0), (32, 7.93e-5, 79_255.0), (64, 1.98e-5, 317_064.0), (128, 4.96e-6, 1_268_002.0)];
         for (found, (intervals, radians, parts)) in table_errors().iter().zip(expected) {
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn pairs_of_section_3() {
+    fn pairs_match_section_3() {
         for (sine, cosine, exact, table) in [
             ("0", "0.5", 0.0, 0.0),
             ("0,25", "0,433012702", 30.0, 29.995_47),

@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_section_7_with_their_limits() {
+    fn quantities_match_section_7_with_limits() {
         let list = quantities(&section_7(), Family::Hiperface, Some(50));
         let find = |word: &str| list.iter().find(|own| own.word == word).unwrap_or_else(|| panic!("{word}"));
         // Amplitudes 2·0.5 and 2·0.5/1.05; offsets as shares of 0.5 V; 2 periods in 20 ms are 100 Hz, with 50 per
@@ -256,7 +256,7 @@ mod tests {
 
     /// Section 6: a sine offset of 1 % is ±0.5730°, 1.1459° peak to peak, 4.029″ at 1024 periods.
     #[test]
-    fn the_error_of_section_6_in_seconds_of_arc() {
+    fn the_error_of_section_6_is_shown_in_arcseconds() {
         let angle = |at: i32| f64::from(at) / 1000.0 * 4.0 * std::f64::consts::TAU;
         let capture = Capture {
             sine_v: (0..1000).map(|at| 0.5 * angle(at).sin() + 0.005).collect(),
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_hold_up_to_their_ends() {
+    fn limits_are_inclusive() {
         for (bound, inside, outside) in [
             (Bound::Between(0.9, 1.1), [0.9, 1.1], [0.89, 1.11]),
             (Bound::Within(5.0), [-5.0, 5.0], [-5.1, f64::NAN]),

@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn signals_without_their_wires_are_measured_as_well() {
+    fn signals_without_wire_samples_are_measured() {
         let mut recent = Recent::default();
         let pair = Pair { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![4.0, 5.0, 6.0] };
         recent.add(Batch { first: 0, time: Time::ORIGIN, period_ns: 1_000_000, lost: 0, samples: pair.into() });
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_window_is_the_newest_samples_without_a_gap() {
+    fn a_window_has_the_newest_samples_without_a_gap() {
         let mut recent = Recent::default();
         assert!(recent.window(10).is_none() && !recent.is_due(None));
         recent.add(batch(0, 5, 1_000_000, 0));
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_copied_and_no_more_is_kept_than_is_measured() {
+    fn chunks_are_shared_and_limited_to_the_window() {
         let mut recent = Recent::default();
         for at in 0..70 {
             recent.add(batch(at * 10_000, 10_000, 1_000, 0));
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_measured_four_times_a_second() {
+    fn signals_are_measured_four_times_a_second() {
         let mut recent = Recent::default();
         recent.add(batch(0, 100, 1_000_000, 0));
         assert!(recent.is_due(None));

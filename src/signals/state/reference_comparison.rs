@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn both_nonlinearities_in_degrees_and_seconds_of_arc() {
+    fn nonlinearities_are_shown_in_degrees_and_arcseconds() {
         let capture = capture();
         let analysis = analysed(&capture);
         let told = nonlinearities(&capture, &analysis, 64).unwrap().unwrap();
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn what_there_is_no_reference_for_is_not_told() {
+    fn without_a_reference_there_is_no_nonlinearity() {
         let mut capture = capture();
         let analysis = analysed(&capture);
         assert!(matches!(nonlinearities(&capture, &analysis, 100), Some(Err(RevolutionError::Periods { .. }))));
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn an_absolute_position_is_ahead_by_its_offset_less_half_a_step() {
+    fn an_absolute_position_leads_by_its_offset_minus_half_a_step() {
         let mut capture = capture();
         let analysis = analysed(&capture);
         let told = absolute_offset(&capture, Some(&analysis)).unwrap().unwrap();

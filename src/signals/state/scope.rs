@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_capture_becomes_lines() {
+    fn a_capture_is_shown_as_lines() {
         let capture = Capture {
             time_s: vec![-1e-6, 0.0, 1e-6],
             sine_v: vec![0.3, 0.0, -0.3],
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_recorded_leaves_a_break_and_what_is_refused_is_counted() {
+    fn unrecorded_samples_leave_a_break_and_refused_ones_are_counted() {
         let mut scope = Scope::live(true);
         let broken = |scope: &Scope| {
             let history = scope.recorder.history(&scope.recorder.lines()[0]).unwrap();
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn without_times_samples_are_counted_and_times_that_go_back_are_refused() {
+    fn without_times_samples_are_counted_and_backward_times_refused() {
         let mut capture = Capture { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![0.0; 3], ..Capture::default() };
         let scope = Scope::of(&capture);
         assert!(scope.recorder.counts() && (value(&scope, 0, 2_000) - 3.0).abs() < 1e-12);

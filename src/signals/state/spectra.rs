@@ -90,7 +90,7 @@ mod tests {
 
     /// 100 kHz; a sine of 1 kHz with 0.5 V on both channels, and 8 kHz with 20 mV on the sine.
     #[test]
-    fn no_peak_is_lost_in_a_picture() {
+    fn reduced_spectra_keep_every_peak() {
         let time_s: Vec<f64> = (0..50_000).map(|at| f64::from(at) * 1e-5).collect();
         let tone = |time: f64, hertz: f64| (std::f64::consts::TAU * hertz * time).sin();
         let sine_v: Vec<f64> =
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn without_even_times_there_is_none() {
+    fn uneven_times_yield_no_spectrum() {
         let column = vec![0.5; 20];
         let none = Samples { time_s: &[], sine_v: &column, cosine_v: &column };
         assert_eq!(Spectra::of(none), Err(SpectrumError::TooFew { samples: 0 }));
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn levels_are_of_the_rms_value() {
+    fn levels_refer_to_the_rms_value() {
         // A sine of √2 V peak has 1 V rms; a tenth of it is 20 dB less.
         assert!(dbv(2.0_f64.sqrt()).abs() < 1e-12);
         assert!((dbv(0.2_f64.sqrt() / 10.0_f64.sqrt() * 1.0) - -20.0).abs() < 1e-9);

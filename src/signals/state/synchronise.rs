@@ -302,7 +302,7 @@ mod tests {
 
     /// Rows of section 4: P, a5, d, k, fine position, residual.
     #[test]
-    fn typed_rows_of_section_4() {
+    fn typed_rows_match_section_4() {
         let rows = [
             (form("0x000E0531", "0,5375", "128", "4096"), 28_713, 17, -0.20, 0, 28_713.537_5, -0.0062, "good"),
             (form("2A5Fh", "0.02", "1024", "1"), 338, 31, 30.36, 1, 339.02, -0.0512, "good"),
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn the_phase_is_told_in_three_ways() {
+    fn the_phase_can_be_typed_in_three_units() {
         let degrees = Form { phase_input: PhaseInput::Degrees, ..form("0x2A5F", "7.2", "1024", "1") };
         assert!((degrees.synchronisation().unwrap().phase.periods() - 0.02).abs() < 1e-12);
         let typed = |text: &str| text.to_owned();
@@ -344,7 +344,7 @@ mod tests {
 
     /// Section 4: counters of quarters with a phase; and 29 rpm for a millisecond with 1024 periods.
     #[test]
-    fn counters_and_the_speed_of_a_check() {
+    fn counters_and_check_speed_are_computed() {
         for (quarters, phase, fine) in [("43", "0.76", 10.76), ("44", "0.98", 10.98), ("43", "0.02", 11.02)] {
             let form = Form { quarters: quarters.to_owned(), ..form("0", phase, "1024", "1") };
             assert!((form.quadrature().unwrap().unwrap() - fine).abs() < 1e-12, "{quarters}");
@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_used_says_which_entry() {
+    fn invalid_input_names_its_entry() {
         for (form, id) in [
             (form("", "0.02", "1024", "1"), "entry.missing"),
             (form("x", "0.02", "1024", "1"), "entry.position_range"),

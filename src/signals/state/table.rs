@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_lines_are_shown_and_understood() {
+    fn the_first_lines_are_shown_and_parsed() {
         let long = "x".repeat(500);
         let table =
             table(&format!("t (ms);SIN;COS\r\n0;0,1;0,5\r\n1;0,2;0,4\r\n{long}\r\n2;3;4\r\n3;4;5\r\n4;5;6\r\n"));
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn references_count_when_both_are_chosen() {
+    fn references_apply_only_if_both_are_chosen() {
         let mut table = table("a,b,c,d,e\n0,1,2,3,4\n");
         assert!(!table.choose(Column::RefSine, Some(3)), "the other one is missing");
         assert_eq!((table.column(Column::RefSine), table.hints.columns), (Some(3), None));
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_table_has_lines_and_no_layout() {
+    fn text_without_a_table_has_lines_and_no_layout() {
         let table = table("no table at all");
         assert_eq!((table.layout, table.head), (None, vec!["no table at all".to_owned()]));
         assert_eq!(self::table("").width(), 1);

@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn a_task_that_breaks_off_comes_back_as_failed_and_one_that_ends_does_not() {
+    fn only_a_panicking_task_is_reported_as_failed() {
         let tasks = Tasks::new(Arc::new(|| ()));
         run(&tasks, "ends", Done::Failed(Failed::Judge), || Done::Failed(Failed::Measure(1)));
         assert_eq!(next(&tasks), Some(Failed::Measure(1)));

@@ -277,7 +277,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_out_of_its_range_is_refused_with_the_range() {
+    fn out_of_range_values_are_refused_with_the_range() {
         for quantity in Quantity::ALL {
             let (least, most) = quantity.range();
             for value in [least, most] {
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn each_quantity_has_a_place_of_its_own() {
+    fn each_quantity_has_a_separate_field() {
         for quantity in Quantity::ALL {
             let changed = Settings::default().with(quantity, 0.123);
             let others = Quantity::ALL.into_iter().filter(|other| *other != quantity);
@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sample_takes_whole_nanoseconds() {
+    fn the_sample_period_is_whole_nanoseconds() {
         for (rate, nanoseconds) in [(1e6, 1_000), (44_100.0, 22_676), (10.0, 100_000_000), (30_000.0, 33_333)] {
             assert_eq!(Settings::default().with(Quantity::Rate, rate).period_ns(), nanoseconds);
         }

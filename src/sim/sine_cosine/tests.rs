@@ -18,7 +18,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
 
 /// Section 7: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°. One period in 360 samples: 1 rev/min of one period is 6°/s.
 #[test]
-fn the_table_of_section_7() {
+fn samples_match_section_7() {
     let source = source(Settings {
         periods: 1.0,
         speed_rpm: 10.0,
@@ -48,7 +48,7 @@ fn the_table_of_section_7() {
 }
 
 #[test]
-fn any_stretch_is_the_same_after_days() {
+fn any_range_of_samples_is_reproducible_after_days() {
     let settings = Settings { interference_v: 0.01, hum_v: 0.02, speed_rpm: 1234.567, ..Settings::default() };
     let mut source = source(settings.clone());
     let whole = source.samples(0, 3000).unwrap();
@@ -69,7 +69,7 @@ fn any_stretch_is_the_same_after_days() {
 }
 
 #[test]
-fn speed_and_errors_change_at_a_sample_and_the_angle_goes_on() {
+fn settings_change_at_a_sample_and_the_angle_is_continuous() {
     // 60 rev/min at 1000 samples per second: 0.36° per sample.
     let slow = Settings { rate_hz: 1_000.0, ..quiet() };
     let mut source = source(slow.clone());
@@ -92,7 +92,7 @@ fn speed_and_errors_change_at_a_sample_and_the_angle_goes_on() {
 }
 
 #[test]
-fn changes_long_ago_are_forgotten_and_not_made_up() {
+fn old_changes_are_discarded_and_not_invented() {
     let mut source = source(quiet());
     for at in 1..=200 {
         source.change(at * 10, quiet().checked().unwrap());
@@ -103,7 +103,7 @@ fn changes_long_ago_are_forgotten_and_not_made_up() {
 }
 
 #[test]
-fn noise_has_its_deviation_and_is_not_the_same_on_any_two_wires() {
+fn noise_has_its_deviation_and_is_uncorrelated_between_wires() {
     let settings = Settings { amplitude_v: 0.0, noise_v: 0.01, ..Settings::default() };
     let wires = source(settings.clone()).samples(0, 40_000).unwrap();
     let columns = [&wires.sin_v, &wires.refsin_v, &wires.cos_v, &wires.refcos_v];
@@ -126,7 +126,7 @@ fn noise_has_its_deviation_and_is_not_the_same_on_any_two_wires() {
 }
 
 #[test]
-fn an_open_wire_is_what_the_receiver_makes_of_it() {
+fn an_open_wire_reads_as_the_receiver_terminates_it() {
     // A quarter of a period later: sine 0.5 V, cosine 0.
     let at = |open: Wire, terminated, references| {
         let settings = Settings {
@@ -161,7 +161,7 @@ fn an_open_wire_is_what_the_receiver_makes_of_it() {
 /// Expected values from Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 + 16·100/1296000·sin(2π·0.3)) and
 /// 0.3 turns, with the amplitude 1 + 0.1·cos(2π·0.3).
 #[test]
-fn harmonic_modulation_and_eccentricity() {
+fn harmonic_modulation_and_eccentricity_are_simulated() {
     let settings = Settings {
         periods: 16.0,
         speed_rpm: 60.0,

@@ -136,7 +136,7 @@ fn two_windows_share_a_logbook() {
 }
 
 #[test]
-fn many_may_open_and_write_at_the_same_moment() {
+fn concurrent_writers_do_not_lose_entries() {
     let (_root, path) = place();
     std::thread::scope(|scope| {
         for _ in 0..6 {
@@ -152,7 +152,7 @@ fn many_may_open_and_write_at_the_same_moment() {
 }
 
 #[test]
-fn a_locked_logbook_says_so() {
+fn a_locked_logbook_is_reported() {
     let (_root, path) = place();
     let patience = Duration::from_millis(20);
     let mut logbook = Logbook::open_patiently(&path, patience).unwrap();
@@ -166,7 +166,7 @@ fn a_locked_logbook_says_so() {
 }
 
 #[test]
-fn a_newer_logbook_is_left_alone() {
+fn a_newer_logbook_is_not_changed() {
     let (_root, path) = place();
     drop(Logbook::open(&path).unwrap());
     for found in [schema::KNOWN + 1, i64::from(i32::MAX), -1] {
@@ -178,7 +178,7 @@ fn a_newer_logbook_is_left_alone() {
 }
 
 #[test]
-fn what_a_newer_version_left_in_its_log_stays_there() {
+fn the_write_ahead_log_of_a_newer_version_is_kept() {
     let (_root, path) = place();
     drop(Logbook::open(&path).unwrap());
     let newer = Connection::open(&path).unwrap();
@@ -192,7 +192,7 @@ fn what_a_newer_version_left_in_its_log_stays_there() {
 }
 
 #[test]
-fn a_damaged_logbook_is_an_error_and_stays() {
+fn a_damaged_logbook_is_an_error_and_is_kept() {
     let (_root, path) = place();
     drop(Logbook::open(&path).unwrap());
     let whole = fs::read(&path).unwrap();
@@ -220,7 +220,7 @@ fn a_damaged_logbook_is_an_error_and_stays() {
 }
 
 #[test]
-fn a_value_that_makes_no_sense_is_damage() {
+fn an_invalid_value_is_reported_as_damage() {
     let (_root, path) = place();
     let mut logbook = Logbook::open(&path).unwrap();
     logbook.intend(at(0), &device("1"), "x", 1, None).unwrap();
@@ -230,7 +230,7 @@ fn a_value_that_makes_no_sense_is_damage() {
 }
 
 #[test]
-fn a_logbook_that_has_no_place_is_an_error() {
+fn a_logbook_without_a_folder_is_an_error() {
     let (root, path) = place();
     fs::create_dir_all(&path).unwrap();
     assert_eq!(problem(Logbook::open(&path)), LogbookProblem::NoAccess);

@@ -233,7 +233,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_are_round_and_few() {
+    fn axis_steps_are_round_and_few() {
         for (span, most, expected) in [
             (10.0, 5.0, 2.0),
             (10.0, 4.0, 5.0),
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_holds_its_values_and_is_never_empty() {
+    fn a_range_contains_its_values_and_is_never_empty() {
         for (low, high) in [(0.0, 1.0), (-3.2, 4.7), (5.0, 5.0), (1e9, 1e9 + 1.0), (0.0, 0.0), (-1e-7, 1e-7)] {
             let (from, to) = round_range(low, high, 1e-3);
             assert!(from <= low && to >= high && to - from >= 1e-3, "{low} {high}: {from} {to}");
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn far_from_the_beginning_small_steps_count_from_a_round_point() {
+    fn small_steps_far_from_the_start_use_a_round_base() {
         let hour = 3600 * SECOND;
         let (found, base) = labels(hour + 30_000, hour + 33_000);
         assert_eq!(
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_counted() {
+    fn sample_ticks_are_whole_numbers() {
         let at = |sample: i64| Time::from_nanoseconds(sample * 1_000);
         let ticks = |from, to| sample_ticks(at(from), at(to), 4, Language::English).ticks;
         assert_eq!(ticks(0, 1000).into_iter().map(|own| own.1).collect::<Vec<_>>(), ["0", "500", "1000"]);
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn every_stretch_of_time_has_ticks_and_not_too_many() {
+    fn every_time_span_has_a_reasonable_number_of_ticks() {
         let mut span = 1;
         // A hundred days: no view is longer.
         while span < 8_640_000 * SECOND {
@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_in_time_is_said_as_exactly_as_it_is_shown() {
+    fn a_point_in_time_has_the_precision_of_the_axis() {
         for (nanoseconds, span, expected) in [
             (12_345_678_901, 30 * SECOND, "12.345 s"),
             (-1_500_000_000, SECOND, "-1.500 s"),
@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_of_time_have_their_unit() {
+    fn durations_have_units() {
         for (nanoseconds, expected) in [
             (0, "0 ns"),
             (-750, "-750 ns"),

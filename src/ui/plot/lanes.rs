@@ -206,7 +206,7 @@ mod tests {
     const RECT: Rect = Rect { min: egui::Pos2::ZERO, max: pos2(400.0, 200.0) };
 
     #[test]
-    fn samples_of_another_recorder_are_not_taken_for_those_before() {
+    fn samples_of_another_recorder_are_not_confused() {
         let mut reduced = Reduced::default();
         let (one, mut other) = (recorder(1.0), recorder(2.0));
         layout(&one, RECT, 1.0, &mut reduced);
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_with_long_labels_is_made_once() {
+    fn a_plot_with_long_labels_is_computed_once() {
         let mut reduced = Reduced::default();
         let recorder = recorder(123_456.789_1);
         layout(&recorder, RECT, 1.0, &mut reduced);

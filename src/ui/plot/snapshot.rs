@@ -99,7 +99,7 @@ mod tests {
     use egui::{Color32, pos2};
 
     #[test]
-    fn a_part_of_the_window_is_taken() {
+    fn a_part_of_the_window_is_captured() {
         let mut image = ColorImage::filled([8, 6], Color32::BLACK);
         image.pixels[2 * 8 + 4] = Color32::RED;
         let wanted = Rect::from_min_max(pos2(2.0, 1.0), pos2(3.0, 2.0));
@@ -135,7 +135,7 @@ mod tests {
     /// Issue 22.14: the picture is of the plot as it was in the frame of the pixels, without the menu; nothing around it,
     /// and all of it.
     #[test]
-    fn the_picture_is_of_the_plot_as_it_stood_in_its_frame() {
+    fn the_snapshot_shows_exactly_the_plot_of_its_frame() {
         let ctx = Context::default();
         let mut shot = Screenshot::default();
         let place = |left: f32| Rect::from_min_size(pos2(left, 2.0), egui::vec2(3.0, 2.0));
@@ -160,7 +160,7 @@ mod tests {
 
     /// Issue 22.14: a plot that is partly invisible gives no picture, which is reported.
     #[test]
-    fn a_plot_that_is_not_wholly_in_sight_gives_no_picture() {
+    fn a_partly_hidden_plot_yields_no_snapshot() {
         let ctx = Context::default();
         let mut shot = Screenshot::default();
         shot.request(&ctx);

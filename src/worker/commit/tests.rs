@@ -155,7 +155,7 @@ fn write(spy: &mut Spy, agreed: &ApprovedPlan<Prepared>) -> Result<Committed<Wri
 }
 
 #[test]
-fn every_write_takes_all_steps_in_their_order() {
+fn every_write_takes_all_steps_in_order() {
     let whole = vec!["confirm", "begin", "apply", "apply", "finish", "lead back"];
     let cases = [
         ("done", 0, false, false, whole, 3),
@@ -183,7 +183,7 @@ fn every_write_takes_all_steps_in_their_order() {
 }
 
 #[test]
-fn nothing_is_written_without_operations_or_with_a_consent_to_another_plan() {
+fn nothing_is_written_without_operations_or_with_another_plans_consent() {
     let root = tempfile::tempdir().unwrap();
     let mut spy = Spy::new(&Store::at(root.path()), false, false);
     let done = write(&mut spy, &agreed(Some(0), &[], false)).ok().unwrap();
@@ -195,7 +195,7 @@ fn nothing_is_written_without_operations_or_with_a_consent_to_another_plan() {
 
 /// Issue 22.4: an unknown count is not 0. Such a write begins only if forced, and the logbook's error is reported then.
 #[test]
-fn a_logbook_that_cannot_be_used_stops_a_write() {
+fn an_unusable_logbook_prevents_a_write() {
     /// A device that checks nothing.
     struct Plain(u32);
     impl Write for Plain {

@@ -66,7 +66,7 @@ fn check(batches: &[Batch<Vec<u64>>], from: u64) -> u64 {
 }
 
 #[test]
-fn who_does_not_read_blocks_nobody_and_every_loss_is_counted() {
+fn an_idle_reader_does_not_block_and_losses_are_counted() {
     let sizes: Vec<usize> = (0..2_000).map(|at| 1 + at * 37 % 100).collect();
     let total: usize = sizes.iter().sum();
     let (producer, ..) = numbers(sizes, true);
@@ -83,7 +83,7 @@ fn who_does_not_read_blocks_nobody_and_every_loss_is_counted() {
 }
 
 #[test]
-fn who_reads_now_and_then_can_tell_where_something_is_missing() {
+fn an_occasional_reader_can_locate_gaps() {
     let (producer, ..) = numbers(std::iter::repeat_n(70, 3_000), true);
     let stream = Stream::spawn(producer, 500, Arc::new(VirtualClock::default()), Arc::new(|| ())).unwrap();
     let (mut next, mut read, mut lost) = (0, 0, 0);
@@ -136,7 +136,7 @@ fn the_window_is_woken_twenty_times_a_second_and_at_the_end() {
 }
 
 #[test]
-fn the_last_batch_before_a_silence_is_told_as_well() {
+fn the_last_batch_before_a_silence_wakes_the_reader() {
     let (producer, ..) = numbers([1, 1], false);
     let (told, wakes) = bounded(8);
     let wake = Arc::new(move || {
@@ -151,7 +151,7 @@ fn the_last_batch_before_a_silence_is_told_as_well() {
 }
 
 #[test]
-fn the_latest_change_is_heard_and_a_stream_that_is_let_go_ends() {
+fn the_latest_change_arrives_and_a_dropped_stream_ends() {
     let (producer, wishes, gone) = numbers([], false);
     let stream = Stream::spawn(producer, 10, Arc::new(RealClock::start()), Arc::new(|| ())).unwrap();
     (0..1_000).for_each(|wish| stream.change(wish));
@@ -170,7 +170,7 @@ fn next(source: &mut Analogue, clock: &VirtualClock) -> Option<Batch<Wires>> {
 }
 
 #[test]
-fn the_virtual_source_keeps_to_the_clock() {
+fn the_virtual_source_follows_the_clock() {
     let clock = VirtualClock::default();
     clock.sleep_until(Moment::after_start(Duration::from_secs(5)));
     let mut source = Analogue::new(settings(100_000.0), clock.now());
@@ -196,7 +196,7 @@ fn the_virtual_source_keeps_to_the_clock() {
 }
 
 #[test]
-fn what_the_virtual_source_gives_are_the_samples_of_their_numbers() {
+fn the_virtual_source_yields_the_samples_by_index() {
     let clock = VirtualClock::default();
     let mut source = Analogue::new(settings(50_000.0), clock.now());
     let whole = crate::sim::sine_cosine::Source::new(settings(50_000.0), Time::ORIGIN).samples(0, 5_000).unwrap();
@@ -206,7 +206,7 @@ fn what_the_virtual_source_gives_are_the_samples_of_their_numbers() {
 }
 
 #[test]
-fn no_sample_is_missing_while_the_machine_keeps_up() {
+fn no_sample_is_missing_while_the_computer_keeps_up() {
     // At 44.1 kHz a sample takes 22 676 ns.
     let clock = VirtualClock::default();
     let checked = Settings::default().with(Quantity::Rate, 44_100.0).with(Quantity::Noise, 0.0).checked().unwrap();

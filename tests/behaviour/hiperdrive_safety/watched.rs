@@ -101,7 +101,7 @@ fn moving(packets: &[Packet]) -> Vec<&Packet> {
 
 /// Issue 21.4: a drive of a hub that ignores its limits is not commanded further after the report that shows it.
 #[test]
-fn a_drive_of_a_hub_that_ignores_its_limits() {
+fn a_hub_drive_ignoring_its_limits_is_stopped() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["limits -65536 65536", "unlimited on"]) else { return };
     let act = hub.host.motion.intend(third(), JOG);
@@ -115,7 +115,7 @@ fn a_drive_of_a_hub_that_ignores_its_limits() {
 
 /// Issues 21.4 and 21.5: it turns the wrong way.
 #[test]
-fn a_drive_of_a_hub_that_turns_the_wrong_way() {
+fn a_hub_drive_turning_the_wrong_way_is_stopped() {
     for wish in [JOG, MotionRequest::Move { target: 3 * TURN, effort: FAST }] {
         let bench = Bench::new();
         let Some(mut hub) = Hub::with(&bench, &["reverse on"]) else { return };
@@ -130,7 +130,7 @@ fn a_drive_of_a_hub_that_turns_the_wrong_way() {
 
 /// Issue 21.5: it does not stop at its target.
 #[test]
-fn a_drive_of_a_hub_that_passes_its_target() {
+fn a_hub_drive_passing_its_target_is_stopped() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["overrun on"]) else { return };
     let act = hub.host.motion.intend(third(), MotionRequest::Move { target: TURN, effort: FAST });
@@ -144,7 +144,7 @@ fn a_drive_of_a_hub_that_passes_its_target() {
 
 /// Issue 21.4: it does not obey a pause: it is stopped once it has moved on for longer than it takes to brake.
 #[test]
-fn a_drive_of_a_hub_that_ignores_a_pause() {
+fn a_hub_drive_ignoring_a_pause_is_stopped() {
     let bench = Bench::new();
     let Some(mut hub) = Hub::with(&bench, &["pauseless on"]) else { return };
     hub.host.motion.intend(third(), MotionRequest::Move { target: 20 * TURN, effort: FAST });

@@ -89,7 +89,7 @@ impl Wires {
         self.shared.cut[way as usize].store(true, Ordering::SeqCst);
     }
 
-    pub(super) fn mend(&self, way: Transport) {
+    pub(super) fn restore(&self, way: Transport) {
         self.shared.cut[way as usize].store(false, Ordering::SeqCst);
     }
 

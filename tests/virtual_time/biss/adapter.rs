@@ -29,7 +29,7 @@ fn registers_and_position_are_read() {
 
 /// The clock is the nearest below the requested one that the adapter can divide from its 60 MHz: 60/9 MHz.
 #[test]
-fn the_clock_is_what_the_adapter_makes_of_the_wish() {
+fn the_clock_is_the_nearest_the_adapter_can_divide() {
     let mut bus = Bus::new("");
     bus.station.clock_hz = 7_000_000;
     bus.master().position().unwrap();
@@ -37,7 +37,7 @@ fn the_clock_is_what_the_adapter_makes_of_the_wish() {
 }
 
 #[test]
-fn error_and_warning_come_with_the_position() {
+fn error_and_warning_are_read_with_the_position() {
     let mut bus = Bus::new("errors=0x10&temperature=130");
     let reading = bus.master().position().unwrap();
     assert_eq!((reading.error, reading.warning, reading.is_valid()), (Some(true), Some(true), false));
@@ -45,7 +45,7 @@ fn error_and_warning_come_with_the_position() {
 
 /// Half a turn per second: 65536 steps.
 #[test]
-fn a_position_belongs_to_the_moment_in_which_the_adapter_took_it() {
+fn a_position_has_the_time_of_its_sampling() {
     let mut bus = Bus::new("rpm=30&position=0");
     for _ in 0..20 {
         let reading = bus.master().position().unwrap();
@@ -56,7 +56,7 @@ fn a_position_belongs_to_the_moment_in_which_the_adapter_took_it() {
 }
 
 #[test]
-fn a_bank_is_selected_once_and_again_where_it_may_be_another() {
+fn a_bank_is_selected_again_only_if_it_may_have_changed() {
     let mut bus = Bus::new("");
     let mut master = bus.master();
     assert_eq!(master.read_run(at("0x02:0x00"), 64).map(|bytes| bytes[63]), Ok(0xF4), "the sum of the data sheet");
@@ -75,7 +75,7 @@ fn a_bank_is_selected_once_and_again_where_it_may_be_another() {
 
 /// The encoder has lost its power for a moment: its bank is 0 again.
 #[test]
-fn a_restart_is_noticed_by_its_silence() {
+fn a_restart_is_detected_by_its_silence() {
     let mut bus = Bus::new("");
     assert_eq!(bus.master().read(at("0x03:0x0A")), Ok(16));
     let (now, device) = (Moment::after_start(bus.now()), bus.device.clone());
@@ -88,7 +88,7 @@ fn a_restart_is_noticed_by_its_silence() {
 }
 
 #[test]
-fn writes_are_verified_by_what_the_encoder_gives_back() {
+fn writes_are_verified_by_readback() {
     let mut bus = Bus::new("");
     let error = bus.master().write(at("0x6A"), 7).unwrap_err();
     assert_eq!(error, Error::Refused { address: at("0x6A"), value: 7, reads: Some(0) });
@@ -101,7 +101,7 @@ fn writes_are_verified_by_what_the_encoder_gives_back() {
 }
 
 #[test]
-fn a_write_whose_answer_is_lost_is_read_back_and_a_command_is_unclear() {
+fn a_write_with_a_lost_reply_is_read_back_and_a_command_is_unclear() {
     let mut bus = Bus::new("rpm=1000");
     for (place, value) in [("0x6B", 0x2A), ("0x6A", 0x02)] {
         let next = bus.tap().sent.len();
@@ -118,13 +118,13 @@ fn a_write_whose_answer_is_lost_is_read_back_and_a_command_is_unclear() {
 }
 
 #[test]
-fn a_register_that_is_not_there_is_told_from_an_encoder_that_is_not() {
+fn a_missing_register_is_distinguished_from_a_missing_encoder() {
     let mut bus = Bus::new("");
     assert_eq!(bus.master().read(at("0x44:0x00")), Err(Error::NoSuchRegister { address: at("0x44:0x00") }));
 }
 
 #[test]
-fn wires_that_do_not_move_are_told_each_in_a_sentence() {
+fn each_stuck_wire_has_its_own_error() {
     let cases = [
         ("line=open", "no encoder acknowledges on the bus (attempts: 5)"),
         ("line=low", "the data line stays low (attempts: 5)"),
@@ -141,7 +141,7 @@ fn wires_that_do_not_move_are_told_each_in_a_sentence() {
 }
 
 #[test]
-fn frames_with_wrong_checksums_are_counted_and_asked_again() {
+fn frames_with_wrong_checksums_are_counted_and_retried() {
     let mut bus = Bus::new("noise=0.15&seed=3");
     let (mut right, mut wrong) = (0, 0);
     for _ in 0..200 {
@@ -156,7 +156,7 @@ fn frames_with_wrong_checksums_are_counted_and_asked_again() {
 }
 
 #[test]
-fn wrong_widths_are_told() {
+fn wrong_widths_are_reported() {
     let narrow = Layout::new(12, 13, true, true, Crc::new(Crc::POSITION, 0, true).ok()).unwrap();
     let mut bus = Bus::new("rpm=60");
     bus.station.layout = Some(narrow);
@@ -181,7 +181,7 @@ fn another_version_is_refused_naming_both() {
 }
 
 #[test]
-fn an_adapter_that_does_not_answer_is_asked_twice() {
+fn a_silent_adapter_is_asked_twice() {
     let mut bus = Bus::new("fault=silent-after:0");
     let error = bus.master().position().unwrap_err();
     assert_eq!(error, Error::Adapter(AdapterError::Silent));
@@ -193,7 +193,7 @@ fn an_adapter_that_does_not_answer_is_asked_twice() {
 }
 
 #[test]
-fn the_supply_is_switched_on_where_that_is_wished() {
+fn the_supply_is_switched_on_if_requested() {
     let mut bus = Bus::new("supply=switched");
     let error = bus.master().position().unwrap_err();
     assert_eq!(error, Error::NoAcknowledge { tries: 5, supply_off: true });
@@ -210,7 +210,7 @@ fn the_supply_is_switched_on_where_that_is_wished() {
 
 /// The line of the adapter, not that of the encoder: packets have a CRC of 16 bits.
 #[test]
-fn a_noisy_wire_to_the_adapter_gives_right_values_or_errors() {
+fn a_noisy_wire_to_the_adapter_yields_correct_values_or_errors() {
     let (mut right, mut failed) = (0, 0);
     for noise in ["drop:0.01", "flip:0.01", "garbage:0.01"] {
         for seed in 0..10 {

@@ -10,7 +10,9 @@ use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingRun, Pre
 use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
 use encoder_studio::link::{Cancel, Direction};
 
-use super::hands::{Hands, IN_OPERATION, assert_told, calibration, data, exchanges, filter, preset, wiegand_test};
+use super::hands::{
+    Hands, IN_OPERATION, assert_reported_state, calibration, data, exchanges, filter, preset, wiegand_test,
+};
 use super::support::{Bench, Transport};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
@@ -147,7 +149,7 @@ fn cut_at_every_exchange(scene: &Scene, way: Transport) {
                 }
                 Ended::Interrupted(told) => {
                     assert!(told.cause.is_lost(), "{context}: {told}");
-                    assert_told(&told.end_state, &bench, &context);
+                    assert_reported_state(&told.end_state, &bench, &context);
                     assert_cycles(&told, bench.flash_cycles() - before, &context);
                     assert_can_be_led_back(&bench, scene, &told, &mut steps, &context);
                 }
@@ -169,33 +171,33 @@ fn assert_all_steps(prepared: &Prepared, hit: &[ProcedureStep], name: &str, cont
 }
 
 #[test]
-fn data_cut_at_every_exchange() {
+fn a_data_write_cut_at_any_exchange_can_be_led_back() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[0], *way));
 }
 
 #[test]
-fn filter_cut_at_every_exchange() {
+fn a_filter_change_cut_at_any_exchange_can_be_led_back() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[1], *way));
 }
 
 #[test]
-fn preset_cut_at_every_exchange() {
+fn a_preset_cut_at_any_exchange_can_be_led_back() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[2], *way));
 }
 
 #[test]
-fn calibration_cut_at_every_exchange() {
+fn a_calibration_cut_at_any_exchange_can_be_led_back() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[3], *way));
 }
 
 #[test]
-fn wiegand_test_cut_at_every_exchange() {
+fn a_wiegand_test_cut_at_any_exchange_can_be_led_back() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[4], *way));
 }
 
 /// The encoder loses its power before an exchange: it starts in operation, and nothing is stored partially.
 #[test]
-fn power_lost_before_every_exchange() {
+fn power_lost_before_any_exchange_leaves_operation_mode() {
     for scene in &SCENES {
         let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
@@ -238,7 +240,7 @@ fn power_lost_before_every_exchange() {
 
 /// Power is lost in the middle of the flash being written.
 #[test]
-fn power_lost_in_every_store() {
+fn power_lost_in_any_store_is_reported_and_led_back() {
     for scene in &SCENES {
         let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
@@ -259,7 +261,7 @@ fn power_lost_in_every_store() {
 
 /// A cancellation at every exchange: the encoder is in operation, and the written values are the reported ones.
 #[test]
-fn cancelled_at_every_exchange() {
+fn cancelling_at_any_exchange_leads_back() {
     for scene in &SCENES {
         let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
@@ -292,7 +294,7 @@ fn cancelled_at_every_exchange() {
 /// The complete mounting, cut at some exchanges of each of its operations: operations completed before are reported as
 /// done.
 #[test]
-fn a_mounting_that_is_cut_off_tells_what_was_done() {
+fn an_interrupted_mounting_reports_the_finished_operations() {
     let mut original = Bench::new(Transport::ConfigPin, "");
     let prepared = original.prepare(mounting()).unwrap();
     assert_eq!(prepared.plan.write_cycles(), 5);
@@ -305,7 +307,7 @@ fn a_mounting_that_is_cut_off_tells_what_was_done() {
             Ended::Done => break,
             Ended::Refused(error) => assert!(error.is_lost(), "{context}"),
             Ended::Interrupted(told) => {
-                assert_told(&told.end_state, &bench, &context);
+                assert_reported_state(&told.end_state, &bench, &context);
                 assert_cycles(&told, bench.flash_cycles() - before, &context);
                 assert_eq!(told.done.outcomes.len(), told.done.ops, "{context}");
                 ops.push(told.done.ops);

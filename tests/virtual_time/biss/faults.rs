@@ -35,7 +35,7 @@ fn timeless(survey: Survey) -> Survey {
 }
 
 #[test]
-fn a_survey_over_a_bad_line_is_right_or_an_error() {
+fn a_survey_over_a_bad_line_is_correct_or_an_error() {
     let (mut right, mut failed) = (0, 0);
     for way in WAYS {
         let truth = timeless(survey(&mut Bench::new(way, "")).unwrap());
@@ -68,7 +68,7 @@ fn a_survey_over_a_bad_line_is_right_or_an_error() {
 }
 
 #[test]
-fn echo_and_byte_order_change_nothing_of_what_is_read() {
+fn echo_and_byte_order_do_not_change_read_values() {
     let truth = timeless(survey(&mut Bench::new(Transport::ConfigPin, "")).unwrap());
     for query in ["echo=on", "order=high-first", "echo=on&order=high-first"] {
         let mut bench = Bench::new(Transport::ConfigPin, query);
@@ -98,7 +98,7 @@ fn silence_ends_a_survey_within_ten_seconds() {
 }
 
 #[test]
-fn a_link_that_is_gone_ends_everything_at_once() {
+fn a_lost_link_ends_everything_immediately() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         bench.tap().lost_from = Some(40);
@@ -108,7 +108,7 @@ fn a_link_that_is_gone_ends_everything_at_once() {
 }
 
 #[test]
-fn a_wish_to_end_is_heard_between_two_exchanges() {
+fn cancelling_takes_effect_between_two_exchanges() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         bench.session.set_cancel(Cancel::after(60));
@@ -119,7 +119,7 @@ fn a_wish_to_end_is_heard_between_two_exchanges() {
 
 /// A recording answers as the encoder did.
 #[test]
-fn a_recording_of_either_way_can_be_played_again() {
+fn a_recording_of_either_interface_can_be_replayed() {
     for way in WAYS {
         let entries = Arc::<Mutex<Vec<TraceEntry>>>::default();
         let mut bench = Bench::new(way, "serial=4711");

@@ -49,7 +49,7 @@ impl ByteLink for Flood {
 /// Issue 22.11: of noise on either connection the trace keeps a limited number of bytes, and a job ends even if the noise
 /// does not.
 #[test]
-fn a_flood_of_noise_costs_neither_memory_nor_time_without_end() {
+fn a_flood_of_noise_takes_bounded_memory_and_time() {
     for (way, noise) in [
         (Transport::ConfigPin, 0x55),
         (Transport::ConfigPin, 0x80),

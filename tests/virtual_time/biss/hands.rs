@@ -219,7 +219,7 @@ pub(crate) fn interrupted(error: JobError) -> Interrupted {
 pub(crate) const IN_OPERATION: (DeviceMode, u8) = (DeviceMode::OPERATION, 0);
 
 /// Checks that the reported state is that of the encoder.
-pub(crate) fn assert_told(left: &EndState, bench: &Bench, context: &str) {
+pub(crate) fn assert_reported_state(left: &EndState, bench: &Bench, context: &str) {
     let (mode, password) = bench.mode_and_password();
     match &left.standing {
         None => assert_eq!((mode, password), IN_OPERATION, "{context}"),

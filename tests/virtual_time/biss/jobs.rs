@@ -58,7 +58,7 @@ const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
 /// Manual, appendix 9.1; the serial number is the simulator's.
 #[test]
-fn a_survey_shows_what_is_there_over_both_ways() {
+fn a_survey_over_both_interfaces_is_complete() {
     for way in WAYS {
         let mut bench = Bench::new(way, "serial=1234567&temperature=25&errors=0x12&filter=dynamic");
         let survey = survey(&mut bench);
@@ -107,7 +107,7 @@ fn a_survey_shows_what_is_there_over_both_ways() {
 
 /// Manual: errors and warnings since 1.6.0, filter since 1.1.0, preset since 1.2.0.
 #[test]
-fn what_an_older_firmware_does_not_have_is_not_there() {
+fn features_missing_in_older_firmware_are_absent() {
     let mut bench = Bench::new(Transport::Adapter, "firmware=1.0.9&errors=0x10");
     let survey = survey(&mut bench);
     assert_eq!((&survey.status.errors, &survey.status.warnings, survey.status.filter), (&None, &None, None));
@@ -119,7 +119,7 @@ fn what_an_older_firmware_does_not_have_is_not_there() {
 }
 
 #[test]
-fn status_and_position_know_the_encoder_without_being_asked_who_it_is() {
+fn status_and_position_identify_the_encoder_themselves() {
     for way in WAYS {
         let mut bench = Bench::new(way, "temperature=130&position=0x20001");
         let status = status(&mut bench);
@@ -159,7 +159,7 @@ fn registers_and_banks_are_read() {
 
 /// Manual 6.5: data are not accessed while the motor runs.
 #[test]
-fn data_are_not_read_while_the_shaft_turns() {
+fn data_is_not_read_while_the_shaft_turns() {
     for way in WAYS {
         let mut bench = Bench::new(way, "rpm=60");
         for job in [BissJob::Save, BissJob::ReadBank(0x24), BissJob::Read("0x04:0x00".parse().unwrap())] {
@@ -174,7 +174,7 @@ fn data_are_not_read_while_the_shaft_turns() {
 }
 
 #[test]
-fn everything_that_can_be_restored_is_saved_over_both_ways() {
+fn everything_restorable_is_saved_over_both_interfaces() {
     for way in WAYS {
         let mut bench = Bench::new(way, "serial=77&filter=dynamic");
         let profile = save(&mut bench).unwrap();
@@ -199,7 +199,7 @@ fn everything_that_can_be_restored_is_saved_over_both_ways() {
 /// Issue 22.15, reference 5.3: in mode 04 the data registers show written and unsaved values. They are reported and marked,
 /// and not compared; reading leaves them unchanged, since returning to operation discards them.
 #[test]
-fn what_was_never_saved_is_not_taken_for_the_encoders_content() {
+fn unsaved_registers_are_marked_and_not_compared() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         let held = bench.encoder_reads(at("0x24:0x10")).unwrap();
@@ -225,7 +225,7 @@ fn what_was_never_saved_is_not_taken_for_the_encoders_content() {
 }
 
 #[test]
-fn a_save_tells_how_far_it_is_and_ends_when_that_is_wished() {
+fn a_save_reports_progress_and_can_be_cancelled() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let mut told = Vec::new();
     let end = bench.session.run(JobId::default(), BissJob::Save, &mut |event| {
@@ -246,7 +246,7 @@ fn a_save_tells_how_far_it_is_and_ends_when_that_is_wished() {
 
 /// A save is right, with any fault of the line, or there is an error.
 #[test]
-fn a_save_over_a_noisy_line_is_right_or_an_error() {
+fn a_save_over_a_noisy_line_is_correct_or_an_error() {
     let (mut saved, mut failed) = (0, 0);
     let truth = save(&mut Bench::new(Transport::ConfigPin, "")).unwrap();
     for noise in ["drop:0.002", "flip:0.002", "garbage:0.002", "flip:0.0003"] {
@@ -269,7 +269,7 @@ fn a_save_over_a_noisy_line_is_right_or_an_error() {
 /// A description of another device of the same manufacturer: it is reported, and the data common to every encoder are
 /// shown.
 #[test]
-fn a_device_id_that_fits_no_description_is_told() {
+fn a_device_id_without_a_description_is_reported() {
     let [(_, kit), (_, unknown)] = Descriptions::BUILT_IN;
     let other = kit.replace("device_id: (0x01, 0x01, 0x68, 0x11, 0x00, 0x01)", "device_id: (1, 1, 0x68, 0x11, 0, 2)");
     let (types, errors) = Descriptions::read([("other.ron", other.as_str()), ("unknown.ron", unknown)]);
@@ -292,7 +292,7 @@ fn a_device_id_that_fits_no_description_is_told() {
 }
 
 #[test]
-fn samples_and_watched_registers_come_one_by_one() {
+fn samples_and_watched_registers_are_read_one_by_one() {
     for way in WAYS {
         let mut bench = Bench::new(way, "temperature=25&rpm=60");
         let Ok(Sample::Position(first)) = bench.session.sample() else { panic!("no position") };
@@ -318,7 +318,7 @@ fn samples_and_watched_registers_come_one_by_one() {
 /// UBICOM reference 4: the word has no error and no warning bit, so that the registers are read, each once per second; a
 /// frame has both. Every position includes them.
 #[test]
-fn an_error_that_comes_while_positions_are_polled_marks_them() {
+fn an_error_during_polling_marks_the_positions() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         let sample = |bench: &mut Bench| match bench.session.sample() {
@@ -368,7 +368,7 @@ fn polling_survives_damaged_frames() {
 }
 
 #[test]
-fn links_lead_to_the_way_that_they_name() {
+fn links_open_the_interface_they_name() {
     let root = tempfile::tempdir().unwrap();
     let open = |text: &str| open(&text.parse::<LinkUrl>().unwrap(), Store::at(root.path()));
     for (text, line) in
@@ -402,7 +402,7 @@ fn links_lead_to_the_way_that_they_name() {
 }
 
 #[test]
-fn broken_descriptions_are_told_once_with_the_first_job() {
+fn broken_descriptions_are_reported_once_with_the_first_job() {
     let root = tempfile::tempdir().unwrap();
     let store = Store::at(root.path());
     fs::create_dir_all(store.device_folder("biss")).unwrap();

@@ -31,7 +31,7 @@ fn registers_and_position_are_read_with_the_published_frames() {
 
 /// Half a turn per second, sampled when the encoder begins to answer: a millisecond after the request's seven bytes.
 #[test]
-fn a_position_belongs_to_the_moment_of_its_first_bit() {
+fn a_position_has_the_time_of_its_first_bit() {
     let mut pin = Pin::new("rpm=30&position=0");
     let reading = pin.master().position().unwrap();
     let seconds = reading.at.since_start().as_secs_f64();
@@ -55,7 +55,7 @@ fn the_byte_order_is_probed_once_or_given() {
 }
 
 #[test]
-fn echo_is_learned_and_removed_whatever_was_told() {
+fn echo_is_detected_and_removed_with_any_setting() {
     for (echoes, told) in [("on", Echo::On), ("off", Echo::Off)] {
         for setting in [Echo::Unknown, told] {
             let mut pin = Pin::new(&format!("echo={echoes}"));
@@ -74,7 +74,7 @@ fn echo_is_learned_and_removed_whatever_was_told() {
 }
 
 #[test]
-fn silence_is_told_after_five_tries_and_within_the_patience() {
+fn silence_is_reported_after_five_tries_in_time() {
     let mut pin = Pin::new("fault=silent-after:0");
     pin.station.order = Some(ByteOrder::LowFirst);
     let error = pin.master().read(at("0x66")).unwrap_err();
@@ -89,7 +89,7 @@ fn silence_is_told_after_five_tries_and_within_the_patience() {
 
 /// An encoder that otherwise answers is silent for a register that it does not have: bank 44h of the kit encoder.
 #[test]
-fn a_register_that_is_not_there_is_told_from_an_encoder_that_is_not() {
+fn a_missing_register_is_distinguished_from_a_missing_encoder() {
     let mut pin = Pin::new("");
     let error = pin.master().read(at("0x44:0x00")).unwrap_err();
     assert_eq!(error.to_string(), "the encoder has no register 0x44:0x00");
@@ -101,7 +101,7 @@ fn a_register_that_is_not_there_is_told_from_an_encoder_that_is_not() {
 }
 
 #[test]
-fn a_refusal_is_told_and_not_repeated() {
+fn a_refused_write_is_reported_and_not_retried() {
     let mut pin = Pin::new("");
     let error = pin.master().write(at("0x6A"), 7).unwrap_err();
     assert_eq!(error, Error::Refused { address: at("0x6A"), value: 7, reads: None });
@@ -113,7 +113,7 @@ fn a_refusal_is_told_and_not_repeated() {
 
 /// The request, or its answer, is lost: a stored value is read back, and sent again only if necessary.
 #[test]
-fn a_write_whose_answer_is_lost_is_read_back() {
+fn a_write_with_a_lost_reply_is_read_back() {
     for request_lost in [false, true] {
         let mut pin = Pin::new("");
         pin.station.order = Some(ByteOrder::LowFirst);
@@ -128,7 +128,7 @@ fn a_write_whose_answer_is_lost_is_read_back() {
 
 /// The start of a Wiegand test: the encoder cannot report whether it received the command.
 #[test]
-fn a_command_whose_answer_is_lost_is_unclear_and_never_repeated() {
+fn a_command_with_a_lost_reply_is_unclear_and_never_repeated() {
     for request_lost in [false, true] {
         let mut pin = Pin::new("rpm=1000");
         pin.master().write(at("0x6B"), 0x2A).unwrap();
@@ -165,7 +165,7 @@ fn a_write_that_cannot_be_read_back_is_unclear() {
 }
 
 #[test]
-fn an_end_is_heard_between_two_exchanges_and_not_in_a_shield() {
+fn cancelling_takes_effect_between_exchanges_and_not_in_a_shield() {
     let mut pin = Pin::new("");
     pin.cancel = Cancel::after(3);
     assert_eq!(pin.master().read_run(at("0x02:0x00"), 64), Err(Error::Cancelled));
@@ -178,7 +178,7 @@ fn an_end_is_heard_between_two_exchanges_and_not_in_a_shield() {
 
 /// A calibrating encoder is silent for five seconds: without patience that is an error, with it the status arrives.
 #[test]
-fn who_is_silent_for_long_is_waited_for() {
+fn a_long_silence_is_tolerated_with_patience() {
     let mut pin = Pin::new("rpm=-500&calibration=7");
     for (place, value) in [("0x6B", 0x2A), ("0x6A", 0x01), ("0x00:0x00", 0x01)] {
         pin.master().write(at(place), value).unwrap();
@@ -198,7 +198,7 @@ fn who_is_silent_for_long_is_waited_for() {
 
 /// A value is wrong only after two damaged frames whose sums match; with confirmation none is in these runs.
 #[test]
-fn a_noisy_line_gives_right_values_or_errors() {
+fn a_noisy_line_yields_correct_values_or_errors() {
     let (mut right, mut failed) = (0, 0);
     for noise in ["drop:0.02", "flip:0.02", "garbage:0.02", "drop:0.01,flip:0.01,garbage:0.01"] {
         for seed in 0..12 {
@@ -222,7 +222,7 @@ fn a_noisy_line_gives_right_values_or_errors() {
 }
 
 #[test]
-fn writes_over_a_noisy_line_end_as_they_say() {
+fn writes_over_a_noisy_line_report_their_true_result() {
     for noise in ["drop:0.03", "flip:0.03", "garbage:0.03"] {
         for seed in 0..20 {
             let mut pin = Pin::new(&format!("seed={seed}&fault={noise}"));
@@ -240,7 +240,7 @@ fn writes_over_a_noisy_line_end_as_they_say() {
 
 /// A false beginning of a frame hides the following bytes until it ends; 20 ms of silence end it on both sides.
 #[test]
-fn a_line_is_found_again_after_garbage() {
+fn replies_are_read_again_after_garbage() {
     let mut pin = Pin::new("temperature=25");
     pin.tap().foreign.extend([0x80, 0x01, 0x01, 0x3F, 0x00]);
     assert_eq!(pin.master().read(at("0x66")), Ok(75));
@@ -252,7 +252,7 @@ fn a_line_is_found_again_after_garbage() {
 
 /// Issue 22.11: damaged replies are counted, and the trace contains their bytes.
 #[test]
-fn broken_replies_are_counted_and_shown() {
+fn damaged_replies_are_counted_and_reported() {
     let mut pin = Pin::new("");
     // The temperature is 0026h over the pin (reference UBICOM 6).
     pin.tap().broken_to = Some(vec![0x80, 1, 1, 2, 0, 0x26]);

@@ -40,7 +40,7 @@ fn assert_steps(bench: &mut Bench, change: Change) -> Hands {
 
 /// Manual 6.4: counterclockwise first, about five seconds each, saved automatically.
 #[test]
-fn a_calibration_runs_both_ways_and_is_one_flash_cycle() {
+fn a_calibration_runs_both_ways_and_costs_one_flash_cycle() {
     for way in WAYS {
         for silent in ["on", "off"] {
             let mut bench = Bench::new(way, &format!("calibration-silent={silent}&temperature=30"));
@@ -68,7 +68,7 @@ fn a_calibration_runs_both_ways_and_is_one_flash_cycle() {
 
 /// Manual 6.3: 515 revolutions at 1000 rpm are 30.9 s.
 #[test]
-fn a_wiegand_test_gives_its_results_and_saves_them_where_that_is_wished() {
+fn a_wiegand_test_returns_results_and_saves_them_on_request() {
     for way in WAYS {
         for save in [false, true] {
             let mut bench = Bench::new(way, "pulses=6.3,5.8");
@@ -101,7 +101,7 @@ fn a_wiegand_test_gives_its_results_and_saves_them_where_that_is_wished() {
 
 /// Manual 6.5.
 #[test]
-fn data_are_written_register_by_register_and_saved_once() {
+fn data_is_written_register_by_register_and_saved_once() {
     for way in WAYS {
         let mut bench = Bench::new(way, "");
         let before = bench.flash_cycles();
@@ -208,7 +208,7 @@ fn a_mounting_is_one_run_with_a_report() {
 }
 
 #[test]
-fn a_part_of_a_run_can_be_left_out() {
+fn a_part_of_a_run_can_be_skipped() {
     let first = Run::CalibrationCounterclockwise;
     for (task, after) in [(first, None), (Run::CalibrationClockwise, Some(first))] {
         let task = Task::Turn(task);
@@ -229,7 +229,7 @@ fn a_part_of_a_run_can_be_left_out() {
 }
 
 #[test]
-fn whoever_cancels_at_the_motor_finds_the_encoder_in_operation() {
+fn cancelling_at_the_motor_leaves_the_encoder_in_operation() {
     for (change, task) in [
         (calibration(), Task::Turn(Run::CalibrationCounterclockwise)),
         (calibration(), Task::Turn(Run::CalibrationClockwise)),
@@ -253,7 +253,7 @@ fn whoever_cancels_at_the_motor_finds_the_encoder_in_operation() {
 
 /// Without a user: unsuitable values are reported after the patience, and nothing was begun.
 #[test]
-fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
+fn an_unattended_start_happens_when_ready_or_not_at_all() {
     let cases = [
         ("rpm=0", calibration(), Blocker::Standing),
         ("rpm=500", calibration(), Blocker::WrongDirection),
@@ -297,7 +297,7 @@ fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
 
 /// Manual 6.4: the possible errors of the calibration's status. The second run loses the table.
 #[test]
-fn a_calibration_that_fails_says_why() {
+fn a_failed_calibration_reports_the_reason() {
     // Speed and direction change after the start of the run; waver and temperature are set from the beginning.
     let cases = [
         (Run::CalibrationCounterclockwise, "waver=5", None, CalibrationStatus::Failed),
@@ -339,7 +339,7 @@ fn a_calibration_that_fails_says_why() {
 
 /// Errors that the encoder itself detects although the measured values were valid just before.
 #[test]
-fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
+fn the_encoder_decides_on_direction_speed_and_temperature() {
     type Spoil = fn(&mut encoder_studio::devices::biss::sim::Encoder, encoder_studio::units::Moment);
     let cases: [(Spoil, CalibrationStatus); 3] = [
         (|encoder, now| encoder.set_rpm(now, 500.0), CalibrationStatus::WrongDirection),
@@ -390,7 +390,7 @@ fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
 }
 
 #[test]
-fn a_run_that_never_ends_is_given_up() {
+fn a_run_that_never_ends_times_out() {
     // The motor stops, and the revolutions are never complete.
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(false)).unwrap();
@@ -411,7 +411,7 @@ fn a_run_that_never_ends_is_given_up() {
 
 /// Obstacles known before a procedure begins are refused before anything is written.
 #[test]
-fn what_cannot_be_done_is_refused_beforehand() {
+fn impossible_procedures_are_refused_beforehand() {
     let run = |calibrate, wiegand| MountingRun { calibrate, wiegand, ..MountingRun::default() };
     for run in [run(true, None), run(false, Some(true))] {
         let change = Change::Guided { run, motor: MotorSource::ThisEncoder };
@@ -448,7 +448,7 @@ fn an_encoder_without_a_choice_of_filter_is_calibrated() {
 
 /// Another host has left the encoder in a device mode, with the password set.
 #[test]
-fn an_encoder_that_was_left_in_a_mode_is_led_back_first() {
+fn an_encoder_left_in_a_mode_is_led_back_first() {
     for mode in [1, 2, 4, 5, 7] {
         for way in WAYS {
             let mut bench = Bench::new(way, "");
@@ -495,7 +495,7 @@ fn leading_back_waits_for_a_calibration() {
 
 /// Start was pressed twice for the motor data: the second press does not answer the same question for the OEM data.
 #[test]
-fn an_answer_that_comes_twice_does_not_start_the_next_operation() {
+fn a_duplicated_answer_does_not_start_the_next_operation() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let edit = |place: &str| (place.parse().unwrap(), vec![0x5A]);
     let prepared = bench.prepare(Change::Write(vec![edit("0x04:0x10"), edit("0x24:0x10")])).unwrap();
@@ -523,7 +523,7 @@ fn an_answer_that_comes_twice_does_not_start_the_next_operation() {
 
 /// The status of an earlier run is neither the end nor the failure of this one.
 #[test]
-fn the_status_of_an_earlier_run_is_not_taken_for_this_one() {
+fn the_status_of_an_earlier_run_is_ignored() {
     for silent in ["on", "off"] {
         let mut bench =
             Bench::new(Transport::ConfigPin, &format!("calibration-silent={silent}&calibration-status=kept"));

@@ -110,7 +110,7 @@ fn check(runs: &[FrameRun]) {
 }
 
 #[test]
-fn what_is_wished_closer_than_one_can_ask_is_streamed() {
+fn short_polling_intervals_are_streamed() {
     let mut stand = stand("rpm=3000&position=0");
     stand.session.pace(Some(FAST));
     let runs = stand.runs(Duration::from_secs(3));
@@ -150,7 +150,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
 }
 
 #[test]
-fn frames_that_are_damaged_or_do_not_come_are_told() {
+fn damaged_and_missing_frames_are_reported() {
     let mut noisy = stand("noise=0.05&seed=2");
     noisy.session.pace(Some(FAST));
     let runs = noisy.runs(Duration::from_secs(1));
@@ -164,7 +164,7 @@ fn frames_that_are_damaged_or_do_not_come_are_told() {
 }
 
 #[test]
-fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
+fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     let mut stand = stand("rpm=60");
     stand.session.pace(Some(FAST));
     stand.run();
@@ -183,7 +183,7 @@ fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
 
 /// 43 bits at 1 MHz, 7 µs of acknowledging and 20 µs of time-out are 70 µs.
 #[test]
-fn what_the_clock_does_not_allow_is_told() {
+fn a_clock_too_slow_for_the_interval_is_reported() {
     for (clock_hz, period_ns, is_limited) in [(1_000_000, 70_000, true), (2_000_000, 50_000, false)] {
         let mut stand = stand_at("rpm=60", None, clock_hz);
         stand.session.pace(Some(FAST));
@@ -194,7 +194,7 @@ fn what_the_clock_does_not_allow_is_told() {
 
 /// A reset ends the stream and clears supply and clock: a job, or the next sample, detects it and continues.
 #[test]
-fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
+fn an_adapter_reset_while_streaming_is_configured_again() {
     let query = "supply=switched&rpm=60";
     let supply = Supply { millivolt: 5_000, measured: None };
     for by_job in [true, false] {
@@ -219,7 +219,7 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
 /// An adapter that falls silent may have been reset, which switches the supply off: it is switched on again, and the
 /// encoder gets its start-up time.
 #[test]
-fn an_encoder_that_the_adapter_supplies_gets_its_supply_again() {
+fn a_supplied_encoder_is_powered_again_after_a_reset() {
     let supply = Supply { millivolt: 5_000, measured: None };
     let mut stand = stand_with("supply=switched&rpm=60", Some(supply));
     stand.session.pace(Some(FAST));

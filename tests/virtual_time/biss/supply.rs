@@ -14,7 +14,7 @@ fn has_power(bench: &Bench) -> bool {
 }
 
 #[test]
-fn the_supply_goes_off_unless_it_was_on_or_is_to_stay_on() {
+fn the_supply_is_switched_off_unless_found_on_or_kept() {
     let mut bench = Bench::supplied(AsFound);
     // The supply before a session, the setting for its end, and whether it is on then.
     for (found, after, left) in
@@ -32,7 +32,7 @@ fn the_supply_goes_off_unless_it_was_on_or_is_to_stay_on() {
 /// Issue 22.16: the same for streamed signals: a supply switched on for them is switched off, and one that was on before
 /// stays on.
 #[test]
-fn streamed_signals_leave_the_supply_as_it_was() {
+fn streaming_signals_restores_the_supply() {
     let volts = SupplyVoltage { least: 4_750, given: 5_000, greatest: 12_500 };
     let mut bench = Bench::supplied(On);
     assert!(bench.stream_signals(Some(volts)) && !has_power(&bench));
@@ -46,7 +46,7 @@ fn streamed_signals_leave_the_supply_as_it_was() {
 
 /// A session without requests, or whose link does not control the supply, switches nothing.
 #[test]
-fn a_session_that_switched_nothing_on_switches_nothing_off() {
+fn a_session_switches_off_only_its_own_supply() {
     let mut bench = Bench::supplied(On);
     bench.run(BissJob::Status).unwrap();
     bench.session.leave();
@@ -59,7 +59,7 @@ fn a_session_that_switched_nothing_on_switches_nothing_off() {
 
 /// A store gets its time before the power is switched off; an encoder in a mode of another host keeps its power.
 #[test]
-fn power_is_not_cut_while_something_may_be_under_way() {
+fn power_is_not_cut_during_a_store_or_a_mode() {
     let mut bench = Bench::supplied(AsFound);
     bench.change(data()).unwrap();
     let before = bench.now();
@@ -76,7 +76,7 @@ fn power_is_not_cut_while_something_may_be_under_way() {
 
 /// Issue 22.16: the encoder is silent from the beginning, so that it may be calibrating since an earlier session.
 #[test]
-fn an_encoder_that_never_says_anything_keeps_its_power() {
+fn an_encoder_that_never_answers_keeps_its_power() {
     let mut bench = Bench::supplied_at("line=open", AsFound);
     bench.run(BissJob::Status).unwrap_err();
     bench.session.leave();

@@ -114,7 +114,7 @@ fn the_frame_of_a_turning_shaft_is_found() {
 }
 
 #[test]
-fn at_rest_no_frame_is_found_and_the_encoder_is_looked_at_all_the_same() {
+fn at_rest_no_frame_is_found_and_the_survey_still_works() {
     let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
     let survey = device::survey(&mut rig.master(), &Descriptions::built_in(), &mut |_, _, _| {}).unwrap();
     assert_eq!((survey.identity.source, survey.status.position), (FrameSource::Assumed, None));
@@ -125,7 +125,7 @@ fn at_rest_no_frame_is_found_and_the_encoder_is_looked_at_all_the_same() {
 
 /// Issue 22.20: turns and steps are given by the user, also at rest; 14 bits of steps are 16384 per turn.
 #[test]
-fn the_frame_that_is_given_makes_an_angle_of_the_position() {
+fn a_given_frame_converts_positions_to_angles() {
     let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
     rig.station = Station::from_query(&"mt=0&st=14".parse().unwrap(), Transport::Adapter, MARGIN).unwrap();
     let identity = device::identify(&mut rig.master(), &Descriptions::built_in()).unwrap();

@@ -52,7 +52,7 @@ fn writes_to(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8
 
 /// The issue: three bytes of one bank are three registers and one save, in the plan and in the logbook.
 #[test]
-fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
+fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let saved = bench.save();
     let wanted = with_bytes(&saved, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
@@ -92,7 +92,7 @@ fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
 }
 
 #[test]
-fn everything_that_differs_is_restored_and_nothing_else() {
+fn only_differences_are_restored() {
     for way in WAYS {
         let mut bench = Bench::new(way, "position=0x20007");
         let saved = bench.save();
@@ -137,7 +137,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
 
 /// The values read for the plan have changed before it is carried out: nothing is written.
 #[test]
-fn a_plan_whose_base_no_longer_holds_is_not_carried_out() {
+fn a_plan_with_a_changed_base_is_not_executed() {
     type Case = (fn() -> Change, fn(&mut Bench), &'static str);
     let cases: [Case; 4] = [
         (data, |bench| drop(bench.change(Change::Write(vec![("0x24:0x00".parse().unwrap(), vec![9])]))), "bank 0x24"),
@@ -163,7 +163,7 @@ fn a_plan_whose_base_no_longer_holds_is_not_carried_out() {
 }
 
 #[test]
-fn a_consent_covers_one_plan() {
+fn a_consent_covers_only_its_plan() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let shown = bench.prepare(filter()).unwrap();
     let prepared = bench.prepare(data()).unwrap();
@@ -177,7 +177,7 @@ fn a_consent_covers_one_plan() {
 
 /// Issue 22.4: unknown write cycles are not 0.
 #[test]
-fn an_encoder_whose_wear_is_not_known_is_written_only_by_force() {
+fn an_encoder_with_unknown_wear_is_written_only_by_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     std::fs::create_dir_all(bench.store().logbook_path()).unwrap();
     let prepared = bench.prepare(filter()).unwrap();
@@ -200,7 +200,7 @@ fn an_encoder_whose_wear_is_not_known_is_written_only_by_force() {
 
 /// Manual 6.1: 1000 write cycles. The logbook counts; a plan that would exceed them is refused, and carried out if forced.
 #[test]
-fn a_worn_encoder_is_written_only_where_that_is_wished() {
+fn a_worn_encoder_is_written_only_by_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     assert_eq!((prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT), (Some(0), 2, 1000));
@@ -233,7 +233,7 @@ fn a_worn_encoder_is_written_only_where_that_is_wished() {
 /// One answer or one request is lost at every exchange: a write is never repeated if that would spend a cycle, and the
 /// report describes the real result.
 #[test]
-fn one_lost_answer_or_request_at_every_exchange() {
+fn one_lost_request_or_reply_at_any_exchange_is_tolerated() {
     type Scene = (&'static str, fn() -> Change, u32);
     let scenes: [Scene; 3] = [("data", data, 1), ("filter", filter, 1), ("preset", || preset(7, 7), 2)];
     for (name, change, cost) in scenes {
@@ -276,7 +276,7 @@ fn one_lost_answer_or_request_at_every_exchange() {
 
 /// A Wiegand result that may not have been saved: it cannot be read back, so it is reported as unclear.
 #[test]
-fn what_cannot_be_read_back_is_unclear() {
+fn unverifiable_results_are_reported_as_unclear() {
     let mut original = Bench::new(Transport::ConfigPin, "");
     let prepared = original.prepare(wiegand_test(true)).unwrap();
     for lost in ["answer", "request"] {
@@ -304,7 +304,7 @@ fn what_cannot_be_read_back_is_unclear() {
 }
 
 #[test]
-fn a_noisy_line_writes_right_or_tells() {
+fn writes_over_a_noisy_line_are_correct_or_fail() {
     let (mut right, mut told) = (0, 0);
     for noise in ["drop:0.005", "flip:0.005", "garbage:0.005"] {
         for seed in 0..6 {
@@ -319,7 +319,11 @@ fn a_noisy_line_writes_right_or_tells() {
                 }
                 Err(JobError::Interrupted { interrupted, .. }) => {
                     told += 1;
-                    super::hands::assert_told(&interrupted.end_state, &bench, &format!("{noise}, seed {seed}"));
+                    super::hands::assert_reported_state(
+                        &interrupted.end_state,
+                        &bench,
+                        &format!("{noise}, seed {seed}"),
+                    );
                 }
                 Err(_) => told += 1,
             }

@@ -40,7 +40,7 @@ fn requests() -> usize {
 }
 
 #[test]
-fn a_single_loss_is_asked_again_and_nothing_is_set_twice() {
+fn a_single_loss_is_retried_and_nothing_is_set_twice() {
     for (cut, most) in [(REQUEST, 2), (REPLY, 1)] {
         for at in 0..requests() {
             let mut stand = Stand::new("");
@@ -72,7 +72,7 @@ fn a_single_loss_is_asked_again_and_nothing_is_set_twice() {
 }
 
 #[test]
-fn what_is_cut_ends_in_time_and_tells_how_far_it_came() {
+fn an_interrupted_write_ends_in_time_and_reports_progress() {
     for (label, cut) in [("lost", LOST), ("mute", MUTE), ("deaf", DEAF)] {
         for at in 0..requests() {
             let mut stand = Stand::new("");
@@ -105,7 +105,7 @@ fn what_is_cut_ends_in_time_and_tells_how_far_it_came() {
 }
 
 /// Carries a change out with a cancellation at each of its requests in turn; `look` receives each end.
-fn wish_an_end_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &str, &Interrupted)) {
+fn cancel_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &str, &Interrupted)) {
     for at in 0.. {
         let mut stand = Stand::new("");
         let prepared = stand.prepare(change()).unwrap();
@@ -132,9 +132,9 @@ fn wish_an_end_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Sta
 }
 
 #[test]
-fn a_wish_to_end_is_heard_between_two_operations() {
+fn cancelling_takes_effect_between_two_operations() {
     let mut seen = BTreeSet::new();
-    wish_an_end_at_each_request(write, |stand, label, interrupted| {
+    cancel_at_each_request(write, |stand, label, interrupted| {
         let taken = [(24, 7), (166, 200), (186, 30)].iter().filter(|(own, new)| stand.value(*own) == *new).count();
         assert_eq!(interrupted.done.ops, taken, "{label}");
         seen.insert(taken);
@@ -146,11 +146,11 @@ fn a_wish_to_end_is_heard_between_two_operations() {
 /// 400 steps per turn instead of 65536 (reference 5), and limits of ten turns: half of the change would be another position
 /// than either. The maximum speed is written between them.
 #[test]
-fn nobody_ends_between_a_scale_and_its_limits() {
+fn cancelling_never_separates_a_scale_from_its_limits() {
     const PLACE: [(u16, i64); 4] = [(154, 400), (156, 256), (158, -4_000), (160, 4_000)];
     let change = || Change::Write(image(&[&[(24, 7), (166, 200)], &PLACE[..], &[(186, 30)]].concat()));
     let mut seen = BTreeSet::new();
-    wish_an_end_at_each_request(change, |stand, label, _| {
+    cancel_at_each_request(change, |stand, label, _| {
         let taken = PLACE.iter().filter(|(number, value)| stand.value(*number) == *value).count();
         assert!(taken == 0 || taken == PLACE.len(), "{taken} of scale and limits, {label}");
         seen.insert(taken);
@@ -159,7 +159,7 @@ fn nobody_ends_between_a_scale_and_its_limits() {
 }
 
 #[test]
-fn a_device_that_is_gone_is_given_up_in_time() {
+fn a_lost_device_times_out_in_time() {
     let mut stand = Stand::new("");
     stand.tap().deaf_from = Some(0);
     let begun = stand.elapsed();

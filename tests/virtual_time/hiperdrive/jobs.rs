@@ -14,7 +14,7 @@ use encoder_studio::worker::{Event, JobId, Watched};
 use super::support::{Stand, drive, number};
 
 #[test]
-fn reading_changes_nothing() {
+fn reading_writes_nothing() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&requested=1&serial=99");
     let jobs = [
         HiperdriveJob::Hello,
@@ -40,7 +40,7 @@ fn reading_changes_nothing() {
 }
 
 #[test]
-fn a_hub_is_surveyed_with_the_drives_that_are_plugged_in() {
+fn a_hub_is_surveyed_with_its_connected_drives() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&variant=13&serial=99&switch=17&name=LINE 3");
     let survey = stand.survey();
     let identity = &survey.identity;
@@ -63,7 +63,7 @@ fn a_hub_is_surveyed_with_the_drives_that_are_plugged_in() {
 }
 
 #[test]
-fn texts_come_plain_or_counted() {
+fn texts_are_read_plain_or_counted() {
     for query in ["text=plain", "text=counted"] {
         let mut stand = Stand::new(query);
         let HiperdriveOutput::Value(own, value) = stand.run(HiperdriveJob::Read(number(13))).unwrap() else { panic!() };
@@ -72,7 +72,7 @@ fn texts_come_plain_or_counted() {
 }
 
 #[test]
-fn places_and_drives_that_are_not_there_are_named() {
+fn missing_ports_and_drives_are_named() {
     let mut stand = Stand::new("hub=4&drives=1,0,1");
     stand.run(HiperdriveJob::Hello).unwrap();
     let mut refused = |job| match stand.run(job) {
@@ -87,7 +87,7 @@ fn places_and_drives_that_are_not_there_are_named() {
 }
 
 #[test]
-fn status_tells_states_errors_and_temperatures_of_all_drives() {
+fn status_reports_states_errors_and_temperatures_of_all_drives() {
     let mut stand = Stand::new("hub=4&drives=1,1&requested=1&supply=23.4");
     let now = stand.clock.now();
     stand.target.with(|station| station.drive(drive(2)).unwrap().fail(now, ErrorCode::OVER_CURRENT));
@@ -101,7 +101,7 @@ fn status_tells_states_errors_and_temperatures_of_all_drives() {
 
 /// A recording is played back by the same jobs, with any numbers of sessions and requests.
 #[test]
-fn a_recorded_trace_answers_as_the_device_did() {
+fn a_recorded_trace_replays_the_devices_replies() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&serial=4711");
     let entries = Arc::<Mutex<Vec<TraceEntry>>>::default();
     let told = entries.clone();
@@ -128,7 +128,7 @@ fn a_recorded_trace_answers_as_the_device_did() {
 }
 
 #[test]
-fn positions_are_read_of_the_watched_drive() {
+fn positions_of_the_watched_drive_are_read() {
     let mut stand = Stand::new("hub=4&drives=1,1&position=65536");
     let position = |stand: &mut Stand| match stand.session.sample().unwrap() {
         Sample::Position(reading) => reading,
@@ -160,7 +160,7 @@ fn temperatures_are_watched_by_one_request_each() {
 }
 
 #[test]
-fn the_check_has_a_line_for_each_thing_that_may_be_wrong() {
+fn the_check_has_a_line_for_each_possible_fault() {
     let mut stand = Stand::new("hub=4&drives=1&requested=0&supply=18&switch=98&position=65536");
     stand.target.with(|station| {
         for (own, value) in [(186, 255), (158, 0)] {
@@ -193,7 +193,7 @@ fn the_check_has_a_line_for_each_thing_that_may_be_wrong() {
 /// Reading one parameter after the other takes seconds if replies are slow: each is reported, and empty slots count as
 /// done.
 #[test]
-fn what_takes_many_requests_tells_each_of_them() {
+fn progress_is_reported_for_each_request() {
     let mut stand = Stand::new("hub=4&drives=1,0,1");
     for (job, total, asked) in [(HiperdriveJob::Identify, 29, 1 + 29 - 2 * 5), (HiperdriveJob::Status, 66, 66 - 2 * 15)]
     {
@@ -212,7 +212,7 @@ fn what_takes_many_requests_tells_each_of_them() {
 }
 
 #[test]
-fn replies_are_measured_and_late_ones_told_from_none() {
+fn replies_are_timed_and_late_ones_distinguished_from_missing_ones() {
     let mut slow = Stand::new("fault=delay:300");
     let replies = slow.session.station().replies();
     slow.run(HiperdriveJob::Read(number(158))).unwrap();

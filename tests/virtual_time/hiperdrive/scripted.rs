@@ -156,7 +156,7 @@ fn without_context(frame: &[u8]) -> Vec<u8> {
 const AT_163840: &str = "8E 00 00 00 00 80 02 00";
 
 #[test]
-fn a_session_begins_once_and_requests_are_the_references_bytes() {
+fn a_session_begins_once_and_requests_match_the_reference() {
     let mut desk = Desk::with([Act::Reply(AT_163840), Act::Reply("8E 00 00 00 01 00")]);
     assert_eq!(desk.read(107).unwrap(), Value::Number(163_840));
     assert_eq!(desk.read(47).unwrap(), Value::Number(1));
@@ -173,14 +173,14 @@ fn a_session_begins_once_and_requests_are_the_references_bytes() {
 }
 
 #[test]
-fn what_answers_another_request_is_let_pass_and_counted() {
+fn replies_to_other_requests_are_skipped_and_counted() {
     let mut desk = Desk::with([Act::Stale("8E 00 00 00 FF FF FF FF"), Act::Silence, Act::Reply(AT_163840)]);
     assert_eq!(desk.read(107).unwrap(), Value::Number(163_840));
     assert_eq!((desk.station.late(), desk.sent().len()), (1, 4), "it was asked three times, in one session");
 }
 
 #[test]
-fn a_forgotten_session_is_opened_anew() {
+fn a_forgotten_session_is_opened_again() {
     let mut desk = Desk::with([Act::Reply(AT_163840), Act::Status(0x64), Act::Reply("8E 00 00 00 05 00")]);
     desk.read(107).unwrap();
     assert_eq!(desk.read(105).unwrap(), Value::Number(5));
@@ -188,7 +188,7 @@ fn a_forgotten_session_is_opened_anew() {
 }
 
 #[test]
-fn other_refusals_of_a_frame_are_told() {
+fn other_frame_refusals_are_reported() {
     let mut desk = Desk::with([Act::Status(0x02)]);
     let refused =
         Error::Encapsulation { requested: RequestedItem::Parameter(number(107)), status: EncapsulationStatus::new(2) };
@@ -196,7 +196,7 @@ fn other_refusals_of_a_frame_are_told() {
 }
 
 #[test]
-fn values_are_of_their_type_and_sign() {
+fn values_have_their_type_and_sign() {
     for (own, cip, value) in [
         (119, "8E 00 00 00 1F", Value::Number(31)),
         (119, "8E 00 00 00 F6", Value::Number(-10)),
@@ -217,7 +217,7 @@ fn values_are_of_their_type_and_sign() {
 
 /// Issue 21.9: a number with another length than that of its type is refused with both lengths, for every request.
 #[test]
-fn a_number_of_another_length_is_refused_with_both() {
+fn a_number_of_another_length_is_refused_with_both_lengths() {
     const REPLIES: [&str; 5] =
         ["8E 00 00 00", "8E 00 00 00 01", "8E 00 00 00 01 00", "8E 00 00 00 01 00 00", "8E 00 00 00 01 00 00 00"];
     // Bits of the manual's table (6.2).
@@ -253,7 +253,7 @@ fn a_number_of_another_length_is_refused_with_both() {
 }
 
 #[test]
-fn a_refusal_is_told_with_the_words_of_its_row() {
+fn a_refusal_is_reported_with_its_parameter_name() {
     let mut desk = Desk::with([Act::Reply("8E 00 05 00")]);
     let error = desk.read(13).unwrap_err();
     let refusal = error.refusal().unwrap();
@@ -272,7 +272,7 @@ fn a_refusal_is_told_with_the_words_of_its_row() {
 }
 
 #[test]
-fn what_there_is_not_and_what_is_only_written_is_not_asked_for() {
+fn unknown_and_write_only_parameters_are_not_read() {
     let mut desk = Desk::with([]);
     assert_eq!(desk.read(155), Err(Error::Unknown(number(155))));
     assert_eq!(desk.read(199), Err(Error::WriteOnly { number: number(199), name: "reset drive" }));
@@ -280,7 +280,7 @@ fn what_there_is_not_and_what_is_only_written_is_not_asked_for() {
 }
 
 #[test]
-fn broken_frames_are_asked_again_and_silence_ends_in_time() {
+fn damaged_frames_are_retried_and_silence_times_out() {
     for broken in [
         // A length that no frame has; a frame without its end; an invalid message.
         "6F 00 FF FF 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",
@@ -300,7 +300,7 @@ fn broken_frames_are_asked_again_and_silence_ends_in_time() {
 
 /// Repeated requests to a silent device do not delay other work.
 #[test]
-fn reading_what_rules_a_drive_can_be_cut_short() {
+fn reading_the_limits_of_a_drive_can_be_cancelled() {
     let mut desk = Desk::with([]);
     let cancel = Cancel::default();
     cancel.request();
@@ -333,7 +333,7 @@ fn flat(pattern: &str) -> String {
 }
 
 #[test]
-fn a_cyclic_connection_is_opened_with_the_references_bytes() {
+fn a_cyclic_connection_is_opened_as_in_the_reference() {
     let mut desk = Desk::with([Act::Reply(OPENED), Act::Reply("CE 00 00 00 01 00 34 12 CD AB 00 00 00 00")]);
     let opened = desk.ask(|master| master.forward_open(Topology::Adapter, 0x1234)).unwrap();
     let (own, beside) = cip(&desk.sent()[1], OPEN);
@@ -349,7 +349,7 @@ fn a_cyclic_connection_is_opened_with_the_references_bytes() {
 }
 
 #[test]
-fn what_a_device_does_not_take_of_a_connection_is_asked_for_otherwise() {
+fn a_refused_connection_is_requested_with_other_parameters() {
     let words = |desk: &Desk| {
         let word = |frame: &Vec<u8>, at: usize| u16::from_le_bytes([frame[40 + at], frame[41 + at]]);
         let sent = desk.sent();
@@ -381,7 +381,7 @@ fn what_a_device_does_not_take_of_a_connection_is_asked_for_otherwise() {
 }
 
 #[test]
-fn another_master_is_told_and_nothing_is_tried_twice() {
+fn another_master_is_reported_and_nothing_is_retried() {
     for (extended, reply) in
         [(0x0106, "D4 00 01 01 06 01"), (0x0100, "D4 00 01 01 00 01 01 00 34 12 CD AB 00 00 00 00")]
     {
@@ -403,7 +403,7 @@ fn another_master_is_told_and_nothing_is_tried_twice() {
 }
 
 #[test]
-fn a_connection_that_is_too_slow_is_closed_again() {
+fn a_connection_with_a_slow_interval_is_closed() {
     // 50 ms each way although 10 were requested: C350h.
     let slow = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 50 C3 00 00 10 27 00 00 00 00";
     let mut desk = Desk::with([Act::Reply(slow), Act::Reply("CE 00 00 00 01 00 34 12 CD AB 00 00 00 00")]);

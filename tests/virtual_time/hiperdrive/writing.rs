@@ -22,7 +22,7 @@ fn device_error<T: std::fmt::Debug>(ended: Result<T, JobError>) -> Error {
 }
 
 #[test]
-fn what_differs_is_written_read_back_and_saved_once() {
+fn differences_are_written_read_back_and_saved_once() {
     let mut stand = Stand::new("serial=42");
     let done = stand.change(Change::Write(image(&[(24, 7), (166, 200), (188, 1)]))).unwrap();
     assert_eq!((done.written.ops, done.written.written, done.written.verified), (3, 2, 2));
@@ -44,7 +44,7 @@ fn what_differs_is_written_read_back_and_saved_once() {
 
 /// Issue 22.4: no limit of saves is known, but they are counted: if they cannot be, only a forced write is carried out.
 #[test]
-fn a_device_whose_saves_cannot_be_counted_is_written_only_by_force() {
+fn a_device_with_uncountable_saves_is_written_only_by_force() {
     let mut stand = Stand::new("serial=42");
     stand.block_logbook();
     let prepared = stand.prepare(Change::Write(image(&[(24, 7)]))).unwrap();
@@ -56,7 +56,7 @@ fn a_device_whose_saves_cannot_be_counted_is_written_only_by_force() {
 }
 
 #[test]
-fn what_is_tried_is_not_saved() {
+fn trial_values_are_not_saved() {
     let mut stand = Stand::new("");
     let done = stand.change(Change::Try(image(&[(166, 100), (170, 640)]))).unwrap();
     assert_eq!((done.written.write_cycles, stand.value(166), stand.value(170)), (0, 100, 640));
@@ -69,7 +69,7 @@ fn what_is_tried_is_not_saved() {
 }
 
 #[test]
-fn limits_are_written_in_the_order_in_which_the_drive_takes_them() {
+fn limits_are_written_in_the_order_the_drive_accepts() {
     // From ±511 turns to a range far above, then back below: the other limit first.
     let mut stand = Stand::new("position=655360");
     stand.change(Change::Write(image(&[(158, 600_000), (160, 700_000)]))).unwrap();
@@ -83,7 +83,7 @@ fn limits_are_written_in_the_order_in_which_the_drive_takes_them() {
 }
 
 #[test]
-fn a_profile_comes_back_after_everything_was_set_back() {
+fn a_profile_is_restored_after_a_factory_reset() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&requested=1&serial=42");
     stand.change(Change::Write(image(&[(24, 99), (154, 400), (156, 256), (358, -131_072), (360, 131_072)]))).unwrap();
     let profile: Box<HiperdriveProfile> = match stand.run(HiperdriveJob::Save).unwrap() {
@@ -106,7 +106,7 @@ fn a_profile_comes_back_after_everything_was_set_back() {
 }
 
 #[test]
-fn another_device_or_another_value_than_was_planned_for_is_not_written() {
+fn a_changed_device_or_value_stops_the_write() {
     let mut stand = Stand::new("serial=42");
     let prepared = stand.prepare(Change::Write(image(&[(166, 100)]))).unwrap();
     let now = stand.clock.now();
@@ -120,7 +120,7 @@ fn another_device_or_another_value_than_was_planned_for_is_not_written() {
 }
 
 #[test]
-fn values_out_of_range_name_both_limits_whoever_refuses_them() {
+fn out_of_range_values_name_both_limits_of_host_and_device() {
     let mut stand = Stand::new("position=65536");
     let refused = stand.prepare(Change::Write(image(&[(166, 400)]))).unwrap_err();
     assert_eq!(refused.to_string(), "parameter 166 (maximum speed) cannot be 400: it may be 5 to 350");
@@ -136,7 +136,7 @@ fn values_out_of_range_name_both_limits_whoever_refuses_them() {
 }
 
 #[test]
-fn what_is_only_read_or_moves_a_drive_is_refused_without_a_word() {
+fn read_only_and_motion_parameters_are_refused_without_a_request() {
     let mut stand = Stand::new("");
     for (own, why) in [
         (107, "parameter 107 (actual position) can only be read"),
@@ -150,7 +150,7 @@ fn what_is_only_read_or_moves_a_drive_is_refused_without_a_word() {
 }
 
 #[test]
-fn a_position_is_set_to_the_nearest_that_there_is() {
+fn a_position_is_set_to_the_nearest_possible_value() {
     let mut stand = Stand::new("position=655360");
     let done = stand.change(Change::SetPosition { drive: drive(1), position: 1000, save: true }).unwrap();
     // 64 · 16 = 1024 is nearer than 64 · 15 = 960.
@@ -159,7 +159,7 @@ fn a_position_is_set_to_the_nearest_that_there_is() {
 }
 
 #[test]
-fn services_wait_until_they_are_done() {
+fn services_wait_for_completion() {
     let mut stand = Stand::new("hub=8");
     let begun = stand.elapsed();
     stand.change(Change::Do(Service::Reset)).unwrap();
@@ -174,7 +174,7 @@ fn services_wait_until_they_are_done() {
 /// Issue 21.8: the manual allows 2 s with an adapter and 8 s with a hub until 47 = −4 is answered (6.2). The program waits
 /// for that time, sends it once, and does not use it to measure the speed of the network.
 #[test]
-fn a_presence_test_is_given_the_time_of_the_manual() {
+fn a_presence_test_may_take_the_time_of_the_manual() {
     for (query, ms) in [("reset=2000", 2000), ("hub=4&reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
         let mut stand = Stand::new(query);
         let begun = stand.elapsed();
@@ -190,7 +190,7 @@ fn a_presence_test_is_given_the_time_of_the_manual() {
 /// Issue 21.8: a reply slower than the manual allows, or a connection that falls silent meanwhile, ends in time (CLI.md:
 /// within 10 s), the request is sent once, and the report says that the result is not known.
 #[test]
-fn a_presence_test_that_is_not_answered_ends_in_time() {
+fn an_unanswered_presence_test_times_out() {
     // The number of frames before it.
     let mut whole = Stand::new("hub=8");
     whole.change(Change::Do(Service::Reset)).unwrap();
@@ -216,7 +216,7 @@ fn a_presence_test_that_is_not_answered_ends_in_time() {
 }
 
 #[test]
-fn a_fault_is_acknowledged_with_a_reset_only_where_one_is_needed() {
+fn a_fault_is_acknowledged_with_a_reset_only_if_needed() {
     for (codes, reset) in [
         (&[ErrorCode::RS485][..], false),
         (&[ErrorCode::OVER_CURRENT, ErrorCode::RS485], true),
@@ -247,7 +247,7 @@ fn without_a_fault_nothing_is_acknowledged() {
 }
 
 #[test]
-fn what_rules_motion_is_known_after_every_write() {
+fn motion_limits_are_known_after_every_write() {
     let mut stand = Stand::new("requested=1");
     stand.survey();
     let motion = stand.session.motion();

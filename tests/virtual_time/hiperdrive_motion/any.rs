@@ -101,7 +101,7 @@ fn any_session_ends_at_a_standstill() {
             bench.absent = dice.u8(..200) == 0 || (bench.absent && dice.u8(..40) != 0);
             let stale = bench.intent.is_stale(bench.now) && bench.absent;
             if !bench.absent {
-                model.say(bench.now);
+                model.refresh(bench.now);
             }
             let now = bench.now;
             let sent = bench.cycle();

@@ -46,7 +46,7 @@ const CAUSES: [(&str, Cause, Ended); 7] = [
 ];
 
 #[test]
-fn each_cause_stops_with_the_same_call() {
+fn each_cause_stops_in_the_same_way() {
     for wish in [to(9 * TURN), jog(Direction::Clockwise), jog(Direction::Counterclockwise)] {
         for (label, cause, ended) in CAUSES {
             // From the first word of the motion on.
@@ -68,7 +68,7 @@ fn each_cause_stops_with_the_same_call() {
 
 /// The intent is not refreshed: 250 ms, and an interval. When the refreshes return, the drive remains stopped.
 #[test]
-fn a_frozen_hand_stops() {
+fn a_stale_intent_stops_the_drive() {
     for wish in [to(9 * TURN), jog(Direction::Clockwise)] {
         let mut bench = Bench::new();
         bench.act(wish);
@@ -102,7 +102,7 @@ fn a_frozen_hand_stops() {
 
 /// The drive continues to report motion: 200 ms per rung.
 #[test]
-fn up_the_ladder_while_it_does_not_stand() {
+fn a_drive_that_does_not_stop_climbs_the_ladder() {
     for (wish, stop) in [(to(9 * TURN), "0469"), (jog(Direction::Clockwise), "1419")] {
         let mut bench = Bench::new();
         bench.act(wish);
@@ -132,7 +132,7 @@ fn up_the_ladder_while_it_does_not_stand() {
 
 /// No further reports arrive: the drive is treated as moving.
 #[test]
-fn a_drive_that_is_not_heard_is_stopped() {
+fn a_drive_without_reports_is_stopped() {
     let mut bench = Bench::new();
     bench.act(to(9 * TURN));
     bench.run(1000);
@@ -146,7 +146,7 @@ fn a_drive_that_is_not_heard_is_stopped() {
 
 /// A drive at rest that turns all the same loses operation, then everything.
 #[test]
-fn what_moves_unasked_is_stopped() {
+fn an_uncommanded_motion_is_stopped() {
     let mut bench = Bench::new();
     bench.act(MotionRequest::Lead(Goal::Enabled));
     bench.until_over();

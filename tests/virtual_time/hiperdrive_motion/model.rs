@@ -79,7 +79,7 @@ impl Model {
     }
 
     /// Records a refresh of the act.
-    pub(super) fn say(&mut self, now: Moment) {
+    pub(super) fn refresh(&mut self, now: Moment) {
         if let Some(live) = &mut self.live {
             live.said = now;
         }
@@ -157,7 +157,7 @@ fn is_arriving(commands: Commands, live: &Live, heard: Actual) -> bool {
 }
 
 #[test]
-fn words_of_the_reference_command_what_it_says() {
+fn words_command_as_in_the_reference() {
     let run = |clockwise, endless| Commands::Run { clockwise, endless };
     for (word, acknowledged, job, expected) in [
         (0x0439, false, false, Commands::Nothing),

@@ -102,7 +102,7 @@ fn bit_15_ends_a_run() {
 
 /// Issue 21.4, case *endless run*: a run that ignores the limits is not checked against them.
 #[test]
-fn an_endless_run_is_not_watched() {
+fn an_endless_run_is_not_monitored() {
     let mut bench = bench(None);
     bench.permit.endless = true;
     bench.act(run(Direction::Clockwise, RunEnd::Endless));
@@ -112,7 +112,7 @@ fn an_endless_run_is_not_watched() {
 
 /// Issue 21.4, case *unread limits*: a motion is stopped with the next packet.
 #[test]
-fn a_run_ends_where_its_limits_are_not_known_any_more() {
+fn a_run_ends_when_its_limits_become_unknown() {
     let mut bench = bench(None);
     bench.act(jog(Direction::Clockwise, FULL, false));
     bench.run(1000);
@@ -123,7 +123,7 @@ fn a_run_ends_where_its_limits_are_not_known_any_more() {
 
 /// Issue 21.4, case *already outside*: the inward direction is allowed, further outward is refused before anything is sent.
 #[test]
-fn from_outside_only_the_way_in_is_free() {
+fn from_outside_only_inward_motion_is_allowed() {
     for (beyond, inward, outward) in [
         (5000, Direction::Counterclockwise, Direction::Clockwise),
         (-5000, Direction::Clockwise, Direction::Counterclockwise),
@@ -155,7 +155,7 @@ fn from_outside_only_the_way_in_is_free() {
 /// Issue 21.4: if a drive reports by status bit 15 that it is outside, while its position is well inside, the inward
 /// direction is not known: nothing moves except what was permitted for one press.
 #[test]
-fn outside_by_bit_15_alone_nothing_moves_that_was_not_freed() {
+fn outside_by_bit_15_alone_only_permitted_motion_starts() {
     let ways = [Direction::Clockwise, Direction::Counterclockwise];
     let jogs = ways.map(|way| jog(way, FULL, false));
     let runs = ways.map(|way| run(way, RunEnd::RangeEnd));
@@ -195,7 +195,7 @@ fn outside_by_bit_15_alone_nothing_moves_that_was_not_freed() {
 /// Issue 21.4: the outward direction permitted for one press is slow and weak, whatever is requested, and only for that
 /// press.
 #[test]
-fn the_way_out_can_be_freed_for_one_press() {
+fn outward_motion_can_be_permitted_for_one_press() {
     let mut bench = bench_outside(5000, None);
     // The drive's own limit leaves room.
     bench.write(160, (2 * TURN).into());
@@ -216,7 +216,7 @@ fn the_way_out_can_be_freed_for_one_press() {
 
 /// Issue 21.4: a drive that counts the other way moves outward instead of inward: stopped within a degree.
 #[test]
-fn the_way_in_that_leads_out_is_stopped() {
+fn inward_motion_that_leads_outward_is_stopped() {
     let mut bench = bench_outside(5000, Some(Defect::Reversed));
     bench.write(160, (2 * TURN).into());
     let stood = bench.position();
@@ -232,7 +232,7 @@ fn the_way_in_that_leads_out_is_stopped() {
 
 /// Issue 21.4, case *overrun while braking*: the stop continues, and keeps its reason.
 #[test]
-fn an_overrun_while_braking_changes_nothing() {
+fn an_overrun_while_braking_keeps_the_stop_reason() {
     let mut bench = bench(Some(Defect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, false));
     // At 35 rpm it brakes within 0.1 s, and moves on by 1911 steps.
@@ -249,7 +249,7 @@ fn an_overrun_while_braking_changes_nothing() {
 
 /// Issue 21.5: a move in the wrong direction is stopped with the report that shows more than a degree.
 #[test]
-fn a_move_the_wrong_way_is_stopped_at_once() {
+fn a_move_in_the_wrong_direction_is_stopped_immediately() {
     for target in [TURN / 2, -TURN / 2] {
         let mut bench = bench(Some(Defect::Reversed));
         bench.act(to(target));
@@ -262,7 +262,7 @@ fn a_move_the_wrong_way_is_stopped_at_once() {
 
 /// Issue 21.5: a jog against its direction is stopped with the report that shows more than a degree.
 #[test]
-fn a_jog_the_wrong_way_is_stopped_at_once() {
+fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
     for (direction, sign) in [(Direction::Clockwise, 1), (Direction::Counterclockwise, -1)] {
         for wish in [jog(direction, FULL, false), run(direction, RunEnd::RangeEnd)] {
             let mut bench = bench(Some(Defect::Reversed));
@@ -276,7 +276,7 @@ fn a_jog_the_wrong_way_is_stopped_at_once() {
 /// Issue 21.5: a move that does not stop at its target is stopped there, and one whose target is a limit is stopped beyond
 /// that limit.
 #[test]
-fn a_move_that_runs_on_is_stopped() {
+fn a_move_that_passes_its_target_is_stopped() {
     for target in [TURN / 2, TURN, -TURN] {
         let mut bench = bench(Some(Defect::RunsOn));
         bench.act(to(target));
@@ -295,7 +295,7 @@ fn a_move_that_runs_on_is_stopped() {
 
 /// A drive without a defect is never stopped by the watch: at its limits, at any target, with late reports.
 #[test]
-fn a_sound_drive_arrives_everywhere() {
+fn a_healthy_drive_reaches_every_target() {
     let mut dice = fastrand::Rng::with_seed(21);
     let mut bench = bench(None);
     for _ in 0..60 {

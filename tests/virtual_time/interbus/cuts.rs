@@ -53,7 +53,7 @@ fn write(stand: &mut Stand) -> InterbusJob {
 }
 
 #[test]
-fn a_single_loss_is_asked_again_and_nobody_notices() {
+fn a_single_loss_is_retried_transparently() {
     for cut in [REQUEST, REPLY] {
         for at in (0..requests(|_| InterbusJob::Identify)).step_by(2) {
             let mut stand = Stand::new(QUERY);
@@ -81,7 +81,7 @@ fn a_single_loss_is_asked_again_and_nobody_notices() {
 }
 
 #[test]
-fn a_read_that_is_cut_ends_in_time_and_says_what_out_is() {
+fn an_interrupted_read_ends_in_time_and_reports_out() {
     for (cut, hears) in [(LOST, false), (MUTE, true), (DEAF, false)] {
         for at in (0..requests(|_| InterbusJob::Identify)).step_by(2) {
             let mut stand = Stand::new(QUERY);
@@ -102,7 +102,7 @@ fn a_read_that_is_cut_ends_in_time_and_says_what_out_is() {
 }
 
 #[test]
-fn a_write_that_is_cut_ends_in_time_and_says_in_which_state_the_encoder_may_be() {
+fn an_interrupted_write_ends_in_time_and_reports_the_possible_state() {
     let count = requests(write);
     for cut in [LOST, MUTE, DEAF] {
         for at in (0..count).step_by(31) {
@@ -149,7 +149,7 @@ const CONFIRMED: Duration = Duration::from_secs(8);
 
 /// The deliberate faults of the virtual gateway.
 #[test]
-fn a_bad_gateway_is_got_along_with() {
+fn a_faulty_gateway_is_tolerated() {
     for fault in ["drop:0.05", "garbage:0.03", "delay:40"] {
         for seed in 0..4 {
             let mut stand = Stand::new(&format!("{QUERY}&seed={seed}&fault={fault}"));
@@ -166,7 +166,7 @@ fn a_bad_gateway_is_got_along_with() {
 /// Issue 22.6: reading is cut off while a cam program is selected, and nothing more can be sent. The next run returns the
 /// encoder to its earlier mode, not to the program in which it was left.
 #[test]
-fn a_run_that_was_cut_off_reading_cams_is_led_back_by_the_next() {
+fn an_interrupted_cam_read_is_led_back_by_the_next_run() {
     let save = || InterbusJob::Save { programs: true };
     for (query, found) in [
         ("steps=3600&revolutions=1&serial=77&cams=demo", StartupMode::K3),
@@ -203,7 +203,7 @@ fn a_run_that_was_cut_off_reading_cams_is_led_back_by_the_next() {
 
 /// Issue 22.6: a mode that no run has set is another master's choice.
 #[test]
-fn a_mode_that_somebody_has_chosen_since_stays() {
+fn a_mode_chosen_by_another_master_is_kept() {
     let query = "steps=3600&revolutions=1&serial=77&cams=demo";
     let mut whole = Stand::new(query);
     whole.run(InterbusJob::Save { programs: false }).unwrap();

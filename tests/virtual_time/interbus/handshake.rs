@@ -50,7 +50,7 @@ fn the_worked_example_is_sent_word_by_word() {
 
 /// Echoes of the same code with other data, busy words, and an echo that disappears in the next cycle.
 #[test]
-fn nothing_but_the_exact_echo_that_stands_counts() {
+fn only_a_stable_exact_echo_counts() {
     let cases: [(&str, &[u32]); 6] = [
         ("busy", &[0xC000_0000, 0xC000_0000, 0xC000_0000, 0xC200_00FF]),
         ("busy with data", &[0xC000_00FF, 0xC000_00FF, 0xC000_00FF, 0xC200_00FF]),
@@ -72,7 +72,7 @@ fn nothing_but_the_exact_echo_that_stands_counts() {
 
 /// Reference 2: each error word, at each word of the worked example; `80000000` and `00000000` follow.
 #[test]
-fn an_error_at_any_step_is_told_and_led_back_from() {
+fn an_error_at_any_step_is_reported_and_led_back() {
     let words = [0x0200_00FF, 0x0400_0001, 0x0600_0003, 0x0800_0000, RUN];
     let errors = [
         (0x8200_0000, "wrong parameter data"),
@@ -98,7 +98,7 @@ fn an_error_at_any_step_is_told_and_led_back_from() {
 }
 
 #[test]
-fn an_edge_beyond_the_range_is_refused_by_the_encoder_as_well() {
+fn an_edge_beyond_the_range_is_refused_by_the_encoder() {
     let script = Script::new().on(0x4E00_0015, &[0x9800_0004]);
     let (ended, _, sent) = carry_out(script, cams(7, 0x15, 0x20, 0x80));
     let interrupted = ended.unwrap_err();
@@ -109,7 +109,7 @@ fn an_edge_beyond_the_range_is_refused_by_the_encoder_as_well() {
 
 /// Reference 5: the start of cam 0 at 0 has the busy word as its echo. It has to be stable for longer.
 #[test]
-fn the_echo_that_looks_busy_stands_for_longer() {
+fn an_echo_equal_to_the_busy_word_must_last_longer() {
     let (ended, steps, sent) = carry_out(Script::new(), cams(0, 0, 0, 1));
     // The script reads back 0 for everything: the mask is not accepted.
     let interrupted = ended.unwrap_err();
@@ -128,7 +128,7 @@ fn the_echo_that_looks_busy_stands_for_longer() {
 
 /// A gateway returns the same word until it has read the bus: reading it more often does not make it older.
 #[test]
-fn a_word_stands_by_time_and_not_by_how_often_it_is_read() {
+fn a_word_is_stable_by_time_and_not_by_read_count() {
     let pace = Duration::from_millis(1);
     let cases: [(&str, u32, usize); 2] = [("an error", 0x8200_0000, 7), ("an echo of other data", 0xC200_0100, 60)];
     for (label, word, reads) in cases {
@@ -142,7 +142,7 @@ fn a_word_stands_by_time_and_not_by_how_often_it_is_read() {
 /// Issue 22.2: manual 5.3, "Encoder sends old confirmation": it may belong to an earlier word, with other data than sent,
 /// with the manufacturer's bit, and late. It does not prove another master.
 #[test]
-fn a_stale_echo_is_waited_out() {
+fn a_stale_echo_is_skipped() {
     // 0.4 to 0.8 s at 5 ms per read; the example's own C2000100 was never sent.
     for (stale, looks) in [(0xC200_0100, 80), (0xC200_0100, 160), (0xE200_00FF, 160), (0xC600_0004, 120)] {
         let old: Vec<u32> = std::iter::repeat_n(stale, looks).chain([0xC800_0000]).collect();
@@ -158,7 +158,7 @@ fn a_stale_echo_is_waited_out() {
 
 /// Issue 22.2: an echo that remains is named after the time-out, without blaming another master.
 #[test]
-fn an_echo_that_stays_is_named_after_the_time_out() {
+fn a_persistent_echo_is_named_after_the_timeout() {
     let (ended, ..) = carry_out(Script::new().on(STEPS, &[0xC600_0004]), worked_example());
     let cause = ended.unwrap_err().cause;
     let expected = "no acknowledgement after OUT 020000FF within 2000 ms; IN is C6000004, the acknowledgement of another \
@@ -229,7 +229,7 @@ fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
 /// Modbus application protocol 1.1b3, chapter 7: with 01 to 03 nothing was written; with any other the gateway may have
 /// passed the word on.
 #[test]
-fn a_word_that_a_gateway_may_have_written_is_led_back_from() {
+fn a_word_the_gateway_may_have_written_is_led_back() {
     for (code, wrote) in [(0x02, false), (0x04, true), (0x06, true), (0x0B, true), (0x0B, false)] {
         let script = Script { refuses: Some((STEPS, code, wrote)), ..Script::new() };
         let (ended, _, sent) = carry_out(script, worked_example());
@@ -249,7 +249,7 @@ fn a_word_that_a_gateway_may_have_written_is_led_back_from() {
 
 /// A word that is already on OUT has no edge.
 #[test]
-fn leading_back_makes_an_edge_of_run() {
+fn leading_back_creates_a_run_edge() {
     let script = Script { out: RUN, input: 0xC200_00FF, ..Script::new() };
     let (sent, mut station) = (script.sent.clone(), station(""));
     assert_eq!(Master::over(script, &mut station).end_what_was_left(), Ok(StartupMode::K3));
@@ -258,7 +258,7 @@ fn leading_back_makes_an_edge_of_run() {
 
 /// The shaft is already two steps from the preset: the preset counts as applied only when the position equals it.
 #[test]
-fn a_preset_is_fired_until_the_position_is_it() {
+fn a_preset_is_fired_until_the_position_matches() {
     let fire = || vec![Op::FirePreset { value: POSITION + 2 }];
     let near: Vec<u32> = std::iter::repeat_n(POSITION, 6).chain([POSITION + 2]).collect();
     let (ended, steps, sent) = carry_out(Script::new().on(0x4000_0000, &near), fire());
@@ -273,7 +273,7 @@ fn a_preset_is_fired_until_the_position_is_it() {
 
 /// The program is selected first, and confirmed before any word with another meaning in position mode.
 #[test]
-fn cam_words_follow_a_mode_that_was_confirmed() {
+fn cam_words_are_sent_only_in_a_confirmed_mode() {
     let (_, _, sent) = carry_out(Script::new(), cams(3, 15, 213, 8));
     let first = sent.iter().position(|word| *word == 0x4600_000F).unwrap();
     assert_eq!(sent[first - 5..first], [0x2080_0001, RUN, 0, 0x2021_0009, 0], "{sent:08X?}");
@@ -287,18 +287,18 @@ fn cam_words_follow_a_mode_that_was_confirmed() {
 }
 
 #[test]
-fn another_master_is_told_by_what_stands_in_out() {
+fn another_master_is_detected_by_the_out_word() {
     let script = Script { output: Some(0x2040_0001), ..Script::new() }.on(STEPS, &[POSITION]);
     let interrupted = carry_out(script, worked_example()).0.unwrap_err();
     assert_eq!(interrupted.cause, Error::OtherMaster { sent: STEPS, output: 0x2040_0001 });
     assert_eq!(
         interrupted.cause.to_string(),
-        "another master writes to the encoder: OUT is 20400001 where 020000FF was written"
+        "another master writes to the encoder: OUT is 20400001, but 020000FF was written"
     );
 }
 
 #[test]
-fn a_missing_echo_position_or_value_is_named_with_its_words() {
+fn a_missing_echo_position_or_value_is_reported_with_its_words() {
     for (word, awaited) in [(STEPS, Awaited::Echo), (RUN, Awaited::Run)] {
         let script = Script::new().on(word, &[0xC000_0000]).on(word, &[POSITION]);
         let (ended, _, sent) = carry_out(script, parameters(&[(Parameter::Steps, 255)]));
@@ -320,7 +320,7 @@ fn a_missing_echo_position_or_value_is_named_with_its_words() {
 }
 
 #[test]
-fn halves_that_are_exchanged_are_suspected() {
+fn swapped_words_are_suspected() {
     let mut station = station("");
     // 1234h in the first register, 0 in the second.
     let script = Script::new().on(0x2021_0009, &[0x1234_0000]);
@@ -331,7 +331,7 @@ fn halves_that_are_exchanged_are_suspected() {
 /// The manual does not define what ends a mode: an encoder that returns to its position with `00000000` is kept in its mode
 /// with the word that keeps it.
 #[test]
-fn an_encoder_that_leaves_its_mode_with_normal_running_is_kept_in_it() {
+fn an_encoder_that_would_leave_its_mode_is_kept_in_it() {
     for (mode, holds) in [(5, RUN), (2, 0x2040_0001)] {
         let script = Script { normal_ends_modes: true, ..Script::in_mode(mode) };
         let sent = script.sent.clone();
@@ -355,7 +355,7 @@ fn an_encoder_that_leaves_its_mode_with_normal_running_is_kept_in_it() {
 
 /// The value of a question about a cam may remain after `00000000`: bit 16 is clear in the question as well.
 #[test]
-fn values_of_cams_are_left_with_run_where_normal_running_does_not() {
+fn cam_read_outs_are_ended_with_run_if_needed() {
     let script = Script { normal_keeps_values: true, ..Script::new() }
         .on(0x2020_0013, &[0xA000_0015])
         .on(0x2020_0023, &[0xA000_0015, 0xA000_0015, 0xA000_0213]);
@@ -371,7 +371,7 @@ fn values_of_cams_are_left_with_run_where_normal_running_does_not() {
 
 /// Nothing but that question is sent before an encoder has reported its mode.
 #[test]
-fn words_that_mean_something_else_in_the_mode_found_are_not_sent() {
+fn words_with_another_meaning_in_the_current_mode_are_not_sent() {
     let script = Script::in_mode(0x55);
     let sent = script.sent.clone();
     let mut station = station("");

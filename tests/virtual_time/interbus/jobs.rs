@@ -17,7 +17,7 @@ const K3: StartupMode = StartupMode::K3;
 const QUARTER: &str = "steps=4096&revolutions=1&position=2048&serial=123456";
 
 #[test]
-fn the_in_word_alone_touches_nothing() {
+fn reading_the_in_word_writes_nothing() {
     let mut stand = Stand::new(QUARTER);
     for job in [InterbusJob::Hello, InterbusJob::Position] {
         let reading = match stand.run(job).unwrap() {
@@ -31,7 +31,7 @@ fn the_in_word_alone_touches_nothing() {
 }
 
 #[test]
-fn who_is_there_is_read_out_and_the_position_comes_back() {
+fn identify_reads_out_and_returns_to_the_position() {
     let mut stand = Stand::new(QUARTER);
     let stores = stand.stores();
     let identity = match stand.run(InterbusJob::Identify).unwrap() {
@@ -52,7 +52,7 @@ fn who_is_there_is_read_out_and_the_position_comes_back() {
 }
 
 #[test]
-fn everything_that_can_be_read_out_is() {
+fn a_survey_reads_every_read_out() {
     let mut stand =
         Stand::new("steps=360000&revolutions=100&preset=77&zero-shift=5&temperature=-10&operating-time=1000");
     let survey = match stand.run(InterbusJob::Survey).unwrap() {
@@ -83,7 +83,7 @@ fn everything_that_can_be_read_out_is() {
 
 /// The value of a read-out looks like the previous one, which has to disappear first, however long it remains.
 #[test]
-fn old_values_and_busy_words_are_no_values() {
+fn stale_values_and_busy_words_are_ignored() {
     for query in ["stale=3", "stale=30", "busy=200&stale=5", "stale=3&busy=900"] {
         let mut stand = Stand::new(&format!("steps=4000&revolutions=10&serial=99&{query}"));
         let survey = match stand.run(InterbusJob::Survey).unwrap() {
@@ -96,7 +96,7 @@ fn old_values_and_busy_words_are_no_values() {
 }
 
 #[test]
-fn cam_programs_are_selected_read_and_left_again() {
+fn cam_programs_are_selected_read_and_deselected() {
     for (query, found) in [
         ("cams=demo", StartupMode::K3),
         ("cams=demo&selection=output", StartupMode::K3),
@@ -119,7 +119,7 @@ fn cam_programs_are_selected_read_and_left_again() {
 }
 
 #[test]
-fn a_mode_that_is_selected_stays() {
+fn a_selected_mode_is_kept() {
     let mut stand = Stand::new("cams=demo&rpm=60");
     for mode in [
         StartupMode::Velocity,
@@ -149,7 +149,7 @@ fn a_mode_that_is_selected_stays() {
 }
 
 #[test]
-fn each_step_of_the_handshake_is_told_with_its_words() {
+fn each_handshake_step_is_reported_with_its_words() {
     let mut stand = Stand::new("busy=30&serial=7");
     let (ended, steps) = stand.follow(InterbusJob::ReadOut(ReadOut::SERIAL_NUMBER));
     assert!(ended.is_ok());
@@ -161,7 +161,7 @@ fn each_step_of_the_handshake_is_told_with_its_words() {
 }
 
 #[test]
-fn what_is_saved_is_what_the_encoder_holds() {
+fn a_saved_profile_matches_the_encoder() {
     let mut stand = Stand::new("steps=36000&revolutions=10&preset=5&cams=demo&serial=31");
     let stores = stand.stores();
     for programs in [false, true] {
@@ -178,7 +178,7 @@ fn what_is_saved_is_what_the_encoder_holds() {
 }
 
 #[test]
-fn several_encoders_behind_one_gateway_are_told_by_their_registers() {
+fn several_encoders_on_one_gateway_are_selected_by_registers() {
     let gateway = gateway("encoders=3&unit=5&input=100&output=200&order=low-first&serial=40");
     for (query, serial) in
         [("unit=5&input=100&output=200&order=low-first", "40"), ("unit=5&input=104&output=204&order=low-first", "42")]
@@ -192,7 +192,7 @@ fn several_encoders_behind_one_gateway_are_told_by_their_registers() {
 }
 
 #[test]
-fn what_was_left_in_parameterisation_is_named_and_led_back_on_demand() {
+fn an_encoder_left_in_parameterisation_is_led_back_on_request() {
     let mut stand = Stand::new("steps=4096&revolutions=1");
     stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x0200_00FF));
     let error = stand.run(InterbusJob::Identify).unwrap_err();
@@ -232,7 +232,7 @@ fn verdict(lines: &[InterbusStepResult], step: CheckStep) -> Option<Verdict> {
 }
 
 #[test]
-fn the_device_check_has_a_verdict_a_line_and_sets_nothing() {
+fn the_device_check_has_a_verdict_per_line_and_sets_nothing() {
     let mut stand = Stand::new("steps=3600&revolutions=1&serial=8&temperature=41&program=2&cams=demo");
     let stores = stand.stores();
     let lines = checked(&mut stand);
@@ -247,7 +247,7 @@ fn the_device_check_has_a_verdict_a_line_and_sets_nothing() {
 }
 
 #[test]
-fn the_device_check_says_what_is_wrong() {
+fn the_device_check_reports_faults() {
     // Exchanged halves: a step less than 3 000 000 is 2DC6BFh, which then looks like an echo, and OUT requests nothing.
     let far = gateway("steps=33554431&revolutions=4096&position=3000000&order=low-first");
     let mut stand = Stand::with(far, station(""));
@@ -285,7 +285,7 @@ fn the_device_check_says_what_is_wrong() {
 
 /// A recording is played back by the same jobs, with any numbers of the requests.
 #[test]
-fn a_recorded_trace_answers_as_the_encoder_did() {
+fn a_recorded_trace_replays_the_encoders_replies() {
     let mut stand = Stand::new("steps=3600&revolutions=1&serial=4711");
     stand.run(InterbusJob::Identify).unwrap();
     let mut file = Vec::new();

@@ -108,7 +108,7 @@ fn an_in_word_is_two_input_registers() {
 }
 
 #[test]
-fn an_out_word_is_two_holding_registers_written_at_once() {
+fn an_out_word_is_two_holding_registers_written_together() {
     let answer = |_: usize, request: &[u8]| match request[7] {
         3 => vec![(1, registers(request, 0x2021_0009))],
         4 => vec![(1, registers(request, 0))],
@@ -129,7 +129,7 @@ fn an_out_word_is_two_holding_registers_written_at_once() {
 
 /// Every request has its own number: a reply to an earlier one is ignored, even if it is the only answer.
 #[test]
-fn a_late_reply_is_not_taken_for_the_next() {
+fn a_late_reply_is_not_mistaken_for_the_next() {
     let answer = |number: usize, request: &[u8]| match number {
         0 => vec![(1025, registers(request, 1))],
         _ => vec![(10, registers(request, 2))],
@@ -150,7 +150,7 @@ fn a_late_reply_is_not_taken_for_the_next() {
 }
 
 #[test]
-fn a_reply_may_come_byte_by_byte() {
+fn a_reply_may_arrive_byte_by_byte() {
     let answer = |_: usize, request: &[u8]| {
         let whole = registers(request, 0x0102_0304);
         whole.iter().zip(1..).map(|(byte, at)| (at * 20, vec![*byte])).collect()
@@ -159,7 +159,7 @@ fn a_reply_may_come_byte_by_byte() {
 }
 
 #[test]
-fn a_refusal_is_told_with_its_cause() {
+fn a_refusal_is_reported_with_its_cause() {
     let cases = [
         (1, 1, "illegal function", "holding registers"),
         (2, 1, "illegal data address", "input= and output="),
@@ -167,7 +167,7 @@ fn a_refusal_is_told_with_its_cause() {
         (4, 5, "server device failure", "INTERBUS runs"),
         (6, 5, "server device busy", "busy"),
         (0xA, 5, "gateway path unavailable", "unit="),
-        (0xB, 5, "gateway target device failed to respond", "lamps and cable"),
+        (0xB, 5, "gateway target device failed to respond", "LEDs and cable"),
         (0x63, 5, "unknown exception", "manual"),
     ];
     for (code, tries, name, cause) in cases {
@@ -189,7 +189,7 @@ fn a_refusal_is_told_with_its_cause() {
 }
 
 #[test]
-fn what_is_no_reply_is_asked_for_again() {
+fn invalid_replies_are_retried() {
     let wrong: [(&str, Vec<u8>, Damage); 6] = [
         ("text", b"HTTP/1.1 400 Bad Request\r\n\r\n".to_vec(), Damage::NoFrame { bytes: 28 }),
         ("another unit", vec![2, 4, 4, 0, 0, 0, 1], Damage::Unit { requested: 1, got: 2 }),
@@ -215,7 +215,7 @@ fn what_is_no_reply_is_asked_for_again() {
 }
 
 #[test]
-fn a_gateway_that_says_nothing_or_never_ends_is_given_up() {
+fn a_silent_or_endless_gateway_times_out() {
     let (ended, requests, took) = read("", |_, _| vec![]);
     assert_eq!(ended.unwrap_err(), Error::NoReply { requested: RequestedItem::Input { register: 0 }, tries: 3 });
     assert_eq!(requests.len(), 3);
@@ -238,7 +238,7 @@ fn a_gateway_that_says_nothing_or_never_ends_is_given_up() {
 
 /// A recording answers with its own numbers.
 #[test]
-fn a_recording_answers_whatever_the_number() {
+fn a_recording_answers_any_transaction_number() {
     let mut station = station("");
     station.recorded = true;
     let answer = |_: usize, request: &[u8]| {

@@ -47,7 +47,7 @@ fn setting(stand: &Stand) -> Vec<u32> {
 }
 
 #[test]
-fn parameters_are_set_in_one_parameterisation_which_is_one_store() {
+fn parameters_are_set_in_one_parameterisation_with_one_store() {
     for faults in ["", "&busy=80&stale=6"] {
         let mut stand = Stand::new(&format!("{SCALED}{faults}"));
         let before = stand.stores();
@@ -77,7 +77,7 @@ fn parameters_are_set_in_one_parameterisation_which_is_one_store() {
 
 /// The issue's measure for the sent words: of 64 cams four differ, in two programs.
 #[test]
-fn only_edges_that_differ_are_sent_and_a_program_is_one_store() {
+fn only_changed_edges_are_sent_and_a_program_needs_one_store() {
     let all: Vec<u8> = (1..=8).collect();
     for faults in ["", "&busy=40&stale=3", "&selection=output", "&program=5"] {
         let mut stand = Stand::new(&format!("{SCALED}{faults}"));
@@ -107,7 +107,7 @@ fn only_edges_that_differ_are_sent_and_a_program_is_one_store() {
 }
 
 #[test]
-fn the_shift_of_the_window_rides_along_or_is_set_alone() {
+fn the_shift_is_set_with_a_program_or_alone() {
     for (programs, edges, stores) in [(&[3][..], 1, 1), (&[], 0, 1)] {
         let mut stand = Stand::new(SCALED);
         let before = stand.stores();
@@ -126,7 +126,7 @@ fn the_shift_of_the_window_rides_along_or_is_set_alone() {
 }
 
 #[test]
-fn a_preset_is_stored_and_fired_once_where_the_shaft_stands() {
+fn a_preset_is_stored_and_fired_once_at_standstill() {
     for found in ["", "&program=2"] {
         let mut stand = Stand::new(&format!("{SCALED}{found}"));
         let before = stand.left();
@@ -153,7 +153,7 @@ fn a_preset_is_refused_while_the_shaft_turns() {
 }
 
 #[test]
-fn the_default_is_set_and_what_it_is_is_read() {
+fn the_default_is_set_and_then_read_back() {
     let mut stand = Stand::new(SCALED);
     let before = stand.stores();
     let prepared = stand.prepare(Change::Default);
@@ -165,7 +165,7 @@ fn the_default_is_set_and_what_it_is_is_read() {
 }
 
 #[test]
-fn a_restore_writes_what_differs_and_leaves_the_mounting_of_another() {
+fn a_restore_writes_differences_and_keeps_another_encoders_mounting() {
     let mut first = Stand::new("steps=3600&revolutions=1&preset=99&serial=1&cams=demo");
     let profile = match first.run(InterbusJob::Save { programs: true }).unwrap() {
         InterbusOutput::Saved(profile) => profile,
@@ -193,7 +193,7 @@ fn a_restore_writes_what_differs_and_leaves_the_mounting_of_another() {
 }
 
 #[test]
-fn what_changed_since_the_plan_stops_the_write() {
+fn a_change_since_the_plan_stops_the_write() {
     let moment = |stand: &Stand| stand.clock.now();
     // Another master sets the preset: 08000001, and runs.
     let mut stand = Stand::new(SCALED);
@@ -217,7 +217,7 @@ fn what_changed_since_the_plan_stops_the_write() {
 }
 
 #[test]
-fn a_consent_is_for_its_plan_alone() {
+fn a_consent_covers_only_its_plan() {
     let mut stand = Stand::new(SCALED);
     let prepared = stand.prepare(Change::Preset { value: 1 });
     let consent = Consent::to(stand.prepare(Change::Preset { value: 2 }).plan.id());
@@ -278,7 +278,7 @@ fn the_logbook_counts_stores_by_serial_number() {
 /// Issue 22.3: an encoder may store a program when it is left (manual 5.4.4), changed or not. Each program that was
 /// selected for reading counts once; the store of a changed one belongs to the write.
 #[test]
-fn programs_that_are_read_count_as_stores() {
+fn reading_programs_counts_as_stores() {
     let mut stand = Stand::new(SCALED);
     stand.run(InterbusJob::Survey).unwrap();
     stand.run(InterbusJob::Check).unwrap();
@@ -308,7 +308,7 @@ fn programs_that_are_read_count_as_stores() {
 
 /// Less one: the encoder's 3599 are 3600 steps.
 #[test]
-fn steps_less_one_are_read_and_written_as_they_are() {
+fn steps_less_one_are_read_and_written_unchanged() {
     let mut stand = Stand::new("steps=3600&revolutions=1&steps-minus-one=on");
     let identity = match stand.run(InterbusJob::Identify).unwrap() {
         InterbusOutput::Identity(identity) => *identity,
@@ -325,7 +325,7 @@ fn steps_less_one_are_read_and_written_as_they_are() {
 
 /// A cancellation takes effect between two words; then the encoder runs again, in its original mode.
 #[test]
-fn a_wish_to_end_leaves_an_encoder_that_runs() {
+fn cancelling_leaves_a_running_encoder() {
     let wanted = |stand: &mut Stand| {
         edited(stand, &[6], |wanted| {
             wanted.parameters.zero_shift = 3;
@@ -365,7 +365,7 @@ fn a_wish_to_end_leaves_an_encoder_that_runs() {
 }
 
 #[test]
-fn an_operation_tells_what_it_changes() {
+fn an_operation_reports_its_changes() {
     let mut stand = Stand::new(SCALED);
     let prepared = stand.prepare(Change::Preset { value: 7 });
     assert!(matches!(prepared.plan.ops.as_slice(), [Op::Parameterise(_), Op::FirePreset { value: 7 }]));
@@ -383,7 +383,7 @@ fn an_operation_tells_what_it_changes() {
 
 /// It is already near, and returns old words; afterwards it returns the preset.
 #[test]
-fn a_preset_near_the_shaft_s_position_is_set_to_the_step() {
+fn a_preset_near_the_shafts_position_is_set_to_the_step() {
     for (preset, faults) in [(102, "stale=6"), (98, "stale=6&busy=60"), (101, "stale=6"), (102, "stale=0")] {
         let mut stand = Stand::new(&format!("steps=8192&revolutions=1&serial=77&position=100&{faults}"));
         assert_eq!(stand.session.sample().unwrap().position(), Some(100));
@@ -396,7 +396,7 @@ fn a_preset_near_the_shaft_s_position_is_set_to_the_step() {
 
 /// IN is 86000000 all the time: the content was lost. The remedy in the message has to work.
 #[test]
-fn an_encoder_with_lost_parameters_is_led_back_and_restored() {
+fn an_encoder_with_lost_parameters_can_be_led_back_and_restored() {
     let mut stand = Stand::new("steps=360&revolutions=1&cams=demo&serial=5&fault=die-in-store:1");
     let profile = match stand.run(InterbusJob::Save { programs: true }).unwrap() {
         InterbusOutput::Saved(profile) => profile,

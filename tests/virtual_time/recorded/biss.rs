@@ -69,7 +69,7 @@ fn a_restore_is_as_recorded() {
 }
 
 #[test]
-fn procedures_led_by_a_person_are_as_recorded() {
+fn guided_procedures_are_as_recorded() {
     recorded("calibration", |_| calibration(), 7);
     recorded("wiegand-test", |_| wiegand_test(false), 7);
     recorded("wiegand-test-saved", |_| wiegand_test(true), 7);

@@ -22,7 +22,7 @@ fn set(stand: &mut Stand, asking: Asking) -> Result<Identity, Error> {
 }
 
 #[test]
-fn who_the_adapter_is_and_how_words_are_taken() {
+fn hello_reports_the_adapter_and_the_word_settings() {
     let mut stand = Stand::new("voltage=24&clock=700000", "supply=switched");
     let error = stand.session.run_inline(SsiJob::Hello).unwrap_err();
     assert!(matches!(error, Error::Adapter(AdapterError::Refused { operation: Operation::Supply, .. })), "{error}");
@@ -45,7 +45,7 @@ fn who_the_adapter_is_and_how_words_are_taken() {
 }
 
 #[test]
-fn the_supply_stays_off_where_nobody_wishes_it() {
+fn the_supply_stays_off_unless_requested() {
     let mut stand = Stand::new("", "supply=switched");
     assert_eq!((hello(&mut stand).supply, stand.count(Operation::Supply)), (None, 0));
 }
@@ -53,7 +53,7 @@ fn the_supply_stays_off_where_nobody_wishes_it() {
 /// ATM60 with factory settings, 12 bits of turns and 13 of steps in Gray; the shaft is at turn 1234h, 270°: turn 234h of
 /// 4096, step 1800h of 8192, of which 0x469800 ^ 0x234C00 is the Gray code.
 #[test]
-fn a_word_is_taken_as_it_is_asked_for() {
+fn a_word_is_read_with_the_requested_clocks() {
     let mut stand = Stand::new("", "ssi=atm60,code=gray&position=0x24698000");
     let words = stand.read();
     assert_eq!((words.words.as_slice(), words.clocks, words.first, words.lost), (&[0x65_D400][..], 25, 0, 0));
@@ -70,7 +70,7 @@ fn a_word_is_taken_as_it_is_asked_for() {
 
 /// A setting that the adapter refuses leaves everything as it was.
 #[test]
-fn words_go_on_as_before_where_a_setting_is_refused() {
+fn a_refused_setting_keeps_the_previous_one() {
     let mut stand = Stand::quick("rpm=60");
     assert_eq!(stand.read().clocks, 25);
     for asking in [Asking { clocks: 0, ..QUICK }, Asking { clocks: 65, ..QUICK }, Asking { clock_hz: 1000, ..QUICK }] {
@@ -85,7 +85,7 @@ fn words_go_on_as_before_where_a_setting_is_refused() {
 }
 
 #[test]
-fn an_adapter_of_another_version_is_refused_with_both_named() {
+fn an_adapter_of_another_version_is_refused_naming_both() {
     let mut stand = Stand::new("", "version=2");
     let error = stand.session.run_inline(SsiJob::Hello).unwrap_err();
     assert_eq!(error, Error::Adapter(AdapterError::Version { expected: 1, got: 2 }));
@@ -93,7 +93,7 @@ fn an_adapter_of_another_version_is_refused_with_both_named() {
 
 /// The adapter has never answered: the request is repeated once, as in the reference.
 #[test]
-fn a_silent_adapter_is_told_after_two_tries() {
+fn a_silent_adapter_is_reported_after_two_tries() {
     let mut stand = Stand::new("", "fault=silent-after:0");
     let error = stand.session.run_inline(SsiJob::Hello).unwrap_err();
     assert_eq!((error, stand.count(Operation::Hello)), (Error::Adapter(AdapterError::Silent), 2));
@@ -101,7 +101,7 @@ fn a_silent_adapter_is_told_after_two_tries() {
 
 /// One byte in a hundred is lost, so that a quarter of all exchanges fails; the values read are right nevertheless.
 #[test]
-fn words_are_asked_for_again_on_a_line_that_loses_bytes() {
+fn words_are_requested_again_on_a_lossy_line() {
     for seed in 0..20 {
         let mut stand = Stand::new("", &format!("position=0x24698000&seed={seed}&fault=drop:0.01"));
         for _ in 0..50 {

@@ -34,7 +34,7 @@ fn check(runs: &[Words]) {
 }
 
 #[test]
-fn slow_polling_asks_word_by_word() {
+fn slow_polling_reads_word_by_word() {
     let mut stand = Stand::quick(TURNING);
     stand.session.pace(Some(Duration::from_millis(5)));
     let mut samples: Vec<Words> = (0..4).map(|_| stand.sample()).collect();
@@ -51,7 +51,7 @@ fn slow_polling_asks_word_by_word() {
 }
 
 #[test]
-fn what_is_wished_closer_than_one_can_ask_is_streamed() {
+fn short_polling_intervals_are_streamed() {
     let mut stand = Stand::quick(TURNING);
     stand.session.pace(Some(FAST));
     let runs = stand.samples(Duration::from_secs(3));
@@ -91,7 +91,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
 
 /// A requested stream continues, with the new width from its first word on.
 #[test]
-fn words_are_taken_otherwise_while_a_stream_is_wished() {
+fn changed_settings_apply_to_a_running_stream() {
     let mut stand = Stand::quick(TURNING);
     stand.session.pace(Some(FAST));
     check(&stand.samples(Duration::from_millis(100)));
@@ -108,7 +108,7 @@ fn words_are_taken_otherwise_while_a_stream_is_wished() {
 
 /// 25 clocks at 500 kHz are 50 µs, and 200 µs of pause.
 #[test]
-fn what_clock_and_pause_do_not_allow_is_told() {
+fn a_clock_or_pause_too_slow_for_the_interval_is_reported() {
     let mut slow = Stand::new("clock=500000&pause=200", TURNING);
     slow.session.pace(Some(FAST));
     let run = slow.sample();
@@ -119,7 +119,7 @@ fn what_clock_and_pause_do_not_allow_is_told() {
 }
 
 #[test]
-fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
+fn a_lost_wire_ends_the_stream_and_a_restored_one_starts_another() {
     let mut stand = Stand::quick(TURNING);
     stand.session.pace(Some(FAST));
     stand.sample();
@@ -136,7 +136,7 @@ fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
 
 /// A reset ends the stream and clears supply and clock: the next job, or the next sample, detects it and continues.
 #[test]
-fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
+fn an_adapter_reset_while_streaming_is_configured_again() {
     let query = "supply=switched&rpm=60";
     for by_job in [true, false] {
         let mut stand = Stand::new("clock=1500000&pause=30&voltage=5", query);
@@ -157,7 +157,7 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
 
 /// With single requests, it is detected with the next one.
 #[test]
-fn an_adapter_that_was_reset_between_two_words_is_set_again() {
+fn an_adapter_reset_between_two_words_is_configured_again() {
     let query = "supply=switched&rpm=60";
     let mut stand = Stand::new("voltage=5", query);
     stand.session.pace(Some(Duration::from_millis(100)));
@@ -170,7 +170,7 @@ fn an_adapter_that_was_reset_between_two_words_is_set_again() {
 
 /// Damaged packets are counted as missing before the next, and no word is wrong.
 #[test]
-fn what_gets_lost_on_the_way_is_told() {
+fn packets_lost_in_transit_are_reported() {
     let mut stand = Stand::quick(&format!("{TURNING}&seed=3&fault=drop:0.001"));
     stand.session.pace(Some(FAST));
     let runs = stand.samples(Duration::from_secs(2));

@@ -144,11 +144,11 @@ pub(super) fn jog(desk: &mut Desk, direction: Direction, steps: i32) {
         own.seen(own.drive()).position.is_some_and(|position| (position - from).abs() >= steps)
     });
     act(desk, Hiperdrive::Drive(Motor::JogRelease));
-    stands(desk);
+    until_stopped(desk);
 }
 
 #[track_caller]
-pub(super) fn stands(desk: &mut Desk) {
+pub(super) fn until_stopped(desk: &mut Desk) {
     desk.until("it stands", |studio| {
         studio.hiperdrive().is_some_and(|own| !own.is_moving() && !own.seen(own.drive()).moves)
     });
@@ -297,7 +297,7 @@ pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&Unit) -
         if !has_lapsed(&desk.studio, drive, before) {
             return;
         }
-        stands(desk);
+        until_stopped(desk);
         desk.until("it may go", |studio| {
             let own = studio.hiperdrive().unwrap();
             own.axis().unwrap().ask(Button::Go(place), &own.seen(drive)).is_ok()
@@ -311,7 +311,7 @@ pub(super) fn tested(mut desk: Desk) -> Desk {
         go(&mut desk, place, |own| own.axis().unwrap().outcome(place).is_some());
         let outcome = axis(&desk).outcome(place).unwrap();
         assert!(outcome.is_good(), "{place:?}: {outcome:?}");
-        stands(&mut desk);
+        until_stopped(&mut desk);
     }
     desk
 }

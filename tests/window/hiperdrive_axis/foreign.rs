@@ -25,7 +25,7 @@ fn set_by_another(desk: &Desk) {
 /// Issue 21.6 (c): the position jumps while the axis is at standstill, and everything based on the reference becomes
 /// invalid.
 #[test]
-fn a_reference_set_again_at_another_place_is_noticed() {
+fn a_reference_changed_by_another_master_is_detected() {
     let mut desk = elsewhere();
     assert_eq!(axis(&desk).fallen(), None);
     set_by_another(&desk);
@@ -38,7 +38,7 @@ fn a_reference_set_again_at_another_place_is_noticed() {
 
 /// Issue 21.6 (c): while the connection is lost it may have been moved as well: that is reported, without a conclusion.
 #[test]
-fn a_reference_set_again_while_the_line_is_gone_is_told() {
+fn a_position_change_while_disconnected_is_reported() {
     let mut desk = elsewhere();
     let target = unit(&desk).target.clone().unwrap();
     target.set_faults(&"silent-after:0".parse().unwrap());

@@ -15,7 +15,7 @@ fn analysed(made: &Made) -> Analysis {
 }
 
 #[test]
-fn missing_samples_are_told_and_leave_the_frequency_right() {
+fn missing_samples_are_reported_and_do_not_change_the_frequency() {
     let mut capture = made(|time| 2_000.0 * time, plain);
     for column in [&mut capture.time, &mut capture.sine, &mut capture.cosine] {
         // 2.003 ms, a quarter of a period short of a whole number of them.
@@ -29,7 +29,7 @@ fn missing_samples_are_told_and_leave_the_frequency_right() {
 }
 
 #[test]
-fn a_time_that_goes_back_is_told() {
+fn a_backward_time_step_is_reported() {
     let mut capture = made(|time| 2_000.0 * time, plain);
     let shift = capture.time[20_000];
     capture.time.iter_mut().skip(20_000).for_each(|time| *time -= shift);
@@ -38,7 +38,7 @@ fn a_time_that_goes_back_is_told() {
 }
 
 #[test]
-fn a_shaft_that_turns_back_has_the_mean_of_both_directions() {
+fn a_reversing_shaft_has_the_mean_speed_of_both_directions() {
     // 12 periods in both directions, eight times per second: 0.4 s are 3.2 of these, 153.6 periods and the path of the
     // rest.
     let capture = made(|time| 12.0 * (TAU * 8.0 * time).sin(), plain);
@@ -48,7 +48,7 @@ fn a_shaft_that_turns_back_has_the_mean_of_both_directions() {
 }
 
 #[test]
-fn few_samples_a_period_are_told() {
+fn too_few_samples_per_period_are_reported() {
     for (hertz, followed) in [(20_000.0, true), (24_000.0, true), (26_000.0, false), (49_000.0, false)] {
         let capture = made(|time| hertz * time, plain);
         let found = found(&capture);
@@ -62,7 +62,7 @@ fn few_samples_a_period_are_told() {
 }
 
 #[test]
-fn beside_a_disturbance_the_parameters_are_uncertain() {
+fn a_disturbance_makes_the_parameters_uncertain() {
     let uncertain = |what: &FindingKind| match what {
         FindingKind::Uncertain { share } => Some(*share),
         _ => None,
@@ -76,7 +76,7 @@ fn beside_a_disturbance_the_parameters_are_uncertain() {
 }
 
 #[test]
-fn a_correction_that_harms_is_told() {
+fn a_harmful_correction_is_reported() {
     // In opposite phase: the distance from the ellipse repeats twice per period, which looks like a gain of 1.04.
     let third =
         |_, angle: f64, (sine, cosine)| (sine - 0.01 * (3.0 * angle).sin(), cosine - 0.01 * (3.0 * angle).cos());
@@ -94,7 +94,7 @@ fn a_correction_that_harms_is_told() {
 }
 
 #[test]
-fn columns_against_ground_are_told_instead_of_an_offset() {
+fn single_ended_columns_are_reported_instead_of_an_offset() {
     for amplitude in [0.5, 1.0] {
         let capture = made(steady, |_, _, (sine, cosine)| (2.5 + amplitude * sine, 2.6 + amplitude * cosine));
         let finding = capture.finding();
@@ -110,7 +110,7 @@ fn columns_against_ground_are_told_instead_of_an_offset() {
 }
 
 #[test]
-fn a_shaft_that_stands_is_told_so() {
+fn a_shaft_at_rest_is_reported() {
     for periods in [0.0, 0.13, 0.5, 0.88] {
         let capture = made(|_| periods, plain);
         assert_eq!(Analysis::of(capture.record().samples).unwrap_err(), AnalysisError::AtRest, "{periods}");

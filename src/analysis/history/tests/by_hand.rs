@@ -38,7 +38,7 @@ fn a_pixel_column_has_first_min_max_and_last() {
 }
 
 #[test]
-fn few_samples_are_given_as_they_are_with_their_neighbours() {
+fn few_samples_are_returned_raw_with_their_neighbours() {
     let values: Vec<f64> = (0..20).map(f64::from).collect();
     let picture = picture(&history(&values, &[]), 50, 80, 30);
     assert!(picture.raw);
@@ -49,7 +49,7 @@ fn few_samples_are_given_as_they_are_with_their_neighbours() {
 }
 
 #[test]
-fn one_bad_sample_of_a_hundred_thousand_is_seen() {
+fn one_bad_sample_in_a_hundred_thousand_is_visible() {
     let mut values = vec![1.0; 100_000];
     values[54_321] = 1e9;
     let mut flags = vec![Flags::NONE; values.len()];
@@ -68,7 +68,7 @@ fn one_bad_sample_of_a_hundred_thousand_is_seen() {
 }
 
 #[test]
-fn what_is_no_number_is_a_flagged_break() {
+fn not_a_number_is_a_flagged_break() {
     let picture = picture(&history(&[1.0, 2.0, f64::NAN, f64::INFINITY, 5.0, 6.0], &[]), 0, 60, 6);
     let found: Vec<_> =
         picture.pixels.iter().map(|pixel| (pixel.values.map(|values| values.first), pixel.joined)).collect();
@@ -78,7 +78,7 @@ fn what_is_no_number_is_a_flagged_break() {
 }
 
 #[test]
-fn nothing_but_bad_samples_is_still_shown() {
+fn a_history_of_only_bad_samples_is_shown() {
     let values = vec![f64::NAN; 3 * BLOCK];
     let history = history(&values, &[]);
     let picture = picture(&history, 0, 10 * values.len() as i64, 10);
@@ -88,7 +88,7 @@ fn nothing_but_bad_samples_is_still_shown() {
 }
 
 #[test]
-fn a_pause_and_a_told_gap_break_every_column() {
+fn a_pause_and_a_reported_gap_break_every_column() {
     let mut history = History::new(&[Kind::Whole, Kind::Real], 100).with_longest_pause(10);
     history.append(&times([0, 10, 21]), &[Part::whole(&[1, 2, 3]), Part::real(&[1.0, 2.0, 3.0])]).unwrap();
     history.break_before_next();
@@ -102,7 +102,7 @@ fn a_pause_and_a_told_gap_break_every_column() {
 }
 
 #[test]
-fn a_batch_that_does_not_fit_changes_nothing() {
+fn a_mismatched_batch_is_refused_unchanged() {
     let mut history = History::new(&[Kind::Real], 100);
     history.append(&times([5, 5]), &[Part::real(&[1.0, 2.0])]).unwrap();
     let cases: [(&str, &[i64], &[Part<'_>], Refused); 6] = [
@@ -156,7 +156,7 @@ fn noise_on_a_large_position_keeps_its_deviation() {
 }
 
 #[test]
-fn steps_stay_single_steps_at_a_large_position() {
+fn single_steps_are_resolved_at_a_large_position() {
     let mut history = History::new(&[Kind::Whole], 10 * BLOCK);
     let positions: Vec<i64> = (0..10 * BLOCK as i64).map(|k| (1 << 50) + k % 3).collect();
     history.append(&times(0..10 * BLOCK as i64), &[Part::whole(&positions)]).unwrap();
@@ -187,7 +187,7 @@ fn a_grid_is_anchored_at_multiples_of_its_width() {
 
 /// Blocks of 4096; for 5000 samples two and the one being filled are kept.
 #[test]
-fn what_will_be_the_oldest_is_known_before() {
+fn the_next_oldest_sample_is_predicted() {
     let mut history = History::new(&[Kind::Whole], 5_000);
     assert_eq!(history.oldest_after(1), None);
     let mut next = 0;

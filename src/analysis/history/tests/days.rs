@@ -7,7 +7,7 @@ use crate::analysis::{Motion, Time, Unwrap};
 const MILLISECOND: i64 = 1_000_000;
 
 #[test]
-fn memory_is_little_more_than_the_raw_columns() {
+fn memory_is_close_to_the_raw_columns() {
     let cases: [(&str, &[Kind], bool); 4] = [
         ("one column", &[Kind::Real], false),
         ("one column with flags everywhere", &[Kind::Whole], true),

@@ -17,7 +17,7 @@ pub(crate) fn check(text: &Text, error: &dyn std::fmt::Display) {
 }
 
 #[test]
-fn a_wrong_link_is_told_in_both_languages() {
+fn link_errors_are_explained_in_both_languages() {
     for text in ["usb:1", "serial:", "replay:", "tcp:host", "bridge:", "serial:x?baud", "serial:x?baud=1&baud=2"] {
         let error = text.parse::<LinkUrl>().unwrap_err();
         check(&url(&error), &error);
@@ -31,7 +31,7 @@ fn a_wrong_link_is_told_in_both_languages() {
 }
 
 #[test]
-fn wrong_recordings_and_logbooks_are_told_in_both_languages() {
+fn recording_and_logbook_errors_are_explained_in_both_languages() {
     for text in ["", "# encoder-studio trace 1\n0.1 = 40", "# encoder-studio trace 1\n1 > 4G"] {
         let error = read_trace(text).unwrap_err();
         check(&recording(&error), &error);

@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn links_lead_to_an_adapter_or_say_why_not() {
+    fn links_open_an_adapter_or_report_the_reason() {
         for (text, milliseconds) in [
             ("sim:", 20),
             ("sim:?bridge=on&rpm=60&noise=0.1&margin=7", 7),

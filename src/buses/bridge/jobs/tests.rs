@@ -106,7 +106,7 @@ pub(crate) fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
 }
 
 #[test]
-fn what_nobody_fetched_and_what_came_damaged_is_missing_and_counted() {
+fn unfetched_and_damaged_samples_are_counted_as_missing() {
     let mut bench = bench(RawFrames, virtual_adapter("fault=flip:0.00002&seed=1"));
     let before = bench.take(Duration::from_secs(1));
     // The computer slept: the adapter keeps a second.
@@ -126,7 +126,7 @@ fn what_nobody_fetched_and_what_came_damaged_is_missing_and_counted() {
 }
 
 #[test]
-fn a_consumer_that_stops_reading_loses_nothing_unseen() {
+fn samples_lost_by_a_stalled_consumer_are_counted() {
     let Bench { clock, bridge, .. } = bench(RawFrames, virtual_adapter("rpm=60"));
     let stream = Stream::spawn(bridge, 4_000, clock, Arc::new(|| ())).unwrap();
     // Virtual time runs as fast as the thread.
@@ -239,7 +239,7 @@ fn analog(first_index: u32, lost: u16, samples: Vec<(i16, i16)>) -> Message {
 const SINE_COSINE: SineCosine = SineCosine { sample_hz: 100_000 };
 
 #[test]
-fn parts_of_the_full_scale_become_volts_and_gaps_stay_gaps() {
+fn full_scale_values_become_volts_and_gaps_are_kept() {
     let device = puppet(vec![
         analog(0, 0, vec![(32_767, 0), (-32_768, 16_384)]),
         analog(2, 0, vec![]),
@@ -270,7 +270,7 @@ fn parts_of_the_full_scale_become_volts_and_gaps_stay_gaps() {
 
 /// AFS60 with sine and cosine: 5 V, and at most 5.5 V.
 #[test]
-fn a_supply_that_is_wished_is_switched_on_and_never_too_high() {
+fn a_requested_supply_is_switched_on_within_its_limit() {
     for (too_high, expected) in [(400, Ok((5_400, 60))), (600, Err((5_000, 5_600, 5_500)))] {
         let mut device = puppet(vec![analog(0, 0, vec![(1, 1)])]);
         device.capabilities = Capabilities::ANALOG.and(Capabilities::SUPPLY);
@@ -301,7 +301,7 @@ fn a_supply_that_is_wished_is_switched_on_and_never_too_high() {
 }
 
 #[test]
-fn a_stream_whose_start_was_not_answered_is_ended_and_begun_again() {
+fn a_stream_with_an_unanswered_start_is_restarted() {
     let mut device = puppet(vec![analog(0, 0, vec![(1, 1)])]);
     device.swallowed = vec![Operation::AnalogStream];
     let heard = device.heard.clone();
@@ -319,7 +319,7 @@ fn adapter_error(error: BridgeError) -> AdapterError {
 }
 
 #[test]
-fn what_an_adapter_cannot_do_is_told() {
+fn missing_adapter_capabilities_are_reported() {
     let mut lame = puppet(Vec::new());
     lame.capabilities = Capabilities::SSI;
     let error = adapter_error(bench(SINE_COSINE, lame).error());
@@ -338,7 +338,7 @@ fn what_an_adapter_cannot_do_is_told() {
 }
 
 #[test]
-fn a_stream_that_ends_or_begins_anew_by_itself_is_told() {
+fn a_stream_that_ends_or_restarts_by_itself_is_reported() {
     let mut quiet = bench(SINE_COSINE, puppet(vec![analog(0, 0, vec![(1, 1)])]));
     assert_eq!(adapter_error(quiet.error()), AdapterError::Mute);
     assert!(quiet.clock.now().since_start() < Duration::from_secs(6), "three seconds before it began");
@@ -379,7 +379,7 @@ impl ByteLink for Unplugged {
 }
 
 #[test]
-fn a_wire_that_is_gone_or_was_never_there_is_told() {
+fn a_lost_or_missing_wire_is_reported() {
     for portions in [0, 1, 2, 3, 10] {
         let clock = Arc::new(VirtualClock::default());
         let link = SimLink::connect(Arc::new(Mutex::new(virtual_adapter("rpm=60"))), clock.clone());

@@ -88,14 +88,14 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_runs_fast_or_slow_is_followed_for_hours() {
+    fn a_fast_or_slow_clock_is_tracked_for_hours() {
         for parts_per_million in [-100, 100] {
             drift(parts_per_million, 3);
         }
     }
 
     #[test]
-    fn a_clock_that_stood_still_is_found_again() {
+    fn a_stopped_clock_is_resynchronized() {
         let mut drift = Drift::default();
         let at = |ms: i64| Time::from_nanoseconds(ms * MS);
         assert_eq!(drift.time(0, at(500)), at(500));

@@ -387,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn the_adapters_clock_is_narrowed_down_and_found_again() {
+    fn the_adapters_clock_is_estimated_and_resynchronized() {
         let mut clocks = Clocks::default();
         // The local clock is 1000 µs ahead. Request at 2000, sampled at 1100 of the adapter's, reply at 2400.
         assert_eq!(clocks.moment_of(1100, at(2000), at(2400)), at(2200));

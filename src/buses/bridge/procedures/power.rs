@@ -58,7 +58,7 @@ mod tests {
 
     /// Issue 22.16: off, unless it was on before or something else was selected.
     #[test]
-    fn the_supply_is_left_as_it_was_found_or_as_it_was_chosen() {
+    fn the_supply_ends_as_found_or_as_chosen() {
         use SupplyAfter::{AsFound, Off, On};
         let cases = [
             (AsFound, None, true, true),

@@ -71,7 +71,7 @@ mod tests {
 
     /// The examples of the usual description of COBS, without their 00 at the end.
     #[test]
-    fn the_published_examples() {
+    fn published_examples_encode_and_decode() {
         let counting = |first: u8, count: u8| (0..count).map(|at| first.wrapping_add(at)).collect::<Vec<u8>>();
         let cases = [
             (vec![], vec![0x01]),
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_stuffed_is_refused() {
+    fn unstuffed_bytes_are_refused() {
         assert_eq!(decode(&[0x03, 0x11, 0x00]), Err(CobsError::Zero(2)));
         assert_eq!(decode(&[0x03, 0x11]), Err(CobsError::Short(1)));
         assert_eq!(decode(&[0xFF]), Err(CobsError::Short(254)));
@@ -105,14 +105,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_stuffed_comes_back(bytes in proptest::collection::vec(prop_oneof![Just(0u8), any::<u8>()], 0..1200)) {
+        fn stuffed_bytes_round_trip(bytes in proptest::collection::vec(prop_oneof![Just(0u8), any::<u8>()], 0..1200)) {
             let stuffed = encode(&bytes);
             prop_assert!(!stuffed.contains(&0) && stuffed.len() <= bytes.len() + bytes.len() / 254 + 1);
             prop_assert_eq!(decode(&stuffed), Ok(bytes));
         }
 
         #[test]
-        fn full_blocks_come_back(length in 250usize..260, zero in 0usize..520) {
+        fn full_blocks_round_trip(length in 250usize..260, zero in 0usize..520) {
             let mut bytes = vec![7; 2 * length];
             if let Some(byte) = bytes.get_mut(zero) {
                 *byte = 0;

@@ -112,13 +112,13 @@ mod tests {
 
     /// The check value of the catalogue of parametrised CRC algorithms.
     #[test]
-    fn the_published_check_value() {
+    fn published_check_value_matches() {
         assert_eq!(crc16(b"123456789"), 0x29B1);
         assert_eq!(crc16(b""), 0xFFFF);
     }
 
     #[test]
-    fn what_is_no_packet_is_refused() {
+    fn invalid_packets_are_refused() {
         assert_eq!(Packet::parse(&[]), Err(PacketError::Length(0)));
         assert_eq!(Packet::parse(&cobs::encode(&[0xFF, 0xFF])), Err(PacketError::Length(2)));
         let long = Packet { seq: 0, op: 1, body: vec![7; MAX_BODY + 1] }.emit();
@@ -128,7 +128,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_emitted_is_parsed(seq: u8, op: u8, body in proptest::collection::vec(any::<u8>(), 0..=MAX_BODY)) {
+        fn emitted_packets_parse_back(seq: u8, op: u8, body in proptest::collection::vec(any::<u8>(), 0..=MAX_BODY)) {
             let packet = Packet { seq, op, body };
             let bytes = packet.emit();
             prop_assert!(bytes.len() <= Packet::MAX_STUFFED + 1);

@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn packets_are_found_in_any_portions() {
+    fn packets_are_found_in_any_chunks() {
         let sent = [packet(0, 0), packet(1, 20), packet(0, 300), packet(2, 512)];
         let mut bytes = vec![0, 0];
         sent.iter().for_each(|packet| bytes.extend(packet.emit()));
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_broken_is_dropped_and_counted() {
+    fn damaged_packets_are_dropped_and_counted() {
         let mut receiver = Receiver::default();
         let good = packet(1, 20).emit();
         let mut damaged = good.clone();
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_without_an_end_is_not_kept() {
+    fn endless_noise_is_not_buffered() {
         let mut receiver = Receiver::default();
         for _ in 0..100 {
             assert_eq!(packets(&mut receiver, &[0x55; 100]), []);
@@ -120,7 +120,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn after_noise_and_a_zero_packets_are_found(noise: Vec<u8>) {
+        fn packets_are_found_after_noise_and_a_zero(noise: Vec<u8>) {
             let mut receiver = Receiver::default();
             let bytes = [noise, vec![0], packet(3, 9).emit()].concat();
             let found = packets(&mut receiver, &bytes);

@@ -140,7 +140,7 @@ fn packet(bytes: &[u8]) -> Result<Packet, PacketError> {
 }
 
 #[test]
-fn every_request_both_ways() {
+fn every_request_round_trips() {
     let requests = requests();
     assert_eq!(requests.iter().map(|(_, request, _)| request.operation()).collect::<Vec<_>>(), Operation::ALL);
     for (seq, request, text) in requests {
@@ -151,7 +151,7 @@ fn every_request_both_ways() {
 }
 
 #[test]
-fn every_message_both_ways() {
+fn every_message_round_trips() {
     for (seq, message, text) in messages() {
         assert_eq!(hex(&message.emit(seq).emit()), text);
         let packet = packet(&parse_hex(text).unwrap()).unwrap();
@@ -160,7 +160,7 @@ fn every_message_both_ways() {
 }
 
 #[test]
-fn every_flipped_bit_is_found() {
+fn every_flipped_bit_is_detected() {
     let texts = requests().into_iter().map(|(.., text)| text).chain(messages().into_iter().map(|(.., text)| text));
     for text in texts {
         let bytes = parse_hex(text).unwrap();
@@ -178,7 +178,7 @@ fn every_flipped_bit_is_found() {
 
 /// A body that lost its end, or got another byte, is refused, unless the rest is data of any length.
 #[test]
-fn every_cut_body_is_refused() {
+fn every_truncated_body_is_refused() {
     for (seq, request, _) in requests() {
         let whole = request.emit(seq);
         let open_end = request.operation() == Operation::UartTransfer;
@@ -202,14 +202,14 @@ fn every_cut_body_is_refused() {
 }
 
 #[test]
-fn another_version_is_told_with_both() {
+fn a_version_mismatch_names_both_versions() {
     let packet = Packet { seq: 0, op: 0x81, body: vec![2, 1, 2, 3] };
     let error = Message::parse(&packet).unwrap_err();
     assert_eq!(error.to_string(), "the adapter uses version 2 of the bridge protocol, this program version 1");
 }
 
 #[test]
-fn what_is_not_in_this_version_is_told_or_kept() {
+fn unknown_codes_are_reported_or_kept() {
     let packet = |op, body: &[u8]| Packet { seq: 0, op, body: body.to_vec() };
     assert_eq!(Request::parse(&packet(0x50, &[])), Err(BodyError::Operation(0x50)));
     assert_eq!(Request::parse(&packet(0x81, &[])), Err(BodyError::Operation(0x81)));
@@ -231,7 +231,7 @@ fn what_is_not_in_this_version_is_told_or_kept() {
 
 proptest! {
     #[test]
-    fn streams_survive(
+    fn streams_round_trip(
         first_index: u32, t0_us: u64, period_us: u32, lost: u16, width in 1u8..=8, values: Vec<(u8, u64)>,
         samples: Vec<(i16, i16)>,
     ) {

@@ -69,7 +69,7 @@ mod tests {
 
     /// 60 rpm: a revolution of 2^25 steps per second; 65 536 revolutions in all.
     #[test]
-    fn a_turning_shaft_is_where_it_must_be() {
+    fn a_turning_shaft_has_the_expected_position() {
         let mut shaft = Shaft::turning(60.0);
         assert_eq!([0, 250, 1_500].map(|ms| shaft.place(at(ms)).0), [0, 1 << 23, 3 << 24]);
         let copy = shaft.clone();

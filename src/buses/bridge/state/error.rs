@@ -82,7 +82,7 @@ mod tests {
     use crate::link::Query;
 
     #[test]
-    fn each_code_has_words_of_its_own() {
+    fn each_error_code_has_a_distinct_text() {
         let words = |code: u8, language| {
             let text = "streaming".to_owned();
             let code = ErrorCode::new(code);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_adapter_lacks_and_how_its_streams_end_is_told() {
+    fn missing_capabilities_and_stream_ends_are_explained() {
         let name = || "box".to_owned();
         let cause = BodyError::Operation(0x94);
         let cases = [
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_setting_is_told_in_both_languages() {
+    fn setting_errors_are_explained_in_both_languages() {
         let queries = "sed=1 seed=x firmware=1 serial=x rpm=x waver=x position=x temperature=x errors=x filter=x \
                        cycles=x pulses=x calibration=x calibration-silent=x echo=x order=x line=x noise=x ssi=x \
                        ssi-error=x ssi=afs60&ssi-error=x supply=x uart=x motor=x version=x";

@@ -54,7 +54,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn packets_in_any_order() {
+    fn packets_arriving_in_any_order_are_classified() {
         const NEXT: Arrival = Arrival::New { missing: 0 };
         let mut arrivals = Arrivals::default();
         for (sequence, expected) in [
@@ -75,7 +75,7 @@ mod tests {
     proptest! {
         /// In any order of packets, the sequence of accepted ones never goes back.
         #[test]
-        fn what_counts_only_goes_ahead(start: u32, order in proptest::collection::vec(0u32..1000, 1..200)) {
+        fn accepted_sequence_numbers_only_increase(start: u32, order in proptest::collection::vec(0u32..1000, 1..200)) {
             let mut arrivals = Arrivals::default();
             let mut counted: Vec<u32> = Vec::new();
             for at in &order {

@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_found_in_any_portions() {
+    fn frames_are_found_in_any_chunks() {
         let sent = [frame(1, 0), frame(2, 16), frame(3, 600), frame(4, 1), frame(5, Frame::MAX_DATA)];
         let bytes: Vec<u8> = sent.iter().flat_map(Frame::emit).collect();
         for size in [1, 7, 23, 24, 25, 1460, bytes.len()] {
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_length_breaks_the_connection_once_and_for_all() {
+    fn a_wrong_length_breaks_the_connection_permanently() {
         let mut receiver = Receiver::default();
         let mut bytes = frame(1, 4).emit();
         // 65512 is one more than a frame may have.

@@ -222,7 +222,7 @@ mod tests {
 
     /// First, last and broadcast addresses as by `ipaddress.ip_network("192.168.1.64/26")` of Python: 64, 65…126, 127.
     #[test]
-    fn an_address_is_one_that_a_device_can_have() {
+    fn unusable_addresses_are_refused() {
         let own = |text: &str| -> Ipv4Addr { text.parse().unwrap() };
         for (address, mask, gateway) in [
             ("192.168.1.50", "255.255.255.0", "0.0.0.0"),
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn name_servers_and_names_are_looked_at_too() {
+    fn name_servers_and_names_are_checked() {
         let good = InterfaceConfiguration {
             address: Ipv4Addr::new(192, 168, 1, 50),
             mask: Ipv4Addr::new(255, 255, 255, 0),

@@ -18,7 +18,7 @@ fn bytes(text: &str) -> Vec<u8> {
 
 /// Reference 9: RegisterSession, its reply, a request in a session, ListIdentity.
 #[test]
-fn the_published_frames() {
+fn published_frames_match() {
     let zeros = "00 ".repeat(20);
     let register = format!("65 00 04 00 {zeros} 01 00 00 00");
     let get = format!(
@@ -49,7 +49,7 @@ fn the_published_frames() {
 
 /// A reply to an earlier request, to another session or command is none to this one.
 #[test]
-fn what_answers_a_frame() {
+fn a_reply_matches_only_its_own_request() {
     let request = Frame::unconnected(SESSION, [7; 8], vec![0x0E]);
     assert!(request.refusal(EncapsulationStatus::NO_SESSION).answers(&request));
     let other = |change: fn(&mut Frame)| {
@@ -65,7 +65,7 @@ fn what_answers_a_frame() {
 
 /// Reference 9, CIP.
 #[test]
-fn the_published_requests() {
+fn published_requests_match() {
     let cases = [
         ("get 107", "0E 03 20 65 24 01 30 6B", Request::get(0x65, 1, 107)),
         ("get 47", "0E 03 20 64 24 01 30 2F", Request::get(0x64, 1, 47)),
@@ -98,7 +98,7 @@ fn the_published_requests() {
 
 /// A number may be sent wider than necessary, which is preserved; unknown segments are preserved as received.
 #[test]
-fn every_path_survives() {
+fn every_path_round_trips() {
     for (label, text, segments) in [
         ("wide small", "21 00 04 00 24 01", 2),
         ("key", "34 04 F2 03 0C 00 01 00 81 02 20 04 24 68", 3),
@@ -144,7 +144,7 @@ fn open() -> ForwardOpen {
 
 /// Reference 9: 50 bytes; its reply; ForwardClose.
 #[test]
-fn the_published_connection() {
+fn published_connection_matches() {
     let text = "54 02 20 06 24 01 03 FA 00 00 00 00 01 00 01 00 01 00 34 12 CD AB 00 00 01 00 00 00 10 27 00 00 16 48 \
                 10 27 00 00 12 48 01 04 20 04 24 68 2C 64 2C 65";
     assert_eq!(hex(&open().request().emit()), text);
@@ -201,7 +201,7 @@ fn a_connection_ends_or_is_refused() {
 
 /// Reference 7: the sizes of the table, bit by bit, and the variant with multicast.
 #[test]
-fn the_published_network_parameters() {
+fn published_network_parameters_match() {
     use NetworkType::{Multicast, PointToPoint};
     for (kind, size, word) in [
         (PointToPoint, 22, 0x4816),
@@ -234,7 +234,7 @@ fn the_published_network_parameters() {
 
 /// Reference 9, UDP both ways.
 #[test]
-fn the_published_cyclic_packets() {
+fn published_cyclic_packets_match() {
     let to_target = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 01 00 01 00 00 00 39 04 64 64 00 80 02 00 00 00 \
                      00 00 00 00 00 00";
     let back =
@@ -262,7 +262,7 @@ fn the_published_cyclic_packets() {
 /// vendor 1010 = 03F2h, type 12, product 1, revision 1.2, status 0030h, serial number 4711 = 1267h, a text of 10, state 3.
 /// 2 + 16 + 14 + 1 + 10 + 1 = 44 = 2Ch bytes in the item, 2 + 4 + 44 = 50 = 32h in the frame.
 #[test]
-fn a_device_says_who_it_is() {
+fn an_identity_item_is_parsed() {
     let item = "01 00 00 02 AF 12 C0 A8 01 05 00 00 00 00 00 00 00 00 F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 0A 48 49 50 \
                 45 52 44 52 49 56 45 03";
     let text = format!("63 00 32 00 {} 01 00 0C 00 2C 00 {item}", "00 ".repeat(20));
@@ -295,7 +295,7 @@ fn a_device_says_who_it_is() {
 /// By hand: C0A80105h = 192.168.1.5 and so on, low byte first; a text of three with its length in two bytes, and a byte that
 /// fills the word. The low four bits of the control are the source.
 #[test]
-fn where_the_address_comes_from() {
+fn the_interface_configuration_is_parsed() {
     let text = "05 01 A8 C0 00 FF FF FF 01 01 A8 C0 00 00 00 00 00 00 00 00 03 00 6C 61 6E 00";
     let configuration = InterfaceConfiguration {
         address: Ipv4Addr::new(192, 168, 1, 5),
@@ -317,7 +317,7 @@ fn where_the_address_comes_from() {
 }
 
 #[test]
-fn items_say_where_to_send() {
+fn socket_address_items_are_parsed() {
     // By hand: 8000h, 16 bytes; family 2, port 2222 = 08AEh, 10.0.0.7, all high byte first.
     let text = "02 00 00 80 10 00 00 02 08 AE 0A 00 00 07 00 00 00 00 00 00 00 00 01 80 10 00 00 02 08 AE EF 01 02 03 00 \
                 00 00 00 00 00 00 00";
@@ -333,7 +333,7 @@ fn items_say_where_to_send() {
 
 /// Each code is listed once, and an unknown one is reported as unknown.
 #[test]
-fn the_tables_of_status() {
+fn status_tables_match_the_specification() {
     for (code, meaning) in [(0x05, "path unknown"), (0x09, "invalid value"), (0x0E, "attribute cannot be set")] {
         assert_eq!(GeneralStatus::new(code).row().map(|row| row.meaning), Some(meaning));
     }

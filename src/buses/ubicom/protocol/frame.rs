@@ -115,7 +115,7 @@ mod tests {
     ];
 
     #[test]
-    fn the_published_frames() {
+    fn published_frames_match() {
         for text in FRAMES {
             let bytes = parse_hex(text).unwrap();
             let frame = Frame::parse(&bytes).unwrap();
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn every_cut_and_every_flipped_bit_is_refused() {
+    fn truncated_and_damaged_frames_are_refused() {
         for text in FRAMES {
             let bytes = parse_hex(text).unwrap();
             for cut in 0..bytes.len() {
@@ -147,7 +147,7 @@ mod tests {
 
     /// Reference 5: the manual's example is a byte too short.
     #[test]
-    fn the_length_of_the_header_counts() {
+    fn the_length_in_the_header_is_checked() {
         let printed = [0x80, 0x01, 0x01, 0x02, 0x00, 0x00, 0x7B];
         assert_eq!(Frame::parse(&printed), Err(FrameError::Length { expected: 8, got: 7 }));
         let longer = [0x80, 0x01, 0x01, 0x03, 0x00, 0x00, 0x00, 0x7A];
@@ -159,7 +159,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_emitted_is_parsed(address: u8, command: u8, payload in proptest::collection::vec(any::<u8>(), 0..=64)) {
+        fn emitted_frames_parse_back(address: u8, command: u8, payload in proptest::collection::vec(any::<u8>(), 0..=64)) {
             let frame = Frame { address, command, payload: &payload };
             let bytes = frame.emit();
             prop_assert_eq!(Frame::parse(&bytes), Ok(frame));

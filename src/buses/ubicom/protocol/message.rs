@@ -277,7 +277,7 @@ mod tests {
 
     /// Reference 6, and the probe of reference 2.
     #[test]
-    fn the_published_requests() {
+    fn published_requests_match() {
         let cases = [
             (Request::Read { register: 0x0000 }, "80 01 01 02 00 00 00 7B"),
             (Request::Read { register: 0x0026 }, "80 01 01 02 00 26 00 55"),
@@ -302,7 +302,7 @@ mod tests {
 
     /// Reference 6.
     #[test]
-    fn the_published_replies() {
+    fn published_replies_match() {
         let word = |word| Reply::Position(PositionWord::new(word).unwrap());
         let cases = [
             (Reply::Value(0x4B), "80 01 01 01 00 4B 31"),
@@ -323,7 +323,7 @@ mod tests {
 
     /// The probe's frame read in both orders, and the replies of the encoders.
     #[test]
-    fn the_answer_tells_the_order() {
+    fn the_reply_reveals_the_byte_order() {
         let bytes = Request::PROBE.emit(ByteOrder::LowFirst);
         let frame = Frame::parse(&bytes).unwrap();
         assert_eq!(Request::parse(&frame, ByteOrder::LowFirst), Ok(Request::Read { register: 0x0001 }));
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_understood_is_told() {
+    fn unknown_requests_are_reported() {
         let frame = |command, payload| Frame { address: NODE, command, payload };
         let order = ByteOrder::LowFirst;
         assert_eq!(Request::parse(&frame(0x04, &[1]), order), Err(RequestError::Command(0x04)));
@@ -357,7 +357,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn requests_and_replies_survive(register: u16, value: u8, word in 0u64..1 << 40, high_first: bool) {
+        fn requests_and_replies_round_trip(register: u16, value: u8, word in 0u64..1 << 40, high_first: bool) {
             let order = if high_first { ByteOrder::HighFirst } else { ByteOrder::LowFirst };
             let requests =
                 [Request::Read { register }, Request::Write { register, value }, Request::Position { argument: value }];

@@ -37,14 +37,14 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn more_than_forty_bits_are_no_position() {
+    fn a_position_of_more_than_forty_bits_is_refused() {
         assert_eq!(PositionWord::new(1 << 40), None);
         assert_eq!(PositionWord::new((1 << 40) - 1).map(PositionWord::emit), Some([0xFF; 5]));
     }
 
     proptest! {
         #[test]
-        fn five_bytes_are_kept(bytes: [u8; 5]) {
+        fn position_words_round_trip(bytes: [u8; 5]) {
             let word = PositionWord::parse(bytes);
             prop_assert_eq!(word.emit(), bytes);
             prop_assert_eq!(PositionWord::new(word.word()), Some(word));

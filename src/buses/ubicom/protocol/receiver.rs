@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_found_in_any_portions() {
+    fn frames_are_found_in_any_chunks() {
         let text = [READ, VALUE, TRICKY].join(" ");
         let bytes = parse_hex(&text).unwrap();
         for size in 1..=bytes.len() {
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn after_damage_the_next_frame_is_found() {
+    fn the_next_frame_after_damage_is_found() {
         let mut receiver = Receiver::new(NODE);
         assert_eq!(frames(&mut receiver, &format!("55 80 80 {VALUE}")), [VALUE], "noise before");
         assert_eq!(receiver.skipped(), 3);
@@ -140,7 +140,7 @@ mod tests {
 
     /// Reference 6: LEN 3 with two bytes never ends.
     #[test]
-    fn silence_ends_what_has_begun() {
+    fn silence_ends_a_partial_frame() {
         let mut receiver = Receiver::new(NODE);
         assert_eq!(frames(&mut receiver, "80 01 01 03 00 26 00 54"), [""; 0]);
         assert!(receiver.is_waiting());
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn every_cut_is_waited_for_and_dropped() {
+    fn every_partial_frame_is_awaited_and_dropped() {
         let bytes = parse_hex(TRICKY).unwrap();
         for cut in 1..bytes.len() {
             let mut receiver = Receiver::new(NODE);

@@ -20,7 +20,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn broken_descriptions_are_named_with_their_place_and_the_rest_counts() {
+    fn broken_descriptions_are_reported_with_file_and_line() {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at(root.path());
         assert_eq!(descriptions(&store), (Descriptions::built_in(), Vec::new()));

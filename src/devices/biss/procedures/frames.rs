@@ -103,7 +103,7 @@ mod tests {
 
     /// BiSS reference 2: a good frame, the same with an error, the same with a flipped bit.
     #[test]
-    fn a_frame_has_a_reading_or_says_why_not() {
+    fn a_frame_yields_a_reading_or_an_error() {
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };
         let cases = [
             (BissStatus::OK, 0x024_6980_00CF, Ok(reading)),

@@ -206,7 +206,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn distances_go_the_short_way_round() {
+    fn distances_take_the_shorter_direction() {
         assert_eq!(distance(0, (1 << 33) - 1, Some(1 << 33)), 1);
         assert_eq!(distance(5, 3, Some(1 << 33)), 2);
         assert_eq!(distance(0, u64::MAX, None), u64::MAX);

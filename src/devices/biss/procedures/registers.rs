@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_firmware_does_not_have_is_not_asked_for() {
+    fn registers_missing_in_the_firmware_are_not_read() {
         let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().unwrap();
         let errors = kit.with_role(Role::Errors).unwrap();
         assert!(has(errors, Some(Firmware::new(1, 6, 0))));

@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_is_probed_or_usual() {
+    fn omitted_parameters_are_probed_or_default() {
         let station = station("").unwrap();
         assert_eq!(station.to_string(), "UBICOM at 115200 8N1");
         assert_eq!((station.order, station.line.echo), (None, Echo::Unknown));
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_read_from_its_parameters() {
+    fn line_settings_are_parsed_from_parameters() {
         let station =
             station("baud=9600&parity=even&order=high-first&echo=on&timeout=250&margin=5&clock=80000&voltage=4.75")
                 .unwrap();
@@ -352,7 +352,7 @@ mod tests {
 
     /// Issue 22.20: 12 bits of turns, 19 of steps, two flags, and CRC6 43h unless another is given.
     #[test]
-    fn the_frame_of_an_encoder_that_does_not_tell_it_is_given() {
+    fn a_frame_format_can_be_given_in_the_link() {
         let given = |query: &str| station(query).unwrap().given.map(|own| (own.data_bits(), own.crc_bits()));
         assert_eq!(given(""), None);
         assert_eq!(given("mt=12&st=19"), Some((33, 6)));
@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_cannot_be_used_names_what_can() {
+    fn a_rejected_value_names_the_allowed_ones() {
         let cases = [
             ("baud=0", "baud=0 is not valid (allowed: a bit rate from 300 to 4000000 bit/s, usually 115200)"),
             ("parity=mark", "parity=mark is not valid (allowed: none, even or odd)"),
@@ -392,7 +392,7 @@ mod tests {
     /// Manual, appendix 9.1: bank select, mode, password and the data areas keep the values written; the rest are commands,
     /// cannot be written, or are not described.
     #[test]
-    fn reading_back_tells_of_registers_that_keep_what_they_are_given() {
+    fn readback_applies_to_registers_that_keep_their_value() {
         let mut station = Station::new(Transport::ConfigPin, Duration::ZERO);
         let tells = |station: &Station, text: &str| station.tells_back(text.parse().unwrap());
         assert!(tells(&station, "0x40") && !tells(&station, "0x6B"), "nothing is known of the encoder yet");

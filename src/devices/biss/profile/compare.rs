@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_differs_is_listed() {
+    fn only_differences_are_listed() {
         let left = profile("1");
         let mut right = profile("2");
         with_bytes(&mut right, 0x24, &[(0x10, 0xA1), (0x11, 0xA2), (0x13, 0xA3)]);
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn what_one_side_does_not_have_is_missing() {
+    fn values_absent_on_one_side_are_listed() {
         let mut left = profile("1");
         let mut right = profile("1");
         left.data[1].empty = None;

@@ -102,7 +102,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn items_are_read_and_written() {
+    fn items_parse_and_print() {
         for text in ["0x40", "0x7F", "0x44+4", "0x24:0x10", "0x24:0x10+3", "0x43:0x00+64", "0x01:0x02+6"] {
             assert_eq!(text.parse::<RegisterRange>().unwrap().to_string(), text);
         }
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_item_is_told() {
+    fn invalid_items_are_reported() {
         for text in
             ["", "+", "0x24:0x10+", "0x24:0x10+0", "0x24:0x3F+2", "0x7F+2", "0x24:0x10++1", "0x24:0x10+256", "0x66+x"]
         {
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_end_with_their_bank() {
+    fn ranges_end_with_their_bank() {
         let addresses = ["0x7E", "0x7F", "0x00:0x00", "0x24:0x3E", "0x24:0x3F", "0x25:0x00", "0x25:0x02"];
         let runs = RegisterRange::runs(addresses.map(|text| text.parse().unwrap()));
         let names: Vec<String> = runs.iter().map(ToString::to_string).collect();

@@ -65,7 +65,7 @@ mod tests {
     use crate::devices::biss::protocol::{Area, Descriptions, RegisterAddress};
 
     #[test]
-    fn every_operation_says_what_it_changes() {
+    fn every_operation_describes_its_change() {
         let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone();
         let area: Area = kit.areas().iter().find(|area| area.first == 0x24).unwrap().clone();
         let change = |at: u8, new| {

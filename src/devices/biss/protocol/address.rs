@@ -107,7 +107,7 @@ mod tests {
 
     /// UBICOM reference 3.
     #[test]
-    fn the_published_map() {
+    fn published_address_map_matches() {
         let cases = [
             ("0x40", 0x0000),
             ("0x7F", 0x003F),
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_register_is_refused() {
+    fn invalid_register_addresses_are_refused() {
         for text in ["", "0x3F", "0x80", "0x00:0x40", "256:0", "1:", ":1", "0x+5:0", "+66", "-1", "0x24:0x10:0", "x"] {
             assert_eq!(text.parse::<RegisterAddress>(), Err(AddressError(text.to_owned())));
         }
@@ -165,7 +165,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_place_has_one_number(global in 0u16..0x4040) {
+        fn every_address_has_one_number(global in 0u16..0x4040) {
             let address = RegisterAddress::from_global(global).unwrap();
             prop_assert_eq!(address.global(), global);
             prop_assert_eq!(address.to_string().parse(), Ok(address));

@@ -171,7 +171,7 @@ mod tests {
 
     /// Reference 3: header CRC4 over CTS = 1, ID = 0, address.
     #[test]
-    fn the_published_headers() {
+    fn published_headers_match() {
         let table = [
             (0x00, 0x6),
             (0x05, 0x9),
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn every_control_header_is_its_remainder() {
+    fn every_control_header_crc_is_its_remainder() {
         let crc = Crc::new(Crc::CONTROL, 0, true).unwrap();
         for header in 0..1 << 11 {
             let sum = divided(0x13, 0, header.into(), 11) as u8 ^ 0xF;
@@ -206,7 +206,7 @@ mod tests {
 
     /// Reference 3: data CRC4.
     #[test]
-    fn the_published_data_bytes() {
+    fn published_data_bytes_match() {
         let table = "00→F 01→C 02→9 03→A 04→3 05→0 07→6 10→A 1C→D 21→6 29→D 2A→8 30→0 46→2 4B→6 61→1 72→1 80→1 FF→B";
         for entry in table.split(' ') {
             let (data, sum) = entry.split_once('→').unwrap();
@@ -218,7 +218,7 @@ mod tests {
     /// The check values of the catalogue of parametrised CRC algorithms (reveng), over the text 123456789: those without
     /// reflection, of any width.
     #[test]
-    fn other_polynomials_by_their_published_check_values() {
+    fn other_polynomials_match_published_check_values() {
         let cases = [
             ("CRC-8/SMBUS", 0x107, 0, 0x00, 0xF4),
             ("CRC-8/AUTOSAR", 0x12F, 0xFF, 0xFF, 0xDF),
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_checksum_is_refused() {
+    fn invalid_crc_parameters_are_refused() {
         assert_eq!(Crc::new(0, 0, true), Err(CrcError::Degree(0)));
         assert_eq!(Crc::new(1, 0, true), Err(CrcError::Degree(1)));
         assert_eq!(Crc::new(1 << 33 | 1, 0, true), Err(CrcError::Degree(1 << 33 | 1)));
@@ -253,7 +253,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_checksum_is_the_remainder(
+        fn any_crc_is_the_polynomial_remainder(
             degree in 1u32..=32, terms: u32, start: u32, inverted: bool, data: u64, bits in 0u8..=64,
         ) {
             let low = u64::from(terms) & ((1 << degree) - 1);

@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn the_published_samples() {
+    fn published_samples_match() {
         let layout = Layout::default();
         let cycle = Cycle { acknowledge: 3, control: false, raw: 0x024_6980_00CF };
         assert_eq!(Cycle::parse(&samples(SAMPLES), &layout), Ok(cycle));
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn every_cut_is_found() {
+    fn every_truncation_is_detected() {
         let whole = samples(SAMPLES);
         let layout = Layout::default();
         for cut in 0..whole.len() - 1 {
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_without_encoder_is_told() {
+    fn a_line_without_encoder_is_reported() {
         let layout = Layout::default();
         assert_eq!(Cycle::parse(&[true; 64], &layout), Err(CycleError::NoAcknowledge));
         assert_eq!(Cycle::parse(&[false; 64], &layout), Err(CycleError::NotReady));
@@ -125,7 +125,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_emitted_is_parsed(acknowledge in 1usize..80, control: bool, raw in 0u64..1 << 41) {
+        fn emitted_cycles_parse_back(acknowledge in 1usize..80, control: bool, raw in 0u64..1 << 41) {
             let cycle = Cycle { acknowledge, control, raw };
             let layout = Layout::default();
             prop_assert_eq!(Cycle::parse(&cycle.emit(&layout), &layout), Ok(cycle));

@@ -34,7 +34,7 @@ mod tests {
 
     /// Reference 6.
     #[test]
-    fn the_published_positions() {
+    fn published_positions_match() {
         let layout = Layout::default();
         for (bytes, multiturn, singleturn) in [
             ([0x00, 0x80, 0x69, 0x24, 0x00], 0x1234, 0x18000),
@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_too_wide_for_the_encoder_is_no_position() {
+    fn a_word_too_wide_for_the_encoder_is_refused() {
         let word = PositionWord::parse([0, 0, 0, 0, 2]);
         assert_eq!(Layout::default().reading_of(word), None);
         let wide = Layout::new(32, 17, true, true, None).unwrap();

@@ -329,7 +329,7 @@ mod tests {
 
     /// Reference 5.5: 270°, 180°, 90°, 1° and 0° of 17 bits.
     #[test]
-    fn the_published_preset_values() {
+    fn published_preset_values_match() {
         for (singleturn, bytes) in [
             (98_304, [0x00, 0x80, 0x01]),
             (0, [0x00, 0x00, 0x00]),
@@ -347,14 +347,14 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_voltage_is_in_tenths() {
+    fn a_pulse_voltage_is_in_tenths_of_a_volt() {
         assert_eq!(PulseVoltage::LIMIT.byte(), 0x35);
         assert_eq!(PulseVoltage::LIMIT.volts(), 5.3);
     }
 
     /// Manual 6.3: greater than 5.3 V is recommended, in either direction.
     #[test]
-    fn a_wiegand_result_is_measured_against_the_limit() {
+    fn a_wiegand_result_is_compared_with_the_limit() {
         for (bytes, passes) in [
             ([60, 54, 60, 54], true),
             ([60, 53, 60, 54], false),
@@ -370,7 +370,7 @@ mod tests {
 
     /// Codes of the manual's tables, and codes that are in none of them.
     #[test]
-    fn codes_are_the_manuals_and_unknown_ones_are_kept() {
+    fn codes_match_the_manual_and_unknown_ones_are_kept() {
         assert_eq!(
             [0, 1, 3, 4, 6, 7, 0x30].map(|code| WiegandStatus::from_byte(code).to_string()),
             [
@@ -416,7 +416,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn six_bytes_are_a_preset_value(bytes: [u8; 6]) {
+        fn preset_values_round_trip_as_six_bytes(bytes: [u8; 6]) {
             prop_assert_eq!(PresetValue::parse(bytes).emit(), bytes);
         }
     }

@@ -233,7 +233,7 @@ mod tests {
 
     /// Reference 2: the table of 41-bit frames.
     #[test]
-    fn the_published_frames() {
+    fn published_frames_match() {
         let cases = [
             (0x0000, 0x00000, false, false, 0x000_0000_00FA),
             (0x0000, 0x00000, true, false, 0x000_0000_007C),
@@ -257,7 +257,7 @@ mod tests {
 
     /// Reference 7: any bit of 024698000CF.
     #[test]
-    fn every_flipped_bit_is_found() {
+    fn every_flipped_bit_is_detected() {
         let layout = Layout::default();
         for bit in 0..41 {
             let damaged = 0x024_6980_00CF ^ 1 << bit;
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_does_not_move_is_told_from_a_wrong_checksum() {
+    fn a_stuck_line_is_distinguished_from_a_wrong_crc() {
         let layout = Layout::default();
         assert_eq!(layout.parse(0), Err(FrameError::StuckLow));
         assert_eq!(layout.parse((1 << 41) - 1), Err(FrameError::StuckHigh));
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_is_a_part_of_a_turn() {
+    fn an_angle_is_a_fraction_of_a_turn() {
         let layout = Layout::default();
         for (singleturn, degrees) in [(0, 0.0), (0x8000, 90.0), (0x10000, 180.0), (0x18000, 270.0)] {
             assert_eq!(layout.degrees(&reading(7, singleturn, false, false)), degrees);
@@ -307,7 +307,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_layout_gives_back_what_it_was_given(
+        fn any_layout_round_trips(
             multiturn_bits in 0u8..=32, singleturn_bits in 0u8..=32, error_bit: bool, warning_bit: bool,
             start in 0u32..64, inverted: bool, multiturn: u32, singleturn: u32, error: bool, warning: bool, bit in 0u32..64,
         ) {

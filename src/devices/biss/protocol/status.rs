@@ -249,7 +249,7 @@ mod tests {
 
     /// Reference 4 and 7.
     #[test]
-    fn the_published_temperatures() {
+    fn published_temperatures_match() {
         for (byte, celsius, fahrenheit) in
             [(0x0A, -40, -40.0), (0x4B, 25, 77.0), (0x7B, 73, 163.4), (0xAF, 125, 257.0), (0xB4, 130, 266.0)]
         {
@@ -264,7 +264,7 @@ mod tests {
 
     /// Reference 7: error 12h is multiturn and field too low, warning 01h temperature.
     #[test]
-    fn errors_and_warnings_bit_by_bit() {
+    fn error_and_warning_bits_are_named() {
         let errors: Vec<_> = ErrorRegister::new(0x12).set().collect();
         assert_eq!(errors, [(1, "multiturn synchronisation error"), (4, "magnetic field too low")]);
         assert_eq!(0x12, ErrorRegister::MULTITURN.byte() | ErrorRegister::FIELD_TOO_LOW.byte());
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn modes_filters_and_profiles_keep_what_is_unknown() {
+    fn unknown_modes_filters_and_profiles_are_kept() {
         let known: Vec<u8> = (0..=255).filter(|byte| DeviceMode::new(*byte).is_known()).collect();
         assert_eq!(known, [0, 1, 2, 4, 5, 7]);
         assert_eq!(DeviceMode::new(0x09).to_string(), "0x09 unknown mode");
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn releases_are_ordered() {
+    fn firmware_versions_are_ordered() {
         assert!(Firmware::new(1, 10, 0) > Firmware::new(1, 6, 0));
         assert!(Firmware::new(1, 6, 0) > Firmware::new(1, 2, 9));
         assert_eq!(Firmware::new(1, 6, 0).to_string(), "1.6.0");

@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn eight_frames_that_differ_are_enough_and_seven_are_not() {
+    fn eight_distinct_frames_determine_the_width() {
         let kit = Layout::default();
         let frames = turning(&kit, 7, 8);
         assert_eq!(data_bits_of(&frames, 64, &crc()), Some(35));
@@ -79,7 +79,7 @@ mod tests {
     proptest! {
         /// Constant high bits do not result in a shorter frame.
         #[test]
-        fn any_length_is_found(multiturn in 0u8..=16, singleturn in 9u8..=30, step in 1u32..40) {
+        fn any_frame_length_is_found(multiturn in 0u8..=16, singleturn in 9u8..=30, step in 1u32..40) {
             let layout = Layout::new(multiturn, singleturn, true, true, Some(crc())).unwrap();
             let expected = layout.data_bits();
             prop_assume!(expected <= 48);

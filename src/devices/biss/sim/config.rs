@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_read() {
+    fn every_key_is_parsed() {
         let config = read(
             "seed=7&fault=drop:0.5&firmware=1.2.3&serial=0x10&rpm=-500&motor=reverse&waver=3&position=0x20000&temperature=-10&\
              errors=0x12&filter=dynamic&cycles=801&pulses=6.1,5.2&calibration=0.5&calibration-silent=off&calibration-status=kept&echo=on&\
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_in_a_sentence() {
+    fn invalid_values_are_reported() {
         let cases = [
             (
                 "sed=1",

@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turning_shaft_is_where_it_must_be() {
+    fn a_turning_shaft_has_the_expected_position() {
         let mut shaft = Shaft::new(Layout::default(), 0, 60.0);
         let place = |shaft: &Shaft, ms| (shaft.reading(at(ms)).multiturn, shaft.reading(at(ms)).singleturn);
         assert_eq!(place(&shaft, 0), (0, 0));
@@ -111,14 +111,14 @@ mod tests {
     }
 
     #[test]
-    fn parts_of_a_step_are_seen_too() {
+    fn fine_positions_include_fractions_of_a_step() {
         // 60 rpm: 2^17 steps per second, 131.072 per millisecond; 0.072 of 256 parts are 18.4.
         let shaft = Shaft::new(Layout::default(), 5, 60.0);
         assert_eq!((shaft.fine(at(0)), shaft.fine(at(1))), (5 << 8, 136 << 8 | 18));
     }
 
     #[test]
-    fn a_preset_shifts_what_it_is_asked_to() {
+    fn a_preset_shifts_singleturn_or_multiturn() {
         let mut shaft = Shaft::new(Layout::default(), 5 << 17 | 0x100, 0.0);
         let place = |shaft: &Shaft| (shaft.reading(at(9)).multiturn, shaft.reading(at(9)).singleturn);
         shaft.preset(at(0), Some(0x18000), None);

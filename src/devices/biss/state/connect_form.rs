@@ -256,7 +256,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_link_is_shown_and_comes_back_as_it_was() {
+    fn links_round_trip_through_the_form() {
         for link in [
             "sim:",
             "sim:?bridge=on",
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn another_way_takes_along_only_what_it_has() {
+    fn switching_the_interface_keeps_only_its_settings() {
         let other = |link: &str, change: fn(&mut BissForm)| {
             let mut form = BissForm::from_url(&link.parse().unwrap());
             change(&mut form);
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused_with_its_entry() {
+    fn invalid_entries_are_refused_by_name() {
         let refused = |change: fn(&mut BissForm)| {
             let mut form = BissForm::default();
             change(&mut form);

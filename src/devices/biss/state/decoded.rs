@@ -95,7 +95,7 @@ mod tests {
     use crate::app::studio::SessionId;
     use crate::devices::biss::protocol::Descriptions;
 
-    fn said(encoder: &Encoder, at: &str, language: Language) -> String {
+    fn meaning_text(encoder: &Encoder, at: &str, language: Language) -> String {
         let at: RegisterAddress = at.parse().unwrap();
         let group = &encoder.table.groups()[encoder.table.position(at.bank()).unwrap()];
         let row = group.rows().iter().position(|row| row.register.address == at).unwrap();
@@ -105,7 +105,7 @@ mod tests {
 
     /// Reference 4: every register whose number alone is not enough to understand it.
     #[test]
-    fn every_register_of_the_reference_says_what_it_means() {
+    fn every_reference_register_is_decoded() {
         let mut encoder = Encoder::with(Session::at_link(SessionId::default(), "sim:".parse().unwrap(), Kinds::NONE));
         let kit = Descriptions::built_in().named("POSITAL IXARC kit encoder").unwrap().clone();
         encoder.describe(Some(Arc::new(kit.clone())));
@@ -145,10 +145,10 @@ mod tests {
             ("0x03:0x30", "-40 °C", "-40 °C"),
             ("0x03:0x2C", "12000 1/min", "12000 1/min"),
         ] {
-            assert_eq!(said(&encoder, at, Language::English), english, "{at}");
-            assert_eq!(said(&encoder, at, Language::German), german, "{at}");
+            assert_eq!(meaning_text(&encoder, at, Language::English), english, "{at}");
+            assert_eq!(meaning_text(&encoder, at, Language::German), german, "{at}");
         }
         encoder.memory.take("0x03:0x0A".parse().unwrap(), &[0x0C]);
-        assert_eq!(said(&encoder, "0x03:0x3F", Language::English), "wrong checksum");
+        assert_eq!(meaning_text(&encoder, "0x03:0x3F", Language::English), "wrong checksum");
     }
 }

@@ -232,7 +232,7 @@ mod tests {
     use crate::link::LinkErrorKind;
 
     #[test]
-    fn every_error_says_what_happened_and_what_to_do() {
+    fn errors_name_cause_and_remedy() {
         let address: RegisterAddress = "0x24:0x10".parse().unwrap();
         let requested = RequestedItem::Read(address);
         let kind = Identity { profile: ProfileId::new(0x6129), manufacturer: *b"Fr", device_id: [1, 2, 3, 4, 5, 6] };
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wire_that_is_gone_is_a_loss_and_no_other_error_is() {
+    fn only_a_lost_wire_counts_as_a_lost_connection() {
         let gone = Error::Link(LinkError::new("COM3", LinkErrorKind::Lost));
         let address = RegisterAddress::BANK_SELECT;
         let unclear = Error::Unclear { address, value: 1, cause: Box::new(gone.clone()) };

@@ -68,7 +68,7 @@ mod tests {
 
     /// Reference 5.5: 17 bits.
     #[test]
-    fn degrees_become_the_published_steps() {
+    fn degrees_convert_to_the_published_steps() {
         let layout = Layout::default();
         for (degrees, singleturn) in [("270", 98_304), ("0", 0), ("180", 65_536), ("90", 32_768), ("1", 364)] {
             assert_eq!(form(degrees, "7").value(&layout).unwrap(), PresetValue::new(singleturn, 7).unwrap());
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_told() {
+    fn impossible_values_are_reported() {
         let refused = |degrees, turns| form(degrees, turns).value(&Layout::default()).unwrap_err().id();
         for degrees in ["360", "-1", "NaN", "inf", "east"] {
             assert_eq!(refused(degrees, "0"), "entry.number", "{degrees}");

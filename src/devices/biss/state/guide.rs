@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_left_out_is_not_done() {
+    fn skipped_steps_are_not_marked_done() {
         use Reached::{Ahead, Done, Runs, Skipped};
         let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
         let states = |guide: &Guide| guide.steps().iter().map(|own| own.reached).collect::<Vec<_>>();
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn a_procedure_that_was_cut_off_tells_where_and_what_did_not_run() {
+    fn an_interrupted_procedure_shows_failed_and_remaining_steps() {
         use Reached::{Ahead, Done, Failed};
         let first = Run::CalibrationCounterclockwise;
         let (turn, run) = (ProcedureStep::Await(Task::Turn(first)), ProcedureStep::Run(first));
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn who_cancels_has_not_failed() {
+    fn a_cancelled_procedure_has_not_failed() {
         let mut guide = Guide::new(vec![Op::Calibrate]);
         guide.take_progress(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: Detail::Begins });
         guide.cut = Some(ProcedureStep::Conditions);

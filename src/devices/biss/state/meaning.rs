@@ -121,7 +121,7 @@ mod tests {
     use crate::bits::{MaskedBytes, parse_hex};
     use crate::units::Moment;
 
-    fn said(meaning: &mut Meaning, direction: Direction, text: &str) -> (Option<TraceFault>, String) {
+    fn decode(meaning: &mut Meaning, direction: Direction, text: &str) -> (Option<TraceFault>, String) {
         let bytes = MaskedBytes::clear(&parse_hex(text).unwrap());
         let said = meaning.of(&TraceEntry { at: Moment::START, direction, bytes });
         let words: Vec<String> = said.meaning.iter().map(|text| text.words(Language::English)).collect();
@@ -131,7 +131,7 @@ mod tests {
     /// Issue 22.11: damaged frames of the configuration pin (reference UBICOM 6) have a meaning and a mark; the reply may
     /// still follow.
     #[test]
-    fn a_broken_reply_has_a_meaning_and_a_mark() {
+    fn damaged_replies_are_explained_and_marked() {
         let request = "80 01 01 02 00 26 00 55";
         let cases = [
             ("good", "80 01 01 01 00 4B 31", None, "0x4B"),
@@ -142,23 +142,23 @@ mod tests {
         ];
         for (label, reply, fault, words) in cases {
             let mut meaning = Meaning::default();
-            assert_eq!(said(&mut meaning, Direction::Sent, request).0, None);
-            let told = said(&mut meaning, Direction::Received, reply);
+            assert_eq!(decode(&mut meaning, Direction::Sent, request).0, None);
+            let told = decode(&mut meaning, Direction::Received, reply);
             assert!(told.0 == fault && told.1.contains(words) && !told.1.is_empty(), "{label}: {told:?}");
             if fault.is_some() {
-                let then = said(&mut meaning, Direction::Received, "80 01 01 01 00 4B 31");
+                let then = decode(&mut meaning, Direction::Received, "80 01 01 01 00 4B 31");
                 assert_eq!(then, (None, "0x4B".to_owned()), "{label}");
             }
         }
         let mut meaning = Meaning::default();
-        said(&mut meaning, Direction::Sent, "80 01 02 03 00 2B 00 2A 24");
-        assert_eq!(said(&mut meaning, Direction::Received, "80 01 02 01 00 A0 DB").0, Some(TraceFault::Reported));
+        decode(&mut meaning, Direction::Sent, "80 01 02 03 00 2B 00 2A 24");
+        assert_eq!(decode(&mut meaning, Direction::Received, "80 01 02 01 00 A0 DB").0, Some(TraceFault::Reported));
         // Behind an adapter: a packet with a wrong checksum.
         let sent = bridge::Request::Hello.emit(1).emit();
         let mut broken = sent.clone();
         broken[2] ^= 1;
         let hex = |bytes: &[u8]| crate::bits::hex(bytes);
-        assert_eq!(said(&mut meaning, Direction::Sent, &hex(&sent)).0, None);
-        assert_eq!(said(&mut meaning, Direction::Received, &hex(&broken)).0, Some(TraceFault::Broken));
+        assert_eq!(decode(&mut meaning, Direction::Sent, &hex(&sent)).0, None);
+        assert_eq!(decode(&mut meaning, Direction::Received, &hex(&broken)).0, Some(TraceFault::Broken));
     }
 }

@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edit_is_what_differs_from_what_was_read() {
+    fn an_edit_is_a_difference_from_the_read_value() {
         let mut memory = Memory::default();
         assert_eq!(memory.put(&kit(), at("0x24:0x10"), &[1]), Err(MemoryError::NotRead(at("0x24:0x10"))));
         memory.take(at("0x24:0x00"), &[0xFF; 64]);
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn of_an_area_the_longest_part_that_was_read_is_shown() {
+    fn the_longest_part_read_of_an_area_is_shown() {
         let mut memory = Memory::default();
         let kit = kit();
         let area = kit.area_at(at("0x24:0x00")).unwrap();
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_end_with_their_bank() {
+    fn ranges_end_with_their_bank() {
         let mut memory = Memory::default();
         memory.take(at("0x04:0x00"), &[0; 128]);
         memory.put(&kit(), at("0x04:0x3E"), &[1, 2, 3, 4]).unwrap();
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changed_since_the_reading_before_is_marked() {
+    fn changes_since_the_previous_reading_are_marked() {
         let mut memory = Memory::default();
         memory.take(at("0x66"), &[0x4B]);
         assert!(!memory.has_changed(at("0x66")), "nothing to compare with");

@@ -300,7 +300,7 @@ mod tests {
 
     /// Reference 2: turn 1234h and 270°.
     #[test]
-    fn raw_is_the_position_word_also_in_a_stream() {
+    fn raw_values_are_position_words_also_in_a_stream() {
         let mut record = Record::default();
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: true };
         record.add(vec![Sample::Frames(FrameRun { frames: vec![Ok(reading)], ..run(0, 1, 0) })], 0);
@@ -319,7 +319,7 @@ mod tests {
 
     /// Issue 22.20: a position with unknown steps per turn has no turns and no degrees.
     #[test]
-    fn what_is_not_known_to_be_an_angle_is_recorded_in_steps() {
+    fn positions_with_unknown_split_are_recorded_in_steps() {
         let mut record = Record::default();
         let units = |record: &Record| -> Vec<String> {
             let lines = record.recorder().lines();
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn a_register_that_never_has_a_value_says_why() {
+    fn a_register_without_a_value_reports_the_reason() {
         let descriptions = Descriptions::built_in();
         let kit = descriptions.named("POSITAL IXARC kit encoder").unwrap();
         let register = kit.with_role(Role::Temperature).unwrap().clone();
@@ -354,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_that_are_missing_are_counted_wherever_they_were_lost() {
+    fn missing_frames_are_counted_at_every_stage() {
         let mut record = Record::default();
         let add = |record: &mut Record, run: FrameRun, dropped| record.add(vec![Sample::Frames(run)], dropped);
         add(&mut record, run(0, 100, 0), 0);

@@ -171,7 +171,7 @@ mod tests {
 
     /// Manual, appendix 9.1: 68 banks of 64 registers, and 64 direct ones.
     #[test]
-    fn every_register_stands_once() {
+    fn every_register_is_listed_once() {
         let table = kit();
         assert_eq!(table.groups().len(), 1 + 68);
         for group in table.groups() {
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_shows_what_is_wanted_and_whether_it_is_read() {
+    fn a_row_shows_its_edit_and_whether_it_was_read() {
         let (table, mut memory) = (kit(), Memory::default());
         let direct = &table.groups()[0];
         let serial = direct.rows().iter().position(|row| row.register.name.english() == "serial number").unwrap();
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn an_encoder_that_nobody_has_described_has_its_banks() {
+    fn an_encoder_without_a_description_has_its_banks() {
         let all = Descriptions::built_in();
         let unknown = all.iter().find(|own| own.identity().is_none()).unwrap();
         assert_eq!(Table::of(unknown, None).groups().len(), 69);

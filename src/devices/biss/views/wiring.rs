@@ -58,7 +58,7 @@ mod tests {
     /// Issue 22.23: kit encoder manual, table 1 (pins), 2 (supply), 14 (preset), 2.1 (connector), 2.3 (point to point,
     /// RS-422); UBICOM at 115200 baud.
     #[test]
-    fn the_card_says_what_the_manual_says() {
+    fn the_wiring_card_matches_the_manual() {
         check_wires(
             &TEXTS,
             &PINS,

@@ -121,7 +121,7 @@ mod tests {
     /// 65536 steps per turn: −1 is turn −1, 65535; 163840 are 2.5 turns. 400 of 0.01 mm: 1000 are 2.5 turns. 256 · 10 / 3 =
     /// 853.33: −1 is turn −1, 852.33.
     #[test]
-    fn a_position_has_turns_and_a_place_in_its_turn() {
+    fn a_position_is_split_into_turns_and_steps() {
         let place = |position, numerator, denominator| {
             let TurnPosition { turns, steps, degrees } =
                 TurnPosition::of(position, PositionScale::new(numerator, denominator).unwrap());

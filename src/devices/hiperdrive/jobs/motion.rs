@@ -330,7 +330,7 @@ mod tests {
 
     /// If the window and the connection's thread were both suspended, the window may resume first.
     #[test]
-    fn what_nobody_said_for_too_long_is_not_said_again() {
+    fn stale_intents_are_not_repeated() {
         let clock = Arc::new(VirtualClock::default());
         let motion = Motion::new(clock.clone());
         let is_stale = || motion.with_wanted(|intent, _| intent.is_stale(clock.now()));

@@ -135,7 +135,7 @@ mod tests {
 
     /// Issue 21.13: while a drive moves, some group is due in every turn of 60 ms.
     #[test]
-    fn something_is_asked_in_every_turn_of_a_motion() {
+    fn a_group_is_due_every_60_ms_during_motion() {
         let mut read = [at(0); GROUPS];
         let mut last = 0;
         for now in (0..4000).step_by(20) {
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn every_group_comes_once_a_second_however_often_somebody_looks() {
+    fn every_group_is_read_once_a_second_at_any_polling_rate() {
         for (step, first) in
             [10, 100, 200, 249, 250, 300, 500, 2000].into_iter().flat_map(|step| [(step, 0), (step, 777)])
         {

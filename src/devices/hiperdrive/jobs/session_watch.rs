@@ -153,7 +153,7 @@ mod tests {
 
     /// Issue 21.13: 130 ms of listening without a reply are too long, counted from the first unanswered request.
     #[test]
-    fn silence_counts_from_the_first_request_without_an_answer() {
+    fn silence_counts_from_the_first_unanswered_request() {
         let mut watch = SessionWatch::default();
         assert!(!watch.is_silent(at(10_000)), "nothing was asked");
         watch.ask(at(100));
@@ -232,7 +232,7 @@ mod tests {
 
     /// A device that takes 300 ms for each reply is allowed 600, and less again when it has become faster.
     #[test]
-    fn a_slow_device_is_given_more_time() {
+    fn a_slow_device_gets_a_longer_timeout() {
         let mut watch = SessionWatch::default();
         watch.ask(at(0));
         watch.answer(at(300));

@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn parameters_lock_and_permit() {
+    fn parameters_lock_or_permit_motion() {
         let whole = Some((-33_488_896, 33_488_896));
         // A degree of 65536 steps per turn is 182.04 steps, of 256 / 400 · 256 = 163.84 less than one.
         let permit = |limits, locks: &[Lock], endless, degree| Permit {
@@ -242,7 +242,7 @@ mod tests {
     /// Issue 21.3: an invalid scale, range or time-out counts as not read. Type and range are the manual's: 152 is 0 or 1,
     /// 160 is above 158, 186 is 1 to 100, 255 for never (reference 4).
     #[test]
-    fn numbers_that_mean_nothing_permit_nothing() {
+    fn invalid_parameter_values_permit_no_motion() {
         type Case<'c> = (&'c [(u16, Option<i64>)], Lock);
         let cases: [Case<'_>; 8] = [
             (&[(154, Some(0))], Lock::Unread),
@@ -265,7 +265,7 @@ mod tests {
 
     /// Issue 21.3: of two doubts the later one counts, in whichever order they arrive.
     #[test]
-    fn an_earlier_doubt_takes_no_later_one_back() {
+    fn an_earlier_doubt_does_not_replace_a_later_one() {
         let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
         limits.doubt(at(100));
         limits.doubt(at(50));

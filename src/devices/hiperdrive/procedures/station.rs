@@ -156,21 +156,21 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_is_usual() {
+    fn omitted_parameters_have_defaults() {
         assert_eq!(station("", Some(44818)).unwrap().to_string(), "every 10 ms, little endian, UDP port 2222");
         assert_eq!(station("", None).unwrap().udp, 2222);
         assert_eq!(station("", Some(50123)).unwrap().udp, 50123);
     }
 
     #[test]
-    fn a_connection_is_read_from_its_parameters() {
+    fn connection_settings_are_parsed_from_parameters() {
         let station = station("rpi=5&order=big&udp=3333&timeout=250", Some(50123)).unwrap();
         assert_eq!(station.to_string(), "every 5 ms, big endian, UDP port 3333");
         assert_eq!(station.link.timeout, Duration::from_millis(250));
     }
 
     #[test]
-    fn a_value_that_cannot_be_used_names_what_can() {
+    fn a_rejected_value_names_the_allowed_ones() {
         let cases = [
             ("rpi=4", "rpi=4 is not valid (allowed: a time in milliseconds from 5 to 100)"),
             ("rpi=101", "rpi=101 is not valid (allowed: a time in milliseconds from 5 to 100)"),

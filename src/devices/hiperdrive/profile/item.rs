@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_read_and_written() {
+    fn names_parse_and_print() {
         for (text, number, written) in [
             ("47", 47, "47"),
             ("158", 158, "158"),
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_names_nothing_is_told() {
+    fn invalid_names_are_reported() {
         for (text, why) in [
             ("limit", "\"limit\" is not a parameter"),
             ("-158", "\"-158\" is not a parameter"),

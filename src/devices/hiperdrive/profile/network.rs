@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn addresses_are_set_where_they_are_stored() {
+    fn addresses_are_written_to_stored_settings() {
         let now = settings(AddressSource::Dhcp, [10, 0, 0, 7]);
         let wanted = settings(AddressSource::Stored, [10, 0, 0, 8]);
         let plan = plan_network(&now, Some(0), &wanted).unwrap();
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused_and_what_does_not_count_is_told() {
+    fn invalid_addresses_are_refused_and_unused_ones_reported() {
         let now = settings(AddressSource::Dhcp, [10, 0, 0, 7]);
         let refused = |wanted| plan_network(&now, None, &wanted).unwrap_err();
         let broadcast = AddressError::Broadcast([10, 0, 0, 255].into());

@@ -29,7 +29,7 @@ fn status(word: u16) -> StatusWord {
 
 /// Reference 3.
 #[test]
-fn the_published_control_words() {
+fn published_control_words_match() {
     use Direction::{Clockwise, Counterclockwise};
     use RunEnd::{Endless, RangeEnd};
     let cases = [
@@ -75,7 +75,7 @@ fn reserved_bits_are_refused() {
 
 /// The word of a stop clears the jog bits, since a stop ends no jog step.
 #[test]
-fn a_stop_is_the_modes_own() {
+fn the_stop_word_depends_on_the_mode() {
     for (before, stopped) in [
         (0x0479, 0x0469),
         (0x0439, 0x0429),
@@ -95,7 +95,7 @@ fn a_stop_is_the_modes_own() {
 /// Reference 3 and 8.10: a job starts on a difference of levels, a run on an edge, and neither while a condition is
 /// missing.
 #[test]
-fn what_begins_with_a_word() {
+fn words_start_a_job_or_a_run() {
     let cases = [
         ("job", 0x0439, 0x0479, 0x2A37, Some(MotionStart::Job)),
         ("next job", 0x0479, 0x0439, 0x3E37, Some(MotionStart::Job)),
@@ -122,7 +122,7 @@ fn what_begins_with_a_word() {
 
 /// Reference 3 and 9.
 #[test]
-fn the_published_status_words() {
+fn published_status_words_match() {
     let cases = [
         (0x2A30, State::NotReady),
         (0x2A31, State::Ready),
@@ -155,7 +155,7 @@ fn the_published_status_words() {
 
 /// Reference 3.
 #[test]
-fn the_state_machine() {
+fn the_state_machine_matches_the_reference() {
     use State::{Enabled, Fault, Locked, Moving, NotReady, Operational, Ready};
     let cases = [
         (NotReady, 0x0000, 0x0400, Ready),
@@ -226,7 +226,7 @@ fn said_in(state: State) -> StatusWord {
 
 /// Words as in reference 3; no step is done before its word.
 #[test]
-fn the_recipes_lead_where_they_say() {
+fn recipes_reach_their_target_state() {
     let walk = |steps: &[Step], mut before: ControlWord, mut state: State| {
         let mut words = Vec::new();
         for step in steps {
@@ -248,7 +248,7 @@ fn the_recipes_lead_where_they_say() {
 
 /// Reference 9: target 2.5 turns = 163840, 100 %, both byte orders; −1 turn = −65536 with 50 and 75 %.
 #[test]
-fn the_published_process_data_to_a_drive() {
+fn published_process_data_to_a_drive_match() {
     let setpoint = |control: u16, speed, torque, target| Setpoint {
         control: word(control),
         speed: Percent::new(speed).unwrap(),
@@ -289,7 +289,7 @@ fn the_published_process_data_to_a_drive() {
 
 /// Reference 9.
 #[test]
-fn the_published_process_data_from_a_drive() {
+fn published_process_data_from_a_drive_match() {
     let cases = [
         ("37 1A 20 03 A0 86 01 00", 0x1A37, 800, 100_000),
         ("37 3E 00 00 00 80 02 00", 0x3E37, 0, 163_840),
@@ -308,7 +308,7 @@ fn the_published_process_data_from_a_drive() {
 /// Reference 2: 16 and 8 bytes for an adapter, 40 and 72 for the hubs, 8 less without parameter words, which are at 32
 /// and 64.
 #[test]
-fn the_published_lengths() {
+fn published_lengths_match() {
     let layout = |topology, pkw| Layout { topology, pkw, order: ByteOrder::Little };
     let [single, four, eight] = Topology::ALL;
     for (topology, with) in [(single, 16), (four, 40), (eight, 72)] {
@@ -338,7 +338,7 @@ fn the_published_lengths() {
 
 proptest! {
     #[test]
-    fn no_host_sets_a_reserved_or_a_jog_bit(says: u16, clockwise: bool, endless: bool, from: u16) {
+    fn the_host_never_sets_a_reserved_or_jog_bit(says: u16, clockwise: bool, endless: bool, from: u16) {
         let says = status(says);
         let direction = if clockwise { Direction::Clockwise } else { Direction::Counterclockwise };
         let end = if endless { RunEnd::Endless } else { RunEnd::RangeEnd };
@@ -359,7 +359,7 @@ proptest! {
     }
 
     #[test]
-    fn every_image_survives(data: Vec<u8>, big: bool) {
+    fn every_image_round_trips(data: Vec<u8>, big: bool) {
         let order = if big { ByteOrder::Big } else { ByteOrder::Little };
         for layout in Topology::ALL.into_iter().flat_map(|topology| [true, false].map(|pkw| Layout { topology, pkw, order })) {
             let data: Vec<u8> = data.iter().copied().chain(std::iter::repeat(0xA5)).take(layout.length()).collect();

@@ -160,7 +160,7 @@ mod tests {
 
     /// 35 rpm: 0.1 s up, 0.1 s down, 1/60 · 35 · 0.1 = 0.0583 turns together. A turn takes 0.2 + (1 − 0.0583) / 0.5833 s.
     #[test]
-    fn a_turn_takes_its_time() {
+    fn a_turn_takes_the_expected_time() {
         let mut axis = Axis::default();
         let speed = 35.0 / 60.0 * TURN;
         let (ticks, came) = ticks_until(&mut axis, AxisDemand::Place { at: TURN, speed }, &SpindleLoad::default());
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn it_stops_in_a_tenth_of_a_second() {
+    fn the_axis_stops_in_a_tenth_of_a_second() {
         let mut axis = Axis::default();
         let load = SpindleLoad::default();
         for _ in 0..500 {
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_held_by_a_wall_and_comes_back_from_behind() {
+    fn a_wall_blocks_the_axis_and_it_can_reverse() {
         let load = SpindleLoad { wall_above: Some(1000.0), ..SpindleLoad::default() };
         let mut axis = Axis::default();
         let to = |at| AxisDemand::Place { at, speed: TURN };

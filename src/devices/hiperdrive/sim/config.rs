@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_read() {
+    fn every_key_is_parsed() {
         let query = "drives=1,0,1&hub=4&variant=HDA70&requested=1&position=-100&speed=200&load=60&blocked=on&defect=reversed&\
                      temperature=-12.5&s3=2&switch=17&supply=23.5&reset=8000&serial=0x10&name=Feeder&order=big&text=counted&seed=9&\
                      fault=drop:0.25";
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_in_a_sentence() {
+    fn invalid_values_are_reported() {
         let keys = Config::KEYS.join(", ");
         let cases = [
             ("sed=1", format!("a virtual HIPERDRIVE has no setting `sed`; valid settings are {keys}")),
@@ -209,7 +209,7 @@ mod tests {
 
     /// The settings as read from the drive, not from the configuration.
     #[test]
-    fn a_station_is_as_it_was_asked_for() {
+    fn a_station_has_its_configured_settings() {
         let query = "hub=4&drives=0,1&variant=HDA70&requested=1&position=-100&speed=200&switch=17&supply=23.5&serial=16&name=Feeder";
         let mut station = Station::of(&read(query).unwrap());
         let mut value = |number| station.read(Moment::START, ParameterNumber::new(number).unwrap()).ok();
@@ -244,7 +244,7 @@ mod tests {
 
     /// Reference 3 and 9: done is 3E37, compared without bit 12; a fault is 2AB8.
     #[test]
-    fn drives_do_what_one_wants_to_see() {
+    fn drives_show_their_configured_faults() {
         for (query, status, error) in [
             ("", 0x2E37, None),
             ("load=90", 0x2E37, None),

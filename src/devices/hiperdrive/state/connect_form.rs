@@ -175,7 +175,7 @@ mod tests {
     use crate::app::connect::parameters::tests::assert_comes_back;
 
     #[test]
-    fn a_link_is_shown_and_comes_back_as_it_was() {
+    fn links_round_trip_through_the_form() {
         let links = [
             "sim:",
             "sim:?hub=4",
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused_with_its_entry() {
+    fn invalid_entries_are_refused_by_name() {
         let refused = |change: fn(&mut HiperdriveForm)| {
             let mut form = HiperdriveForm::default();
             change(&mut form);
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn another_way_takes_along_only_what_it_has() {
+    fn switching_the_interface_keeps_only_its_settings() {
         let mut form = HiperdriveForm::from_url(&"sim:?hub=4&seed=5&rpi=20".parse().unwrap());
         (form.kind, form.host) = (HiperdriveLinkKind::Network, "192.168.1.5".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "enip:192.168.1.5:44818?rpi=20");

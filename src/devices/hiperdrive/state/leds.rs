@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn lamps_say_what_the_tables_of_the_protocol_say() {
+    fn led_texts_match_the_protocol_tables() {
         for (hub, s3) in [(false, 0), (true, 0), (true, 3)] {
             let mut leds = Leds { hub, s3, ..Leds::default() };
             for row in leds.subject().rows() {
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn clicking_goes_through_all_that_a_lamp_can_show() {
+    fn clicking_cycles_through_all_states_of_an_led() {
         for (hub, s3, lights) in [(false, 0, 7), (true, 0, 7), (true, 8, 4)] {
             let mut leds = Leds { hub, s3, ..Leds::default() };
             let mut seen = Vec::new();
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_light_that_the_lamp_of_one_drive_does_not_have_is_off() {
+    fn a_state_missing_on_another_led_becomes_off() {
         let mut leds = Leds { drives: DriveLight::Alternating, ..Leds::of(Topology::Hub8) };
         leds.look_at(true, 9);
         assert_eq!((leds.s3, leds.subject(), leds.drives), (8, LedSubject::Drive, DriveLight::Off));

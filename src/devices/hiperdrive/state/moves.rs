@@ -306,12 +306,10 @@ impl Moves {
         self.view.drives.iter().find(|own| own.number == drive).filter(|_| self.view.open)
     }
 
-    /// Returns the data of a drive.
     pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         self.drive(drive).map(|own| own.actual)
     }
 
-    /// Returns the setpoint sent last.
     pub fn sent(&self, drive: DriveNumber) -> Option<Setpoint> {
         self.drive(drive).map(|own| own.sent)
     }
@@ -361,7 +359,6 @@ impl Moves {
         locks
     }
 
-    /// Returns whether a jog is held.
     pub fn is_held(&self) -> bool {
         let held = self.act.filter(|act| act.kind == Kind::Held && !self.has_ended(act.number, act.drive));
         held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number)))

@@ -244,7 +244,7 @@ mod tests {
 
     /// Manual 5: the five ways to get an address.
     #[test]
-    fn the_switches_decide_where_the_address_comes_from() {
+    fn the_switches_select_the_address_source() {
         let stored = Ipv4Addr::new(10, 0, 0, 7);
         let sources = [AddressSource::Stored, AddressSource::Bootp, AddressSource::Dhcp, AddressSource::Unknown(7)];
         let with =
@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_is_looked_at_before_it_is_planned() {
+    fn typed_settings_are_checked_before_planning() {
         let now = settings(AddressSource::Dhcp, "10.0.0.7");
         let form = |address: &str, mask: &str, gateway: &str| {
             let form = Form { source: AddressSource::Stored, ..Form::of(&now) };
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn what_will_be_is_said_before_it_is_written() {
+    fn consequences_are_shown_before_writing() {
         let now = settings(AddressSource::Dhcp, "10.0.0.7");
         let host = Some(Ipv4Addr::new(10, 0, 0, 7));
         let ids = |digits: u8, wanted: &NetworkSettings| {
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_of_positions_marks_the_present_one() {
+    fn the_switch_table_marks_the_current_position() {
         let now = |digits: u8| {
             let rows = positions(AddressSwitch::parse(digits));
             rows.into_iter().filter(|row| row.is_now).map(|row| row.digits).collect::<Vec<_>>()

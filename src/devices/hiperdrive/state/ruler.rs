@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_measured() {
+    fn steps_convert_to_every_unit() {
         let of = |ruler: Ruler, steps, measure| ruler.of(steps, measure).unwrap();
         assert_eq!(of(SPINDLE, 163_840, Measure::Turns), 2.5);
         assert_eq!(of(SPINDLE, -16_384, Measure::Degrees), -90.0);
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_becomes_the_nearest_step() {
+    fn typed_values_become_the_nearest_step() {
         assert_eq!(hundredths().steps(12.344, Measure::Millimetres), Ok(1234));
         assert_eq!(hundredths().steps(-0.005, Measure::Millimetres), Ok(-1));
         assert_eq!(SPINDLE.steps(90.0, Measure::Degrees), Ok(16_384));
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn decimals_tell_steps_apart() {
+    fn decimals_distinguish_adjacent_steps() {
         assert_eq!(hundredths().decimals(Measure::Millimetres), 2);
         assert_eq!(SPINDLE.decimals(Measure::Steps), 0);
         // 65536 steps per turn, 182.04 per degree, 16384 per millimetre.
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_has_other_steps_under_another_scale() {
+    fn a_position_is_rescaled_to_another_scale() {
         let to = PositionScale::new(400, 256).unwrap();
         // 511 turns: 33 488 896 of 65536 each are 204 400 of 400 each.
         assert_eq!(SPINDLE.rescaled(33_488_896, to), 204_400);

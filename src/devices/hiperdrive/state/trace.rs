@@ -74,7 +74,7 @@ mod tests {
 
     /// Issue 22.11: explicit messages (reference 7) damaged by hand, and refusals, have a meaning and a mark.
     #[test]
-    fn a_broken_reply_has_a_meaning_and_a_mark() {
+    fn damaged_replies_are_explained_and_marked() {
         let cases = [
             ("done", format!("{HEAD} 90 00 00 00"), None),
             ("a value that is refused", format!("{HEAD} 90 00 09 00"), Some(TraceFault::Reported)),

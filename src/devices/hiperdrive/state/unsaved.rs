@@ -115,7 +115,7 @@ mod tests {
     /// Issue 21.6 (h): the saved values are known from those written since, also by an earlier run of the program, until
     /// the next save.
     #[test]
-    fn what_was_saved_is_known_until_it_is_saved_anew() {
+    fn saved_values_are_remembered_until_the_next_save() {
         let three = DriveNumber::new(3).unwrap();
         let (factory, mut now) = (image(&[(24, 0), (366, 350)]), image(&[(24, 0), (366, 350)]));
         let mut own = Unsaved::default();

@@ -147,7 +147,7 @@ mod tests {
 
     /// Issue 22.23: HIPERDRIVE manual, 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter).
     #[test]
-    fn the_card_says_what_the_manual_says() {
+    fn the_wiring_card_matches_the_manual() {
         check_notes(&TEXTS, &WIRING, &["4-pin, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
         check_notes(&TEXTS, &WIRING, &["3 TD− green", "4 RD− orange", "four-wire cables only"]);
         check_notes(&TEXTS, &WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);

@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_state_that_can_be_gone_to_is_asked_for() {
+    fn only_reachable_states_can_be_requested() {
         let mut harness = states(Some(State::Operational));
         for state in State::ALL {
             let node = harness.get_by_label(state.name());

@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_code_that_comes_again_and_again_is_kept_once_a_minute() {
+    fn a_repeated_status_code_is_kept_once_a_minute() {
         let mut keeper = StatusKeeper::default();
         let at = |seconds| Moment::default() + Duration::from_secs(seconds);
         let (hot, fast) = (StatusCode::TEMPERATURE, StatusCode::TOO_FAST);

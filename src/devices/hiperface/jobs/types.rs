@@ -49,7 +49,7 @@ mod tests {
     }
 
     #[test]
-    fn looking_makes_no_folder() {
+    fn reading_creates_no_folder() {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at(root.path());
         assert_eq!(encoder_types(&store), Ok(EncoderTypes::built_in()));
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn a_users_encoder_type_goes_first() {
+    fn a_users_encoder_type_takes_precedence() {
         let (_root, store) = store_with("\u{FEFF}(types: [(code: 0x37, name: \"own\")])".as_bytes());
         let types = encoder_types(&store).unwrap();
         assert_eq!(types.find(0x37).unwrap().name, "own");
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn a_broken_table_is_named_with_its_place() {
+    fn a_broken_table_is_reported_with_its_location() {
         let (_root, store) = store_with(b"(types: [\n  (code: 0x37, nam: \"own\")])");
         let error = encoder_types(&store).unwrap_err();
         let StoreError::Refused(cause) = &error else { panic!("{error:?}") };

@@ -224,7 +224,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn distances_go_the_short_way_round() {
+    fn distances_take_the_shorter_direction() {
         assert_eq!(distance(0, 4095, 4096), 1);
         assert_eq!(distance(5, 3, 4096), 2);
         assert_eq!(distance(0, u32::MAX, 1 << 32), 1);

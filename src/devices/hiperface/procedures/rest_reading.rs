@@ -82,7 +82,7 @@ mod tests {
 
     /// 2.5 V are 511.5 counts, half a volt more is 613.8 of them; 1/1023 of 5 V is 4.888 mV, of 0.5 V 0.00978 rad.
     #[test]
-    fn counts_are_volts_against_the_mean() {
+    fn counts_convert_to_volts_around_the_mean() {
         let signals = Signals::from_counts(613.8, 511.5);
         assert!((signals.sine_v - 0.5).abs() < 1e-12 && signals.cosine_v == 0.0, "{signals:?}");
         assert!((signals.resolution_periods() - 0.001_555_8).abs() < 1e-6, "{}", signals.resolution_periods());

@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_is_the_factory_setting() {
+    fn omitted_parameters_have_factory_settings() {
         let station = station("").unwrap();
         assert_eq!(station.to_string(), "address 40h at 9600 8E1");
         assert_eq!(station.line.echo, Echo::Unknown);
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn codes_that_were_given_are_never_printed() {
+    fn given_access_codes_are_never_printed() {
         let number = |number| CodeNumber::new(number).unwrap();
         let given: AccessCodes =
             [(number(2), AccessCode::new(0x9D)), (number(2), AccessCode::new(0xA7))].into_iter().collect();
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_read_from_its_parameters() {
+    fn line_settings_are_parsed_from_parameters() {
         let station = station("baud=38400&parity=odd&address=0x41&echo=off&timeout=11&margin=5&periods=64").unwrap();
         assert_eq!(station.to_string(), "address 41h at 38400 8O1");
         assert_eq!(station.line.echo, Echo::Off);
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_cannot_be_used_names_what_can() {
+    fn a_rejected_value_names_the_allowed_ones() {
         let cases = [
             ("baud=115200", "baud=115200 is not valid (allowed: one of 600, 1200, 2400, 4800, 9600, 19200, 38400)"),
             ("parity=mark", "parity=mark is not valid (allowed: none, even or odd)"),

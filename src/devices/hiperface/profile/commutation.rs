@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_is_sixteen_bytes_and_comes_back() {
+    fn a_record_round_trips_as_sixteen_bytes() {
         assert_eq!(record().emit(), RECORD);
         assert_eq!(CommutationRecord::parse(&RECORD), Some(Ok(record())));
         let longer = [&RECORD[..], &[0xFF; 3]].concat();
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn every_flipped_bit_and_every_cut_is_seen() {
+    fn flipped_bits_and_truncations_are_detected() {
         for bit in 0..RECORD.len() * 8 {
             let mut bytes = RECORD;
             bytes[bit / 8] ^= 1 << (bit % 8);
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn the_check_is_the_usual_one() {
+    fn the_crc_matches_the_standard_check_value() {
         // The check value of CRC-16/CCITT-FALSE for the digits 1 to 9.
         assert_eq!(crc(b"123456789"), 0x29B1);
     }

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn several_edits_are_one_plan() {
+    fn several_edits_form_one_plan() {
         let fields = [field(1, 0xE8), field(0, 0xE9)];
         let edit = |field, start, bytes: &[u8]| (FieldRange::new(field, start, bytes.len()), bytes.to_vec());
         let edits = [
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rules_of_the_memory_are_held() {
+    fn memory_rules_are_enforced() {
         let status = DataFieldStatus::from_byte;
         assert!(plan_create(MEMORY, 2, status(0xC9)).is_ok());
         assert_eq!(plan_create(MEMORY, 3, status(0xC9)), Err(PlanError::NotNext { field: 3, next: 2 }));

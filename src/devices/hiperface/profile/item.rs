@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn items_are_read_and_written() {
+    fn items_parse_and_print() {
         for text in
             ["field:0", "field:1@3+2", "field:255@16", "status:1", "analogue:0x48", "counter", "address", "settings"]
         {
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_item_is_told() {
+    fn invalid_items_are_reported() {
         for text in
             ["", "field", "field:", "field:256", "field:1@", "field:1@0+0", "field:1@+2", "counter:1", "Field:1"]
         {

@@ -167,7 +167,7 @@ mod tests {
     use crate::bits::parse_hex;
 
     #[test]
-    fn frames_are_told_apart() {
+    fn requests_and_replies_are_distinguished() {
         let heading = |command| FrameFact::Heading { address: 0x40, command };
         let cases = [
             ("40 42 02", 0x42, FrameFact::Request(Arguments::None)),
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn the_access_codes_of_a_request_are_no_part_of_what_it_says() {
+    fn access_codes_are_omitted_from_request_descriptions() {
         // The manual's examples: code 66h opens field 1, code 2 becomes 66h.
         let cases = [
             ("40 4B 01 05 02 66 08 15 76", Arguments::Store { field: 1, address: 5, data: vec![0x08, 0x15] }),
@@ -198,13 +198,13 @@ mod tests {
     }
 
     #[test]
-    fn the_wrong_checksum_of_the_manual_is_told() {
+    fn the_wrong_checksum_in_the_manual_is_reported() {
         let wrong = parse_hex("40 4D 01 E0 55 69").unwrap();
         assert_eq!(describe(&wrong, None), Err(FrameError::Checksum { expected: 0xB9, got: 0x69 }));
     }
 
     #[test]
-    fn a_refusal_is_told_from_its_request() {
+    fn a_refusal_is_recognized_by_its_request() {
         let request = Request::ReadPosition;
         let said = describe(&parse_hex("40 50 1F 0F").unwrap(), Some(&request)).unwrap();
         assert_eq!(said.last(), Some(&FrameFact::Refused(StatusCode::new(0x1F))));

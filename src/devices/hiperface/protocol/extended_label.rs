@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn the_label_of_the_reference() {
+    fn the_label_of_the_reference_parses() {
         let label = ExtendedLabel::parse(&label()).unwrap();
         assert!(label.checksum_fits);
         assert_eq!(label.geometry, Some(Geometry::Rotary { periods: 16, turns: 4096 }));
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_shifts_no_pair() {
+    fn a_gap_does_not_shift_pairs() {
         let parameter = |number, value| LabelParameter { number, value };
         let mut label = ExtendedLabel::parse(&label()).unwrap();
         label.parameters = vec![parameter(0, 7), parameter(2, 0x48), parameter(3, 115), parameter(9, 1)];
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_linear_label_and_a_second_set() {
+    fn a_linear_label_with_a_second_set_parses() {
         let mut bytes = vec![0; 128];
         bytes[1] = 0x01;
         bytes[2..6].copy_from_slice(&1_000_000u32.to_be_bytes());
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn every_cut_is_read_or_refused() {
+    fn every_truncation_parses_or_is_refused() {
         let whole = label();
         for cut in 0..whole.len() {
             assert_eq!(ExtendedLabel::parse(&whole[..cut]).is_ok(), cut >= ExtendedLabel::MIN_BYTES, "{cut}");
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn impossible_numbers_are_no_geometry() {
+    fn impossible_numbers_yield_no_geometry() {
         let mut bytes = label();
         bytes[2..6].copy_from_slice(&u32::MAX.to_be_bytes());
         assert_eq!(ExtendedLabel::parse(&bytes).unwrap().geometry, None);
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn the_parts_stand_at_the_addresses_of_the_manual() {
+    fn label_parts_are_at_the_addresses_of_the_manual() {
         let parts = ExtendedLabel::parts(&label()).unwrap();
         assert_eq!(
             parts[..5].iter().map(|(at, count, _)| (*at, *count)).collect::<Vec<_>>(),

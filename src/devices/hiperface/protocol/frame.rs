@@ -85,7 +85,7 @@ mod tests {
     ];
 
     #[test]
-    fn the_manuals_example_is_read_as_printed() {
+    fn the_manuals_example_parses_as_printed() {
         for (bytes, right) in MANUAL_EXAMPLE {
             match Frame::parse(bytes) {
                 Ok(frame) => assert!(right && frame.emit() == bytes, "{bytes:02X?}"),
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn every_cut_and_every_flipped_bit_is_refused() {
+    fn truncated_and_damaged_frames_are_refused() {
         let frame = [0x40, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x38];
         for cut in 0..frame.len() {
             assert!(Frame::parse(&frame[..cut]).is_err(), "cut at {cut}");
@@ -112,7 +112,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_emitted_is_parsed(address: u8, command: u8, payload in proptest::collection::vec(any::<u8>(), 0..140)) {
+        fn emitted_frames_parse_back(address: u8, command: u8, payload in proptest::collection::vec(any::<u8>(), 0..140)) {
             let frame = Frame { address, command, payload: &payload };
             let bytes = frame.emit();
             prop_assert_eq!(Frame::parse(&bytes), Ok(frame));

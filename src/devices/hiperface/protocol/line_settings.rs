@@ -122,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_bytes_say_what_the_reference_says() {
+    fn settings_bytes_decode_as_in_the_reference() {
         // byte, baud, parity, long time-out, bus
         let cases = [
             (0xE4, 9600, Parity::Even, true, false),

@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_requests_get_the_status_an_encoder_gives() {
+    fn bad_requests_map_to_the_encoders_status() {
         let cases: [(&[u8], StatusCode); 12] = [
             (&[0x40, 0x41], StatusCode::UNKNOWN_COMMAND),
             (&[0x40, 0x54], StatusCode::UNKNOWN_COMMAND),

@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn warnings_and_spoilt_positions() {
+    fn warnings_and_invalid_positions_are_classified() {
         let warnings: Vec<u8> = (0..=255).filter(|b| StatusCode::new(*b).is_warning()).collect();
         assert_eq!(warnings, [0x08, 0x1C, 0x1D, 0x1E]);
         let spoiling: Vec<u8> = (0..=255).filter(|b| StatusCode::new(*b).spoils_position()).collect();

@@ -56,7 +56,7 @@ mod tests {
     /// Worst cases at 9600 8E1 with the default time-out in 0.1 ms, computed from 11 and 44 bits and the manual's
     /// maximum times with a calculator.
     #[test]
-    fn worst_cases_at_9600() {
+    fn worst_case_durations_at_9600_baud() {
         let timing = Timing::of_settings(LineSettings::FACTORY).unwrap();
         let code = AccessCode::FACTORY;
         let read = |count| Request::ReadData { field: 0, address: 0, count, code };
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn the_time_out_is_programmable() {
+    fn the_timeout_is_programmable() {
         let format = CharacterFormat { baud: Baud::new(38400).unwrap(), parity: Parity::Even };
         assert_eq!(Timing::new(format, false).timeout, Duration::from_nanos(286_458));
         assert_eq!(Timing::new(format, true).timeout, Duration::from_nanos(1_145_833));

@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_serial_label_of_the_reference() {
+    fn the_serial_label_of_the_reference_parses() {
         let label = SerialLabel::parse(b"GB0450179V1.2301.02.16").unwrap();
         assert_eq!(label.serial_number, "GB0450179");
         assert_eq!(label.firmware_version, "V1.23");
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn padding_is_trimmed_and_lengths_are_held() {
+    fn padding_is_trimmed_and_lengths_are_checked() {
         let label = SerialLabel::parse(b"123456   \0V2 \0       01.01.99").unwrap();
         assert_eq!(label.serial_number, "123456");
         assert_eq!(label.firmware_version, "V2");
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_printed_is_shown() {
+    fn unprintable_characters_are_escaped() {
         let label = SerialLabel::parse(b"12345\xFF\n89V01.02.16").unwrap();
         assert_eq!(label.serial_number, "12345\\xff\\n89");
     }

@@ -103,7 +103,7 @@ fn sums_to_zero(bytes: &[u8]) -> bool {
 }
 
 #[test]
-fn every_frame_of_the_file_has_the_checksum_it_should() {
+fn every_frame_in_the_file_has_a_correct_checksum() {
     for line in lines() {
         match line.kind {
             Kind::SingleByte => {}
@@ -122,7 +122,7 @@ fn every_frame_of_the_file_has_the_checksum_it_should() {
 }
 
 #[test]
-fn every_request_of_the_file_is_read_and_written_back() {
+fn every_request_in_the_file_round_trips() {
     for line in of_kind(Kind::Request) {
         let (request, address) = line.asked();
         assert_eq!(request.emit(address).bytes(), line.bytes, "line {}", line.number);
@@ -130,7 +130,7 @@ fn every_request_of_the_file_is_read_and_written_back() {
 }
 
 #[test]
-fn every_reply_of_the_file_is_taken_for_its_request() {
+fn every_reply_in_the_file_matches_its_request() {
     for line in of_kind(Kind::Reply) {
         let (request, address) = line.asked();
         let answer = request.parse_reply(address, &line.bytes);
@@ -141,7 +141,7 @@ fn every_reply_of_the_file_is_taken_for_its_request() {
 }
 
 #[test]
-fn every_error_frame_of_the_file_refuses_a_request_and_answers_50h() {
+fn every_error_frame_in_the_file_is_a_refusal_and_a_status_reply() {
     for line in of_kind(Kind::ErrorFrame) {
         let pending = line.bytes[1] == 0xD0;
         let codes = vec![StatusCode::new(line.bytes[2])];
@@ -153,7 +153,7 @@ fn every_error_frame_of_the_file_refuses_a_request_and_answers_50h() {
 }
 
 #[test]
-fn what_is_not_a_reply_is_refused() {
+fn frames_that_are_not_replies_are_refused() {
     for line in of_kind(Kind::NotAReply) {
         let (request, address) = line.asked();
         let answer = request.parse_reply(address, &line.bytes);
@@ -162,7 +162,7 @@ fn what_is_not_a_reply_is_refused() {
 }
 
 #[test]
-fn every_reply_cut_or_damaged_is_refused() {
+fn truncated_and_damaged_replies_are_refused() {
     for line in lines() {
         let asked = match line.kind {
             Kind::Reply => vec![line.asked()],
@@ -185,7 +185,7 @@ fn every_reply_cut_or_damaged_is_refused() {
 }
 
 #[test]
-fn single_bytes_mean_what_the_file_says() {
+fn single_bytes_decode_as_in_the_file() {
     for line in of_kind(Kind::SingleByte) {
         let (what, text) = line.meaning.split_once(": ").unwrap();
         let words: Vec<&str> = text.split(", ").collect();
@@ -218,7 +218,7 @@ fn single_bytes_mean_what_the_file_says() {
 }
 
 #[test]
-fn the_label_of_the_file_is_read() {
+fn the_label_in_the_file_parses() {
     let content = of_kind(Kind::LabelContent).next().unwrap().bytes;
     assert_eq!(content.len(), 64);
     let label = ExtendedLabel::parse(&content).unwrap();
@@ -234,7 +234,7 @@ fn the_label_of_the_file_is_read() {
 
 /// Neither of the two lists may grow without the other.
 #[test]
-fn file_and_table_hold_the_same_requests_and_replies() {
+fn file_and_table_have_the_same_requests_and_replies() {
     let mut file = BTreeSet::new();
     for line in lines() {
         match line.kind {
@@ -286,7 +286,7 @@ proptest! {
     }
 
     #[test]
-    fn noise_is_no_label_that_panics(bytes in proptest::collection::vec(any::<u8>(), 0..160)) {
+    fn noise_as_a_label_does_not_panic(bytes in proptest::collection::vec(any::<u8>(), 0..160)) {
         if let Ok(label) = ExtendedLabel::parse(&bytes) {
             prop_assert!(label.geometry.is_none_or(|geometry| geometry.range().is_some_and(|range| range <= 1 << 32)));
         }

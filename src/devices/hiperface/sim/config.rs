@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_read() {
+    fn every_key_is_parsed() {
         let config = read(
             "seed=7&fault=drop:0.5&model=sel37&type=0x47&serial=AB123&address=0x58&settings=0xE5&rpm=-12.5&\
              position=0x1234&temperature=-10&echo=on&encoders=8&pace=worst&codes=0:12,3:AB",
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_in_a_sentence() {
+    fn invalid_values_are_reported() {
         let cases = [
             (
                 "sed=1",
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn serial_numbers_count_up() {
+    fn serial_numbers_are_consecutive() {
         let config = Config { serial_number: Some("AB999".to_owned()), ..Config::default() };
         assert_eq!(config.serial_number_of(0), "AB999    ");
         assert_eq!(config.serial_number_of(2), "AB001    ");

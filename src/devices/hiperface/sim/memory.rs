@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn fields_lie_one_after_the_other() {
+    fn fields_are_contiguous() {
         let mut memory = two_fields();
         assert_eq!(memory.free(), FreeMemory { blocks: 5, fields: 2 });
         memory.store(0, 31, &[1], CODE).unwrap();
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn refusals_of_reading_and_writing() {
+    fn invalid_reads_and_writes_are_refused() {
         let mut memory = two_fields();
         assert_eq!(memory.read(2, 0, 1, CODE), Err(StatusCode::NO_SUCH_FIELD));
         assert_eq!(memory.read(1, 16, 1, WRONG), Err(StatusCode::OUT_OF_FIELD));
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn refusals_of_defining() {
+    fn invalid_definitions_are_refused() {
         let mut memory = two_fields();
         // what, field, status, code, answer
         let cases = [
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_changed_field_is_guarded_by_its_present_code() {
+    fn changing_a_field_needs_its_current_code() {
         let mut memory = two_fields();
         let code2 = CodeNumber::new(2).unwrap();
         memory.change_code(code2, CODE, AccessCode::new(0x66)).unwrap();
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_field_grows_shrinks_and_goes_and_its_content_stays() {
+    fn resizing_the_last_field_keeps_its_content() {
         let mut memory = two_fields();
         memory.store(1, 0, &[0x08, 0x15], CODE).unwrap();
         memory.define(1, status(0xED), CODE).unwrap();

@@ -88,7 +88,7 @@ mod tests {
     use crate::devices::hiperface::protocol::ExtendedLabel;
 
     #[test]
-    fn every_model_is_possible() {
+    fn every_model_is_consistent() {
         for model in MODELS {
             assert_eq!(Model::find(model.name), Some(&model));
             assert_eq!(model.serial_number.len(), 9, "{}", model.name);
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn the_kits_label_is_the_one_of_the_reference() {
+    fn the_kit_encoders_label_matches_the_reference() {
         let label = ExtendedLabel::parse(SEL37_LABEL).unwrap();
         assert!(label.checksum_fits);
         assert_eq!(label.designation, "SEL37-HFB0-K02");

@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turning_shaft_is_where_it_must_be() {
+    fn a_turning_shaft_has_the_expected_position() {
         let mut shaft = Shaft::new(SKM36, 0, 60.0); // 4096 steps per second
         assert_eq!(shaft.position(at(0)), 0);
         assert_eq!(shaft.position(at(250)), 1024);
@@ -140,7 +140,7 @@ mod tests {
 
     /// Quarter periods: 2.5 V is count 511 (01FFh of the reference), 3 V is 613, 2 V is 409.
     #[test]
-    fn the_signals_go_round_once_a_period() {
+    fn the_signals_repeat_every_period() {
         for (position, sine, cosine) in [(0, 511, 613), (8, 613, 511), (16, 511, 409), (24, 409, 511)] {
             let shaft = Shaft::new(SKM36, 0x531 / 32 * 32 + position, 0.0);
             assert_eq!((shaft.sine(at(0)), shaft.cosine(at(0))), (sine, cosine), "{position}");

@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reading_counts_as_it_was_asked_for() {
+    fn a_reading_keeps_its_requested_source() {
         let form = Form { source: Source::Typed, phase: "0.27".to_owned(), ..Form::default() };
         let mut commutation = Commutation { form, ..Commutation::default() };
         commutation.ask(Slot::OneSide);
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reading_is_as_fine_as_the_encoder_lets_it_be() {
+    fn signals_refine_a_reading() {
         let without = read(Source::Signals, "", rest(40, None)).unwrap();
         assert_eq!((without.fine_periods, without.kind, without.raw), (40.5 / 32.0, Kind::Absolute, Some(40)));
         let with = read(Source::Signals, "", rest(40, Some((0.5, 0.0)))).unwrap();
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_position_is_refused() {
+    fn invalid_positions_are_refused() {
         assert_eq!(read(Source::Absolute, "", Rest { valid: false, ..rest(40, None) }), Err("commutation.invalid"));
         for volts in [(0.0, 0.0), (0.1, 0.1), (0.7, 0.7), (f64::NAN, 0.5)] {
             assert_eq!(read(Source::Signals, "", rest(40, Some(volts))), Err("commutation.no_signal"), "{volts:?}");

@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_of_a_write_that_was_cut_off_fits_its_kind() {
+    fn the_remedy_for_an_interrupted_write_matches_its_kind() {
         let path = Path::new("b.ron");
         let words = |cycles, kind| {
             let texts = interruption(&cut_off(Error::Cancelled, cycles), path, 4, kind);
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_was_lost_in_a_write_is_lost_and_no_more() {
+    fn a_line_lost_during_a_write_is_reported_as_lost() {
         let gone = || Error::Link(LinkError::new("COM3", LinkErrorKind::Lost));
         let interrupted = Box::new(cut_off(gone(), 1));
         let backup = Path::new("b.ron").to_owned();

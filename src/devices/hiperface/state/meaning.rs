@@ -84,7 +84,7 @@ mod tests {
     /// Issue 22.11: a damaged reply has a meaning that names the error, and a mark. The frames are those of the manual's
     /// commands, damaged by hand.
     #[test]
-    fn a_broken_reply_has_a_meaning_and_a_mark() {
+    fn damaged_replies_are_explained_and_marked() {
         let position = [0x40, 0x42, 0x02];
         let cases: [(&str, &[u8], Option<TraceFault>, &str); 6] = [
             ("good", &[0x40, 0x42, 0x00, 0x0E, 0x05, 0x31, 0x38], None, "position"),

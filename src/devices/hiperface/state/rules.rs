@@ -114,7 +114,7 @@ mod tests {
 
     /// As a restore does that creates fields again.
     #[test]
-    fn a_plan_that_deletes_a_field_leaves_its_edits_no_place() {
+    fn a_plan_that_deletes_an_edited_field_is_refused() {
         let status = DataFieldStatus::from_byte(0xC8);
         let field = FieldImage { number: 0, status, bytes: Some(vec![0; 16]) };
         let memory = FreeMemory { blocks: 2, fields: 1 };

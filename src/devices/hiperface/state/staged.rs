@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edit_stands_beside_the_device() {
+    fn an_edit_is_separate_from_the_device() {
         let mut staged = staged();
         staged.put(0, 3, &[0x08, 0x00, 0x15]).unwrap();
         assert_eq!((staged.on_device(0, 3), staged.byte(0, 3)), (Some(0), Some(0x08)));
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_edited_says_why_and_changes_nothing() {
+    fn refused_edits_name_a_reason_and_change_nothing() {
         let mut staged = staged();
         assert_eq!(staged.put(0, 15, &[1, 2]), Err(StagedError::Outside { field: 0, last: 15 }));
         assert_eq!(staged.put(0, usize::MAX, &[1]), Err(StagedError::Outside { field: 0, last: 15 }));
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_undone_and_done_again() {
+    fn edits_can_be_undone_and_redone() {
         let mut staged = staged();
         staged.put(0, 0, &[1, 2]).unwrap();
         staged.put(0, 1, &[3]).unwrap();
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_draft_comes_back() {
+    fn a_draft_is_restored() {
         let mut staged = staged();
         staged.put(0, 0, &[1, 2]).unwrap();
         let draft: Vec<(u8, usize, u8)> = staged.edits().collect();

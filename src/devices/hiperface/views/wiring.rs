@@ -46,7 +46,7 @@ mod tests {
     /// pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485), figure 15 (130 Ω and 1 kΩ built in; BUS version: at most 8, no
     /// 130 Ω, terminated at the one farthest from the master).
     #[test]
-    fn the_card_says_what_the_manual_says() {
+    fn the_wiring_card_matches_the_manual() {
         check_wires(
             &TEXTS,
             &WIRES,

@@ -108,7 +108,7 @@ mod tests {
 
     /// Read-out 9: 1 is position mode, 6 cam program 4.
     #[test]
-    fn an_excursion_is_kept_as_numbers_of_modes() {
+    fn an_excursion_is_stored_as_mode_numbers() {
         let mode = |number| StartupMode::parse(Value::of_word(number));
         let excursion = Excursion { found: mode(1), sent: vec![mode(3), mode(6)] };
         assert_eq!(emit(&excursion), "[1, 3, 6]\n");

@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn links_lead_to_a_gateway_or_say_why_not() {
+    fn links_open_a_gateway_or_report_the_reason() {
         for text in [
             "sim:",
             "sim:?steps=360&rpm=60&order=low-first&unit=3&input=16&output=32&cycle=1",

@@ -147,7 +147,7 @@ mod tests {
 
     /// 1000 steps over 3 turns: turn 1 begins at 333.3, so 334 is its first step.
     #[test]
-    fn a_position_lies_in_its_turn() {
+    fn a_position_is_split_into_turns_and_steps() {
         let place = |word| reading(word, StartupMode::K3, (1000, 3), 0).place();
         assert_eq!(place(333).map(|own| (own.turns, own.steps)), Some((0, 333)));
         assert_eq!(place(334).map(|own| (own.turns, own.steps)), Some((1, 0)));
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn exchanged_halves_are_noticed() {
+    fn swapped_words_are_detected() {
         assert_eq!(swapped(0x3456_0012), Some(0x0012_3456));
         assert_eq!(swapped(0x0012_3456), None);
         // Stray bits in both orders prove nothing.

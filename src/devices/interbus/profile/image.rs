@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn directions_have_the_numbers_of_the_manual() {
+    fn directions_have_the_codes_of_the_manual() {
         for (text, code) in [("cw", 3), ("3", 3), ("ccw", 4), ("4", 4)] {
             let direction: Direction = text.parse().unwrap();
             assert_eq!((direction.code(), Direction::of_code(code)), (code, Some(direction)), "{text}");
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_stands_at_its_number() {
+    fn a_program_is_stored_at_its_number() {
         let parameters =
             Parameters { steps: 255, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
         let mut image = Image::of(parameters);

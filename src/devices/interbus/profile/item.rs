@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn an_image_gives_back_what_was_put_into_it() {
+    fn items_round_trip_through_an_image() {
         // Five parameters, the shift, eight programs with a mask and eight cams.
         assert_eq!(Item::writable().count(), 5 + 1 + 8 * 9);
         let full = image();

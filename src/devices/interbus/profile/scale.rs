@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_outside_names_the_limits() {
+    fn out_of_range_values_name_the_limits() {
         for (scale, range, value, least, most) in [
             (Scale::default(), 1000, 1000.0, 0.0, 999.0),
             (Scale::new(Unit::Steps, 1.0, 10).unwrap(), 1000, -1.0, 0.0, 999.0),
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn decimals_tell_steps_apart() {
+    fn decimals_distinguish_adjacent_steps() {
         for (steps, decimals) in [(360.0, 0), (3600.0, 1), (8192.0, 2), (720.0, 1), (180.0, 0), (33_554_432.0, 6)] {
             assert_eq!(Scale::degrees(steps, 0).unwrap().decimals(), decimals, "{steps}");
         }

@@ -30,7 +30,7 @@ fn program(number: u8) -> Command {
 
 /// Reference 3, 5 and 7: a command, its word, and a mode in which it has this meaning.
 #[test]
-fn the_published_commands() {
+fn published_commands_match() {
     let register = |number| Command::ReadOut(ReadOut::chip_register(number).unwrap());
     let cases = [
         ("normal", Command::Normal, 0x0000_0000, Position),
@@ -85,7 +85,7 @@ fn the_published_commands() {
 
 /// Reference 2 and 7.
 #[test]
-fn the_published_replies() {
+fn published_replies_match() {
     let code = |code| Code::new(code).unwrap();
     let error = |number, data| Reply::Error(ErrorWord { code: code(number), data: value(data) });
     let echo = |number, data| Reply::Echo { manufacturer: false, code: code(number), data: value(data) };
@@ -126,7 +126,7 @@ fn the_published_replies() {
 
 /// Reference 3 and 7.
 #[test]
-fn what_was_read_out_has_its_unit() {
+fn read_outs_have_their_units() {
     let read = |read_out: ReadOut, word| match Reply::parse(word) {
         Reply::ReadOut(value) => read_out.value(value),
         other => panic!("{other:?}"),
@@ -154,7 +154,7 @@ fn what_was_read_out_has_its_unit() {
 
 /// Reference 6, by its numbers, as far as it is about reading and writing of bytes. 8: the echo of steps 255.
 #[test]
-fn the_manual_contradicts_itself() {
+fn contradictions_in_the_manual_are_resolved() {
     assert_eq!(id_code(Class::K3, Interface::Standard), 55, "1: 37h");
     assert_eq!(Command::Preset.emit(), 0x4000_0000, "2: fired by bit 30");
     assert_eq!(Command::in_mode(0x0A00_03E8, Position), Ok(set(P::ZeroShift, 1000)), "2: which 0A does not");
@@ -176,7 +176,7 @@ fn the_manual_contradicts_itself() {
 
 /// Reference 6.3: the same word in each mode, and words that must not be sent.
 #[test]
-fn the_mode_tells_what_a_word_means() {
+fn the_mode_determines_the_meaning_of_a_word() {
     let (zero, start) = (value(0), Command::Velocity(true));
     let shared = [
         (0x4000_0000, Command::Preset, Command::CamStart(cam(0), zero)),
@@ -210,7 +210,7 @@ fn the_mode_tells_what_a_word_means() {
 
 /// Reference 4 and 5: the echo of a cam is an assumption.
 #[test]
-fn echoes_are_told_by_the_mode() {
+fn the_mode_determines_the_echo() {
     assert_eq!(Reply::parse(0xC200_00FF).echoed(Parameterisation), Some(set(P::Steps, 255)));
     assert_eq!(Reply::parse(0xC200_00FF).echoed(Cams), Some(Command::CamStart(cam(1), value(255))));
     assert_eq!(Reply::parse(0xE600_0213).echoed(Cams), Some(Command::CamStop(cam(3), value(0x213))));
@@ -226,7 +226,7 @@ fn echoes_are_told_by_the_mode() {
 
 /// Reference 7: positions under the window, with cam 5 on.
 #[test]
-fn the_published_cam_outputs() {
+fn published_cam_outputs_match() {
     for (word, at) in [(0x01CD_EF20, 0), (0x01AB_CD20, 8), (0x00BC_DE20, 4), (0x0000_0020, 25)] {
         let output = CamOutput::at(value(0x1AB_CDEF), 1 << 5, shift(at));
         assert_eq!(format!("{:08X}", output.emit()), format!("{word:08X}"), "shift {at}");
@@ -245,7 +245,7 @@ fn the_published_cam_outputs() {
 
 /// Reference 1 and 7.
 #[test]
-fn classes_say_who_they_are() {
+fn classes_have_their_id_codes() {
     use Interface::{Loop2, OpticalFibre, Standard};
     for class in [Class::K1, Class::K2] {
         assert_eq!([Standard, OpticalFibre, Loop2].map(|interface| id_code(class, interface)), [54, 54, 178]);
@@ -262,7 +262,7 @@ fn classes_say_who_they_are() {
 
 /// Reference 1.
 #[test]
-fn lamps_say_what_is_the_matter() {
+fn led_states_match_the_reference() {
     use LedState::{Blinking, Off, On};
     let says = |ul, ba, rc, rbda| Leds { ul, ba, rc, rbda }.row().map(|row| row.meaning);
     assert_eq!(says(On, Off, On, Off), Some("no run"));
@@ -300,7 +300,7 @@ fn the_gear_rounds_down() {
 
 /// Reference 3: ranges, which depend on the gear.
 #[test]
-fn parameters_have_limits() {
+fn parameter_limits_are_checked() {
     let gear = Gear::new(3600, 10).unwrap();
     for (parameter, low, high) in [
         (P::Steps, 1, 81_920),
@@ -352,7 +352,7 @@ fn any_programs() -> impl Strategy<Value = [Program; 8]> {
 
 proptest! {
     #[test]
-    fn every_word_survives(word: u32) {
+    fn every_word_round_trips(word: u32) {
         for command in Command::readings(word) {
             prop_assert_eq!(command.emit(), word);
         }
@@ -369,7 +369,7 @@ proptest! {
 
     /// Words that begin as those of the manual do, which any number seldom hits.
     #[test]
-    fn words_beside_the_manual_s_survive(high in prop::sample::select(vec![0x2010, 0x2020, 0x2021, 0x2040, 0x2080]), low: u16) {
+    fn words_near_the_manuals_round_trip(high in prop::sample::select(vec![0x2010, 0x2020, 0x2021, 0x2040, 0x2080]), low: u16) {
         let word = high << 16 | u32::from(low);
         for command in Command::readings(word) {
             prop_assert_eq!(command.emit(), word);
@@ -377,14 +377,14 @@ proptest! {
     }
 
     #[test]
-    fn a_mode_takes_a_word_for_one_thing(word: u32, mode in prop::sample::select(Mode::ALL.to_vec())) {
+    fn a_word_has_one_meaning_per_mode(word: u32, mode in prop::sample::select(Mode::ALL.to_vec())) {
         let legal = Command::readings(word).into_iter().filter(|command| command.is_legal_in(mode)).count();
         prop_assert!(legal <= 1);
     }
 
     /// The window by the reference's formula.
     #[test]
-    fn the_window_is_what_its_formula_says(position in 0..=0x1FF_FFFF_u32, outputs: u8, at in 0..=25_u8) {
+    fn the_window_matches_its_formula(position in 0..=0x1FF_FFFF_u32, outputs: u8, at in 0..=25_u8) {
         let output = CamOutput::at(value(position), outputs, shift(at));
         let window = (u64::from(position) << 8 >> at) & 0x01FF_FF00;
         prop_assert_eq!(u64::from(output.emit()), window | u64::from(outputs));
@@ -393,7 +393,7 @@ proptest! {
 
     /// The result equals that of the plain programs: at edges, next to them and anywhere.
     #[test]
-    fn compiled_programs_are_the_same(programs in any_programs(), anywhere in 0..=0x1FF_FFFF_u32) {
+    fn compiled_programs_equal_plain_ones(programs in any_programs(), anywhere in 0..=0x1FF_FFFF_u32) {
         let compiled = Compiled::new(&programs);
         let cams = programs.iter().flat_map(|program| program.cams.iter().flatten());
         let edges = cams.flat_map(|cam| [cam.start.get(), cam.stop.get()]);

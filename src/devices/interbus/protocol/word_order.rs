@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_lie_in_their_registers_either_way() {
+    fn words_convert_in_either_register_order() {
         for (order, registers) in [(WordOrder::HighFirst, [0xC200, 0x00FF]), (WordOrder::LowFirst, [0x00FF, 0xC200])] {
             assert_eq!(order.registers(0xC200_00FF), registers);
             assert_eq!(order.word(registers), 0xC200_00FF);

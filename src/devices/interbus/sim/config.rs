@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_read() {
+    fn every_key_is_parsed() {
         let query = "preset=99&zero-shift=500&steps=100&revolutions=2&direction=ccw&rpm=-5&position=0x10&serial=7&\
                      operating-time=8&temperature=-1.25&temperature-bits=16&complement=bit&program=8&cams=none&stores=449&\
                      steps-minus-one=on&busy=20&stale=3&selection=output&class=K2&encoders=2&unit=17&input=100&output=0x200&\
@@ -175,14 +175,14 @@ mod tests {
     }
 
     #[test]
-    fn half_a_gear_takes_as_much_of_the_other_half_as_fits() {
+    fn an_omitted_half_of_the_gear_takes_its_maximum() {
         let gear = |query: &str| read(query).map(|config| (config.memory.gear.steps(), config.memory.gear.turns()));
         assert_eq!(gear("steps=360"), Ok((360, 4096)));
         assert_eq!(gear("revolutions=2"), Ok((16384, 2)));
     }
 
     #[test]
-    fn what_is_wrong_is_told_in_a_sentence() {
+    fn invalid_values_are_reported() {
         let keys = Config::KEYS.join(", ");
         let cases = [
             ("sed=1", format!("a virtual INTERBUS encoder has no setting `sed`; valid settings are {keys}")),

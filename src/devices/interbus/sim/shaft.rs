@@ -48,7 +48,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_turning_shaft_is_where_it_must_be() {
+    fn a_turning_shaft_has_the_expected_position() {
         let at = |ms| Moment::START + Duration::from_millis(ms);
         let mut shaft = Shaft::new(100, 60.0);
         assert_eq!((shaft.place(at(0)), shaft.place(at(1_000))), (100, 8292));

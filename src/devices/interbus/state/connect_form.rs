@@ -139,7 +139,7 @@ mod tests {
     use crate::app::connect::parameters::tests::assert_comes_back;
 
     #[test]
-    fn a_link_is_shown_and_comes_back_as_it_was() {
+    fn links_round_trip_through_the_form() {
         let links = [
             "sim:",
             "sim:?cams=demo&rpm=6",
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused_with_its_entry() {
+    fn invalid_entries_are_refused_by_name() {
         let refused = |change: fn(&mut InterbusForm)| {
             let mut form = InterbusForm::default();
             change(&mut form);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn another_way_takes_along_only_what_it_has() {
+    fn switching_the_interface_keeps_only_its_settings() {
         let mut form = InterbusForm::from_url(&"sim:?rpm=60&busy=5&unit=7".parse().unwrap());
         (form.kind, form.host) = (InterbusLinkKind::Gateway, "gate".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "modbus:gate:502?unit=7");

@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_taken_or_refused_with_their_limits() {
+    fn numbers_are_accepted_or_refused_with_their_limits() {
         assert_eq!(number(" 33 554 431 "), Ok(33_554_431));
         assert_eq!(number("0x1FF"), Ok(511));
         assert!(number("-1").is_err() && number("1.5").is_err() && number("").is_err());

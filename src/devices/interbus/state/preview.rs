@@ -71,7 +71,7 @@ mod tests {
 
     /// Cam 3 from 15 to 213 (reference 7), in program 2.
     #[test]
-    fn outputs_are_held_against_the_program_that_gives_them() {
+    fn outputs_are_compared_with_their_program() {
         let mut program = Program { mask: 8, ..Program::default() };
         program.cams[3] = Some(Cam { start: Value::new(15).unwrap(), stop: Value::new(213).unwrap() });
         let mut programs = [None; ProgramNumber::COUNT];

@@ -113,7 +113,7 @@ mod tests {
     use crate::app::Language;
 
     #[test]
-    fn typed_words_are_read_or_told_why_not() {
+    fn typed_words_are_decoded_or_refused_with_a_reason() {
         let says = |reading: Reading, text: &str| -> Vec<String> {
             let lines = reading.lines(text).into_iter();
             lines.map(|line| line.meaning.unwrap_or_else(|why| why).words(Language::English)).collect()

@@ -107,7 +107,7 @@ mod tests {
     /// Issue 22.11: replies of a gateway (Modbus application protocol 1.1b3, 6.4 and 7) that are damaged by hand, refusals,
     /// and those with an error word of the encoder (reference 2), have a meaning and a mark.
     #[test]
-    fn a_broken_reply_has_a_meaning_and_a_mark() {
+    fn damaged_replies_are_explained_and_marked() {
         let request = "00 07 00 00 00 06 01 04 00 00 00 02";
         let cases = [
             ("good", "00 07 00 00 00 07 01 04 04 00 00 03 E8", None),

@@ -160,7 +160,7 @@ mod tests {
 
     /// Words of reference 3, 5 and 7.
     #[test]
-    fn words_are_read_in_their_mode() {
+    fn words_are_decoded_in_their_mode() {
         let english = |text: Text| text.words(Language::English);
         for (word, mode, says) in [
             (0x0200_00FF, Mode::Position, "Steps := 255"),

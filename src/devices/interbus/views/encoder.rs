@@ -153,7 +153,7 @@ mod tests {
     /// Issue 22.23: INTERBUS manual, 3.1 and 3.2 (9-pin round connectors, in: male, out: female; no addresses; shield to
     /// the housing, Loop: housing to PE), 6.1 (10 to 30 V DC absolute, 3.5 W, 500 kBaud or 2 MBaud).
     #[test]
-    fn the_card_says_what_the_manual_says() {
+    fn the_wiring_card_matches_the_manual() {
         check_notes(
             &TEXTS,
             &WIRING,

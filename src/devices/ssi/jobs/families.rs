@@ -20,7 +20,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn families_of_the_users_own_stand_before_those_that_ship() {
+    fn user_families_precede_built_in_ones() {
         let root = tempfile::tempdir().unwrap();
         let store = Store::at(root.path());
         assert_eq!(families(&store), (Families::built_in(), Vec::new()));

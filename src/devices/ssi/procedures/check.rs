@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn the_adapter_and_its_supply_are_judged_too() {
+    fn adapter_and_supply_are_judged() {
         let judged = |clock_hz, measured: Option<(u16, u16)>| {
             let supply = Some(Supply { millivolt: 5_000, measured });
             verdicts(&judge(&identity(clock_hz, supply), &layout("afs60"), &[0x15_5E68]))[..2].to_vec()

@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_read_from_its_parameters() {
+    fn line_settings_are_parsed_from_parameters() {
         let usual = station("").unwrap();
         assert_eq!((usual.asking, usual.supply), (Asking { clocks: 25, clock_hz: 400_000, pause_us: 200 }, None));
         assert_eq!(usual.line.margin, Duration::from_millis(100));
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_cannot_be_used_names_what_can() {
+    fn a_rejected_value_names_the_allowed_ones() {
         for (query, message) in [
             ("margin=-1", "margin=-1 is not valid (allowed: a time in milliseconds from 0 to 2000)"),
             ("clock=79999", "clock=79999 is not valid (allowed: a frequency in hertz from 80000 to 10000000)"),

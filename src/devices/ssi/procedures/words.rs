@@ -83,7 +83,7 @@ mod tests {
     use crate::buses::bridge::protocol::Data;
 
     #[test]
-    fn a_packet_is_a_run_of_words_with_a_moment_each() {
+    fn a_packet_yields_a_run_of_timed_words() {
         let data = SsiData { first_index: 7, t0_us: 0, period_us: 50, lost: 0, width: 4, values: vec![1, 0x1FF_FFFF] };
         let time = Time::from_nanoseconds(3_000_000);
         let portion = Portion { first: 7, time, period_ns: 50_000, lost: 2, data: Data::Ssi(data.clone()) };

@@ -167,7 +167,7 @@ mod tests {
 
     /// Reference section 8, "Gray".
     #[test]
-    fn gray_words_of_the_reference() {
+    fn gray_words_match_the_reference() {
         let pairs = [
             (1000, 0x21C),
             (8191, 0x1000),
@@ -184,7 +184,7 @@ mod tests {
 
     /// The manual's table in 2.4, column Graycode, 0 to 15.
     #[test]
-    fn gray_words_of_the_manual() {
+    fn gray_words_match_the_manual() {
         let table = [0, 1, 3, 2, 6, 7, 5, 4, 12, 13, 15, 14, 10, 11, 9, 8];
         for (number, word) in table.into_iter().enumerate() {
             assert_eq!(gray(number as u64), word);
@@ -193,7 +193,7 @@ mod tests {
 
     /// Reference section 2: N, n, code(0), code(1), code(N/2), code(N−1).
     #[test]
-    fn gray_excess_of_the_reference() {
+    fn gray_excess_matches_the_reference() {
         let table = [
             (10, 4, 0x2, 0x6, 0xC, 0xA),
             (100, 7, 0x09, 0x08, 0x60, 0x49),
@@ -216,7 +216,7 @@ mod tests {
 
     /// Reference section 8, "Error cases".
     #[test]
-    fn words_outside_of_gray_excess() {
+    fn words_outside_gray_excess_are_refused() {
         let coding = Coding::new(Code::GrayExcess, 9).unwrap();
         for word in [0x0, 0x1, 0x3, 0x8, 0x9, 0xB] {
             assert_eq!(coding.decode(word), None, "{word:X}");
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn decimal_digits() {
+    fn bcd_digits_encode_and_decode() {
         let coding = Coding::new(Code::Bcd, 3599).unwrap();
         assert_eq!(coding.bits(), 16);
         assert_eq!(coding.encode(3599), Some(0x3599));
@@ -237,7 +237,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn neighbours_differ_in_one_bit(last in 1..u64::MAX, at in any::<u64>()) {
+        fn adjacent_words_differ_in_one_bit(last in 1..u64::MAX, at in any::<u64>()) {
             let last = last | 1;
             let coding = Coding::new(Code::GrayExcess, last).unwrap();
             let at = at % last;

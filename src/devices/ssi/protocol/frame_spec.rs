@@ -174,7 +174,7 @@ mod tests {
 
     /// Reference section 8: AHM36 in Gray is 12 and 14 bits followed by an error bit.
     #[test]
-    fn frames_in_one_word_read_frames() {
+    fn one_word_specifications_parse() {
         let layout = Layout::new(frame("frame,clocks=27,mt=12,st=14,code=gray,err=27,area=26")).unwrap();
         assert_eq!(layout.decode(0x0D9_3EEC).position, 0x123 << 14 | 0x2A5B);
         let inverted = Layout::new(frame("frame,clocks=27,mt=12,st=14,code=gray,err=27,inverted=1,area=26")).unwrap();
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_back() {
+    fn emitted_specifications_parse_back() {
         for text in [
             "frame,clocks=25,mt=12,st=13,code=gray",
             "frame,clocks=26,mt=12,st=12,code=gray,over=padded,area=25,lead=1,ones=26",
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_frame_says_why() {
+    fn invalid_specifications_are_refused_with_a_reason() {
         assert_eq!(Descriptor::parse("ahm36,code=gray"), None);
         let said = |text: &str| Descriptor::parse(text).unwrap().unwrap_err().to_string();
         assert!(said("frame,clock=3").starts_with("there is no \"clock\"; names: clocks, mt, st"));

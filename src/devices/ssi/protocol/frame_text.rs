@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bits_and_numbers_are_read() {
+    fn bits_and_numbers_parse() {
         // Reference section 8: AHS36 2A5B.
         for text in ["101010010110110", "0b1010100_10110110", "1010 1001 0110 110", "0x54B6", "0X54b6", "0x000054B6"] {
             assert_eq!(parse_frame(text, 15), Ok(0x54B6), "{text}");
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_frame_says_why() {
+    fn invalid_frames_are_refused_with_a_reason() {
         for text in ["", "0x", "0b", "12", "+1", "0x+1", "0xG", "frame", "-1"] {
             assert!(matches!(parse_frame(text, 15), Err(FrameTextError::Form(_))), "{text}");
         }

@@ -273,7 +273,7 @@ mod tests {
 
     /// Reference section 5: 100 steps over 12.5 turns of 8192, and 3600 over one.
     #[test]
-    fn positions_of_a_shaft() {
+    fn positions_convert_to_turns_and_degrees() {
         let axis = Range::RoundAxis { steps: 100, revolutions: Fraction { numerator: 25, denominator: 2 } };
         for (raw, position) in [(0, 0), (49152, 48), (102_399, 99), (102_400, 0)] {
             assert_eq!(axis.of_shaft(raw, 8192), position, "{raw}");
@@ -290,7 +290,7 @@ mod tests {
 
     /// Worked out by hand: 360 steps of 4096 of the shaft, and the round axis of the reference.
     #[test]
-    fn positions_with_direction_and_preset() {
+    fn direction_and_preset_transform_positions() {
         use Direction::{Clockwise, CounterClockwise};
         let degrees = Range::Steps { per_turn: 360, turns: 1 };
         let axis = Range::RoundAxis { steps: 100, revolutions: Fraction { numerator: 25, denominator: 2 } };

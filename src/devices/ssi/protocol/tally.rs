@@ -120,7 +120,7 @@ mod tests {
 
     /// AFS60, frames of the reference, section 8: 18 bits of position followed by ERRDIG, ERRSI, ERRSYNC.
     #[test]
-    fn what_a_transfer_clears_counts_with_each_frame_and_what_stands_once() {
+    fn cleared_errors_count_per_frame_and_static_ones_once() {
         let layout = layout("afs60");
         let mut tally = Tally::default();
         let good = 0x15_5E68;
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn words_that_stand_for_a_fault_and_bits_that_do_not_fit_are_noted() {
+    fn fault_patterns_and_padding_errors_are_counted() {
         let kh53 = layout("kh53");
         let mut tally = Tally::default();
         for (number, frame) in (0..).zip([5, 0xFF_FFFE, 0xFF_FFFE, 5, 0xFF_FFFE]) {

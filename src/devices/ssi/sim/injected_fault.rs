@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_those_of_the_layout() {
+    fn fault_names_are_those_of_the_layout() {
         let safe = layout("afs60s");
         assert_eq!(InjectedFault::names(&safe), ["ERRDIG", "ERRSI", "ERRSYNC", "safety-fault"]);
         let read = InjectedFault::read("errsi:4, ERRSYNC , Safety-Fault", &safe).unwrap();
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_transfer_clears_is_about_the_time_since_the_one_before() {
+    fn cleared_errors_depend_on_the_time_since_the_last_transfer() {
         let safe = layout("afs60s");
         let one = |text| InjectedFault::read(text, &safe).unwrap()[0];
         let (once, often) = (one("ERRSYNC"), one("ERRSYNC:0.5"));

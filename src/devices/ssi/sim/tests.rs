@@ -22,7 +22,7 @@ fn read(query: &str) -> Result<(), ConfigError> {
 
 /// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of those within a turn.
 #[test]
-fn ssi_words_in_gray_and_binary_and_with_another_zero() {
+fn words_follow_code_preset_and_direction() {
     let natural = 0x234 << 13 | 0x1800;
     for (query, word) in [
         ("ssi=atm60", natural),
@@ -53,7 +53,7 @@ fn ssi_words_in_gray_and_binary_and_with_another_zero() {
 }
 
 #[test]
-fn what_is_wrong_is_told_in_a_sentence() {
+fn invalid_values_are_reported() {
     let sentence = "`ssi-error=ERRDIG` is not valid (allowed: ERROR, separated by commas, each with :SECONDS for an \
                     error that recurs)";
     assert_eq!(read("ssi=ahm36&ssi-error=ERRDIG").unwrap_err().to_string(), sentence);
@@ -74,7 +74,7 @@ proptest! {
 
 /// At 60 rpm a revolution of 2^13 steps takes a second; the encoder needs no other device to be turned.
 #[test]
-fn the_encoder_turns_with_nothing_else_at_the_adapter() {
+fn the_encoder_turns_without_other_devices() {
     let mut host = Host::to("ssi=atm60,code=binary&rpm=60", &[&AtAdapter::DELIVERED]);
     host.expect(SSI, Reply::SsiConfig { clock_hz: 500_000 });
     let mut words = (0..3).map(|_| {

@@ -211,7 +211,7 @@ mod tests {
     use crate::link::{LinkError, LinkErrorKind};
 
     #[test]
-    fn every_error_says_what_happened_and_what_to_do() {
+    fn errors_name_cause_and_remedy() {
         let name = || "bench adapter".to_owned();
         let cases = [
             (JobError::Link(LinkError::new("COM3", LinkErrorKind::Lost)), "COM3"),
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wire_that_is_gone_is_a_loss_and_no_other_error_is() {
+    fn only_a_lost_wire_counts_as_a_lost_connection() {
         let gone = JobError::Link(LinkError::new("COM3", LinkErrorKind::Lost));
         assert_eq!(loss(&gone).unwrap().id(), "link.lost");
         assert_eq!(loss(&JobError::Adapter(AdapterError::Silent)), None);

@@ -78,7 +78,7 @@ mod tests {
     /// Issue 22.23: SICK SSI description 2.1 (four lines, RS-422 or RS-485, pairs twisted and shielded), figure 2 and
     /// reference section 1 (clock and data idle high: the plus wires; the minus wires rest low), 2.7 (lengths and rates).
     #[test]
-    fn the_card_says_what_the_manual_says() {
+    fn the_wiring_card_matches_the_manual() {
         check_wires(
             &TEXTS,
             &WIRES,

@@ -47,12 +47,12 @@ fn until(signals: &mut Signals, services: &mut Services, condition: impl Fn(&Sig
     }
 }
 
-fn told(services: &Services) -> Vec<&'static str> {
+fn notice_ids(services: &Services) -> Vec<&'static str> {
     services.log.notices().flat_map(|notice| notice.texts.iter().map(Text::id)).collect()
 }
 
 #[test]
-fn a_window_that_cannot_be_as_long_as_set_says_how_long_it_is() {
+fn a_shortened_window_reports_its_length() {
     let mut source = Source { window_ms: 5_000, ..Source::default() };
     // 500 000 samples at 100 kHz and at 1 MHz.
     assert_eq!(source.shortened_ms(), None);
@@ -61,7 +61,7 @@ fn a_window_that_cannot_be_as_long_as_set_says_how_long_it_is() {
 }
 
 #[test]
-fn what_was_measured_by_other_limits_is_judged_again() {
+fn measurements_under_other_limits_are_judged_again() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
     let before = signals.judge();
@@ -74,7 +74,7 @@ fn what_was_measured_by_other_limits_is_judged_again() {
 }
 
 #[test]
-fn a_source_that_ends_by_itself_is_told_and_runs_no_more() {
+fn a_source_that_ends_by_itself_is_reported_and_stopped() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
     signals.source.live.as_ref().unwrap().feed.stop();
@@ -84,11 +84,11 @@ fn a_source_that_ends_by_itself_is_told_and_runs_no_more() {
         signals.pump(&mut services);
         std::thread::sleep(Duration::from_millis(1));
     }
-    assert_eq!(told(&services), ["virtual.ended"]);
+    assert_eq!(notice_ids(&services), ["virtual.ended"]);
 }
 
 #[test]
-fn a_task_that_fails_is_told_and_nothing_waits_for_it() {
+fn a_failed_task_is_reported_and_no_longer_awaited() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
     signals.source.live.as_mut().unwrap().measuring = true;
@@ -104,6 +104,6 @@ fn a_task_that_fails_is_told_and_nothing_waits_for_it() {
     assert!(signals.reading().is_none());
     signals.done(Done::Failed(Failed::Judge), &mut services);
     let expected = ["signals.measuring_failed", "signals.reading_failed", "signals.judging_failed"];
-    let told = told(&services);
+    let told = notice_ids(&services);
     assert!(told.len() == 3 && expected.iter().all(|id| told.contains(id)), "{told:?}");
 }

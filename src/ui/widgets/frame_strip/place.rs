@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_lies_on_one_line_where_there_is_room() {
+    fn a_frame_is_placed_on_one_line_if_it_fits() {
         // 42 bits in groups of four with 3 + 4 + 1 gaps between them, four single bits as wide as their texts, 123
         // together, and seven gaps between fields.
         let placing = place(&kit(), 1100.0, GAP);
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_shrink_before_the_frame_goes_to_another_line() {
+    fn cells_shrink_before_the_frame_wraps() {
         // 42 · 13 + 24 + 123 + 56 = 749.
         let placing = place(&kit(), 749.0, GAP);
         assert_eq!((placing.lines, placing.cell), (1, 13.0));
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_longer_than_a_line_is_parted_at_bytes() {
+    fn a_field_longer_than_a_line_is_split_at_bytes() {
         let wants = [SpaceNeeded { bits: 64, words: 50.0 }];
         let placing = place(&wants, 400.0, GAP);
         // 32 bits with 7 groups between them take 32 · 11 + 21 = 373 points.
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_nothing() {
+    fn an_empty_frame_takes_no_space() {
         assert_eq!(place(&[], 100.0, GAP).lines, 0);
         let none = [SpaceNeeded { bits: 0, words: 10.0 }];
         assert!(place(&none, f32::NAN, GAP).pieces.is_empty());

@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_matters_least_falls_away_first() {
+    fn the_least_important_columns_are_hidden_first() {
         use Column::*;
         // 38 + 80 + 118 + 100 + 96 + 130 + 48 + 84 = 694.
         assert_eq!(shown(BYTES, 694.0).len(), 8);
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn name_and_meaning_take_what_is_left() {
+    fn name_and_meaning_take_the_remaining_width() {
         let columns = Columns::new(BYTES, 794.0, 100.0);
         assert_eq!(columns.range(Column::Name), Some(Rangef::new(118.0, 281.0)));
         assert_eq!(columns.range(Column::Value), Some(Rangef::new(281.0, 381.0)));

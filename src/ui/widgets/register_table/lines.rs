@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn every_line_is_found_both_ways() {
+    fn lines_and_rows_map_both_ways() {
         let groups = [group(3), group(0), group(2), group(4)];
         let row = |own: RegisterLocation| RegisterRow {
             fields: vec![RegisterBits::default(); own.row + 1],

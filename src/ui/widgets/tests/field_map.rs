@@ -87,7 +87,7 @@ fn the_last_field_is_resized_in_whole_blocks() {
 }
 
 #[test]
-fn escape_gives_a_new_size_up() {
+fn escape_cancels_a_resize() {
     let mut harness = map(&[2, 3], 4);
     let end = harness.get_by_label("Field 1").rect().right_center();
     harness.drag_at(end);
@@ -101,7 +101,7 @@ fn escape_gives_a_new_size_up() {
 }
 
 #[test]
-fn a_memory_without_fields_is_only_free() {
+fn a_memory_without_fields_is_all_free() {
     let mut harness = map(&[], 8);
     harness.get_by_label("Free").click();
     harness.run();

@@ -79,7 +79,7 @@ fn digits_overwrite_nibble_by_nibble() {
 }
 
 #[test]
-fn what_is_no_digit_is_told_until_the_next_key() {
+fn an_invalid_digit_is_reported_until_the_next_key() {
     let mut harness = editor(64, None);
     type_in(&mut harness, "g");
     harness.get_by_label_contains("\"g\" is not a hexadecimal digit");
@@ -89,7 +89,7 @@ fn what_is_no_digit_is_told_until_the_next_key() {
 }
 
 #[test]
-fn the_cursor_walks_and_selects() {
+fn the_cursor_moves_and_selects() {
     let mut harness = editor(40, None);
     press(&mut harness, &[(NONE, Key::ArrowDown), (NONE, Key::ArrowRight)]);
     assert_eq!(value(&harness), "0x11: 11");
@@ -121,7 +121,7 @@ fn a_selection_is_cleared_reverted_and_undone() {
 }
 
 #[test]
-fn the_cursor_goes_to_what_is_undone() {
+fn the_cursor_moves_to_the_undone_edit() {
     let mut harness = editor(64, None);
     harness.state_mut().view.select(16..17);
     type_in(&mut harness, "FF");
@@ -182,7 +182,7 @@ fn text_is_typed_and_copied_in_its_column() {
 }
 
 #[test]
-fn tab_goes_through_both_columns_and_on() {
+fn tab_moves_through_both_columns_and_on() {
     let mut harness = editor(32, None);
     press(&mut harness, &[(NONE, Key::Tab)]);
     assert!(harness.get_by_label(BYTES).is_focused());
@@ -196,7 +196,7 @@ fn tab_goes_through_both_columns_and_on() {
 }
 
 #[test]
-fn what_is_read_only_says_why() {
+fn read_only_bytes_show_the_reason() {
     let mut harness = editor(32, Some(Text::new("widget.hex_nothing")));
     let reason = "The clipboard contains no bytes.";
     for key in [Key::Delete, Key::Backspace] {
@@ -242,7 +242,7 @@ fn the_pointer_sets_the_cursor_and_selects() {
 }
 
 #[test]
-fn a_byte_tells_what_it_is_under_the_pointer() {
+fn hovering_a_byte_describes_it() {
     let mut harness = editor(16, None);
     press(&mut harness, &[(CTRL, Key::Home), (NONE, Key::ArrowRight)]);
     harness.state_mut().wanted[5] = 0x41;
@@ -256,7 +256,7 @@ fn a_byte_tells_what_it_is_under_the_pointer() {
 }
 
 #[test]
-fn the_cursor_stays_in_sight_and_inside() {
+fn the_cursor_stays_visible_and_in_range() {
     let state = Bytes { device: vec![0; 4096], wanted: vec![0; 4096], ..Bytes::default() };
     let mut harness = editor(0, None);
     assert_eq!(value(&harness), "");

@@ -52,7 +52,7 @@ fn step(harness: &mut Harness<'_, Jog>, events: impl IntoIterator<Item = Event>)
 }
 
 #[test]
-fn it_counts_while_a_finger_is_on_it() {
+fn a_hold_lasts_while_the_pointer_is_down() {
     let mut harness = jog();
     let at = middle(&harness);
     assert_eq!(step(&mut harness, [Event::PointerMoved(at)]), []);
@@ -66,7 +66,7 @@ fn it_counts_while_a_finger_is_on_it() {
 }
 
 #[test]
-fn a_finger_that_slides_off_ends_it_until_it_is_lifted() {
+fn sliding_off_ends_a_hold_until_the_next_press() {
     let mut harness = jog();
     let at = middle(&harness);
     step(&mut harness, [Event::PointerMoved(at)]);
@@ -79,7 +79,7 @@ fn a_finger_that_slides_off_ends_it_until_it_is_lifted() {
 }
 
 #[test]
-fn a_press_that_began_elsewhere_is_none() {
+fn a_press_that_began_elsewhere_starts_no_hold() {
     let mut harness = jog();
     let at = middle(&harness);
     let beside = at + Vec2::new(0.0, 200.0);
@@ -89,7 +89,7 @@ fn a_press_that_began_elsewhere_is_none() {
 }
 
 #[test]
-fn what_takes_the_button_away_ends_it() {
+fn disabling_the_button_or_losing_focus_ends_a_hold() {
     // Locked by an error, and the window without the keyboard focus.
     for cause in [0, 1] {
         let mut harness = jog();
@@ -135,7 +135,7 @@ fn armed() -> Harness<'static, Jog> {
 }
 
 #[test]
-fn a_key_holds_it_and_its_repetitions_are_nothing() {
+fn a_key_holds_the_button_and_repeats_start_nothing() {
     let mut harness = armed();
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
     assert_eq!(step(&mut harness, [key(true, true)]), [Hold]);
@@ -162,7 +162,7 @@ fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) 
 
 /// Issue 21.2: a key that repeats by a release and an immediate press, which arrive in two frames of any distance.
 #[test]
-fn a_repetition_that_is_split_over_two_pictures_holds_nothing() {
+fn a_key_repeat_split_over_two_frames_starts_no_hold() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
         let mut harness = armed();
         assert_eq!(step_after(&mut harness, apart, Some(key(true, false))), [Press], "{apart}");
@@ -176,7 +176,7 @@ fn a_repetition_that_is_split_over_two_pictures_holds_nothing() {
 
 /// Issue 21.2: a user's press a tenth of a second after the release, with no other event in between.
 #[test]
-fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
+fn a_release_requests_the_frame_that_rearms_the_key() {
     let mut harness = armed();
     let next =
         |harness: &Harness<'_, Jog>| harness.output().viewport_output[&ViewportId::ROOT].repaint_delay.as_secs_f64();
@@ -200,7 +200,7 @@ fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
 /// Issue 21.2: the events of the window system when Space is held over a change of the window. What egui reports as a first
 /// press is none.
 #[test]
-fn a_key_that_is_held_over_a_change_of_the_window_holds_nothing() {
+fn a_key_held_during_a_window_change_starts_no_hold() {
     for held_before in [false, true] {
         let mut harness = armed();
         if held_before {
@@ -230,7 +230,7 @@ fn a_key_that_is_held_over_a_change_of_the_window_holds_nothing() {
 
 /// Issue 21.2: a button that was not drawn, was locked, or was covered by a dialog has seen no key up.
 #[test]
-fn a_key_that_was_down_before_the_button_could_be_pressed_holds_nothing() {
+fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
     type Change = fn(&mut Jog, bool);
     let changes: [(&str, Change); 2] =
         [("locked", |jog, on| jog.locked = on), ("covered", |jog, on| jog.around.covered = on)];
@@ -261,7 +261,7 @@ fn a_key_that_was_down_before_the_button_could_be_pressed_holds_nothing() {
 
 /// Issue 21.2: under a dialog the pointer holds nothing either, nor does a press that began there after it is closed.
 #[test]
-fn a_press_under_a_dialog_holds_nothing() {
+fn a_press_under_a_dialog_starts_no_hold() {
     let mut harness = jog();
     let at = middle(&harness);
     step(&mut harness, [Event::PointerMoved(at)]);
@@ -276,7 +276,7 @@ fn a_press_under_a_dialog_holds_nothing() {
 
 /// Issue 21.2: any key, any modifier, another button and a second finger end a hold by the pointer.
 #[test]
-fn whatever_comes_beside_the_pointer_ends_it() {
+fn any_other_input_ends_a_pointer_hold() {
     let other = |key| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
     let finger = || Event::Touch {
         device_id: egui::TouchDeviceId(1),
@@ -314,7 +314,7 @@ fn whatever_comes_beside_the_pointer_ends_it() {
 
 /// Issue 21.2: a key on the button while something else moves is a stop.
 #[test]
-fn a_key_stops_what_moves_already() {
+fn a_key_stops_a_running_motion() {
     let mut harness = armed();
     harness.state_mut().around.moving = true;
     assert_eq!(step(&mut harness, [key(true, false)]), [Stop]);

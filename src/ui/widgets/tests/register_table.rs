@@ -104,7 +104,7 @@ fn click(harness: &mut Harness<'_, Registers>, label: &str, from_left: f32, time
 }
 
 #[test]
-fn only_what_is_in_sight_is_asked_for_wherever_it_is() {
+fn only_visible_groups_are_requested() {
     let mut harness = table();
     assert_eq!(harness.state().output.groups, 0..1);
     focus(&mut harness, TABLE);
@@ -118,7 +118,7 @@ fn only_what_is_in_sight_is_asked_for_wherever_it_is() {
 }
 
 #[test]
-fn the_arrows_go_over_headings_and_pass_bit_fields() {
+fn arrow_keys_stop_at_headings_and_skip_bit_fields() {
     let mut harness = table();
     focus(&mut harness, TABLE);
     press(&mut harness, &[(NONE, Key::ArrowDown)]);
@@ -143,7 +143,7 @@ fn the_arrows_go_over_headings_and_pass_bit_fields() {
 }
 
 #[test]
-fn a_value_is_typed_over_refused_and_taken() {
+fn a_typed_value_is_refused_or_accepted() {
     let mut harness = table();
     harness.state_mut().view.select(place(5, 7));
     focus(&mut harness, TABLE);
@@ -172,7 +172,7 @@ fn a_value_is_typed_over_refused_and_taken() {
 }
 
 #[test]
-fn what_cannot_be_edited_says_why() {
+fn read_only_registers_show_the_reason() {
     let mut harness = table();
     harness.state_mut().view.select(place(0, 1));
     focus(&mut harness, TABLE);
@@ -204,7 +204,7 @@ fn the_pointer_selects_folds_and_edits() {
 }
 
 #[test]
-fn a_selected_register_is_brought_in_sight() {
+fn a_selected_register_is_scrolled_into_view() {
     let mut harness = table();
     harness.state_mut().view.fold(0x23, true);
     harness.run();
@@ -214,7 +214,7 @@ fn a_selected_register_is_brought_in_sight() {
 }
 
 #[test]
-fn the_box_of_a_number_is_pressed_once() {
+fn one_click_edits_a_number_box() {
     let entry = |harness: &Harness<'_, Registers>| {
         harness.query_by_role(egui::accesskit::Role::TextInput).and_then(|node| node.accesskit_node().label())
     };
@@ -236,7 +236,7 @@ fn the_box_of_a_number_is_pressed_once() {
 
 /// Types over the value of a box, and presses another one.
 #[test]
-fn what_is_typed_counts_when_another_box_is_pressed() {
+fn typed_text_is_accepted_when_another_box_is_clicked() {
     let mut harness = table_of(RegisterKind::Numbers);
     let entry = |harness: &Harness<'_, Registers>| {
         harness.query_by_role(egui::accesskit::Role::TextInput).and_then(|node| node.accesskit_node().label())
@@ -260,7 +260,7 @@ fn what_is_typed_counts_when_another_box_is_pressed() {
 }
 
 #[test]
-fn what_is_typed_stays_with_its_register_when_the_lines_are_other_ones() {
+fn typed_text_stays_with_its_register_when_lines_change() {
     let mut harness = table();
     click(&mut harness, "00:05 register 5", 100.0, 2);
     let typed = |harness: &Harness<'_, Registers>| {

@@ -37,7 +37,7 @@ fn procedure(run: Run) -> Harness<'static, Run> {
 }
 
 #[test]
-fn what_is_pressed_is_told() {
+fn button_presses_are_reported() {
     let mut harness = procedure(Run { speed: Some(500.5), ..Run::default() });
     for (label, event) in [("Start", StepsEvent::Start), ("Leave out", StepsEvent::Skip)] {
         harness.get_by_label(label).click();
@@ -53,7 +53,7 @@ fn what_is_pressed_is_told() {
 }
 
 #[test]
-fn what_may_not_begin_says_why() {
+fn a_blocked_start_shows_the_reason() {
     let refused = Some("It turns too slowly.");
     for speed in [None, Some(480.0), Some(f64::NAN), Some(f64::INFINITY), Some(-1e300)] {
         let mut harness = procedure(Run { speed, refused, ..Run::default() });
@@ -66,7 +66,7 @@ fn what_may_not_begin_says_why() {
 }
 
 #[test]
-fn a_value_fits_only_within_its_limits() {
+fn a_value_is_allowed_only_within_its_limits() {
     let gauge = |value| Gauge {
         name: String::new(),
         value,

@@ -4,7 +4,7 @@ use super::*;
 use crate::sim::Faults;
 
 #[test]
-fn faults_of_the_adapters_line() {
+fn line_faults_are_injected() {
     assert_eq!(Host::with("fault=drop:1").ask(Request::Hello), None);
     assert_eq!(Host::with("fault=silent-after:0").ask(Request::Hello), None);
     let mut host = Host::with("fault=silent-after:2");

@@ -15,7 +15,7 @@ use crate::sim::setting::pairs;
 use crate::units::Moment;
 
 #[test]
-fn the_adapter_says_what_it_is() {
+fn the_adapter_identifies_itself() {
     let mut host = Host::with("");
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
     assert_eq!(hello.capabilities.word(), 0b1111);
@@ -30,7 +30,7 @@ fn the_adapter_says_what_it_is() {
 }
 
 #[test]
-fn another_version_answers_as_one() {
+fn an_adapter_of_another_version_reports_its_version() {
     let mut host = Host::with("version=2");
     host.send(&Request::Hello);
     host.now = host.now + Duration::from_millis(1);
@@ -41,7 +41,7 @@ fn another_version_answers_as_one() {
 }
 
 #[test]
-fn damaged_wires_are_told() {
+fn damaged_wires_are_reported() {
     for (query, expected, word) in [
         ("line=open", BissStatus::NO_ACKNOWLEDGE, 0x1FF_FFFF),
         ("line=low", BissStatus::STUCK_LOW, 0),
@@ -60,7 +60,7 @@ fn damaged_wires_are_told() {
 
 /// 47 cycles of 47 µs (7 of acknowledge, 22 of clocks, 18 of time-out), and the transmission of the bytes.
 #[test]
-fn a_register_takes_its_time() {
+fn a_register_access_takes_the_expected_time() {
     let mut host = Host::with("");
     host.ask(BISS);
     let start = host.now;
@@ -76,7 +76,7 @@ fn a_period_is_not_shorter_than_a_frame() {
 }
 
 #[test]
-fn a_stream_keeps_its_bus_busy() {
+fn a_stream_blocks_its_bus() {
     let mut host = Host::with("");
     host.ask(BISS);
     host.ask(SSI);
@@ -100,7 +100,7 @@ fn a_stream_keeps_its_bus_busy() {
 
 /// 1024 periods in a revolution, 60 revolutions per minute, 0.5 V of amplitude, 1.25 V of full scale.
 #[test]
-fn analogue_samples_are_the_virtual_encoders() {
+fn analog_samples_match_the_virtual_encoder() {
     let mut host = Host::with("rpm=60");
     let config = Reply::AnalogConfig { sample_hz: 102_396, full_scale_microvolt: 1_250_000, bits: 16 };
     host.expect(Request::AnalogConfig { sample_hz: 102_400 }, config);
@@ -131,7 +131,7 @@ fn analogue_samples_are_the_virtual_encoders() {
 
 /// The word of the test encoder has 13 bits per revolution: a quarter of one is 2048.
 #[test]
-fn without_anything_on_biss_the_shaft_is_the_adapters() {
+fn without_a_biss_encoder_the_adapter_has_a_shaft() {
     let mut host = Host::to("rpm=60&supply=switched", &[&WordGiver]);
     host.ask(SSI);
     let word = |host: &mut Host| match host.ask(Request::SsiRead) {
@@ -158,7 +158,7 @@ fn without_anything_on_biss_the_shaft_is_the_adapters() {
 }
 
 #[test]
-fn the_shaft_is_turned_for_all_encoders() {
+fn all_encoders_share_one_shaft() {
     let mut host = Host::with("");
     host.ask(BISS);
     host.ask(Request::AnalogConfig { sample_hz: 100_000 });
@@ -211,7 +211,7 @@ fn the_supply_can_be_switched() {
 
 /// Issue 22.18: requests that arrive faster than they can be answered are lost, and the adapter answers the next one.
 #[test]
-fn a_flood_of_requests_does_not_make_it_deaf() {
+fn the_adapter_answers_after_a_flood_of_requests() {
     let mut host = Host::with("");
     host.expect(BISS, Reply::BissConfig { clock_hz: 2_000_000 });
     let read = Request::BissRegisterRead { slave: 0, address: 0x42 };
@@ -226,7 +226,7 @@ fn a_flood_of_requests_does_not_make_it_deaf() {
 
 /// A host that sleeps for ten seconds loses the samples that the adapter cannot store, which is reported.
 #[test]
-fn what_is_not_fetched_is_lost_and_told() {
+fn unfetched_samples_are_lost_and_reported() {
     let mut host = Host::with("");
     host.ask(BISS);
     host.ask(Request::AnalogConfig { sample_hz: 10_000 });

@@ -29,7 +29,7 @@ fn good() -> Vec<Vec<u8>> {
 
 /// Cut at every length, a packet is refused.
 #[test]
-fn what_is_cut_is_refused() {
+fn truncated_packets_are_refused() {
     let [frame, _, _, forward, packet] = good().try_into().unwrap();
     (0..frame.len()).for_each(|end| assert!(Frame::parse(&frame[..end]).is_err(), "{end}"));
     (0..forward.len()).for_each(|end| assert!(ForwardOpen::parse(&forward[..end]).is_err(), "{end}"));
@@ -58,7 +58,7 @@ proptest! {
     }
 
     #[test]
-    fn every_frame_survives(
+    fn every_frame_round_trips(
         command: u16, session: u32, status: u32, context: [u8; 8], options: u32, data in prop::collection::vec(any::<u8>(), 0..600)
     ) {
         let status = EncapsulationStatus::new(status);
@@ -67,14 +67,14 @@ proptest! {
     }
 
     #[test]
-    fn every_unknown_item_survives(kind in 0x200u16..0x8000, data: Vec<u8>, connection: u32, sequence: u32) {
+    fn every_unknown_item_round_trips(kind in 0x200u16..0x8000, data: Vec<u8>, connection: u32, sequence: u32) {
         let address = Item::SequencedAddress { connection, sequence };
         let items = Items(vec![Item::Unknown { kind, data: data.clone() }, address, Item::UnconnectedData(data)]);
         prop_assert_eq!(Items::parse(&items.emit()), Ok(items));
     }
 
     #[test]
-    fn every_message_survives(
+    fn every_message_round_trips(
         code in 0u8..0x80, class: u16, instance: u16, status: u8, extended: Vec<u16>, data: Vec<u8>
     ) {
         let service = Service::new(code).unwrap();
@@ -85,7 +85,7 @@ proptest! {
     }
 
     #[test]
-    fn every_connection_survives(
+    fn every_connection_round_trips(
         ids: [u32; 2], intervals: [u32; 2], parameters: [u16; 2], transport: u8, multiplier in 0u8..8, timeout: [u8; 2]
     ) {
         let asked = ForwardOpen {
@@ -106,7 +106,7 @@ proptest! {
     }
 
     #[test]
-    fn every_cyclic_packet_survives(connection: u32, sequence: u32, count: u16, header: Option<u32>, data: Vec<u8>) {
+    fn every_cyclic_packet_round_trips(connection: u32, sequence: u32, count: u16, header: Option<u32>, data: Vec<u8>) {
         let packet = IoPacket { connection, sequence, count, header: header.map(RunIdle::of_word), data };
         let format = if header.is_some() { RealTimeFormat::Header } else { RealTimeFormat::Modeless };
         prop_assert_eq!(IoPacket::parse(&packet.emit(), format), Ok(packet));

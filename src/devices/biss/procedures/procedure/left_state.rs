@@ -97,7 +97,7 @@ mod tests {
     use crate::link::{LinkError, LinkErrorKind};
 
     #[test]
-    fn what_is_not_answered_leaves_two_possibilities() {
+    fn an_unanswered_write_leaves_two_possible_states() {
         let lost = || Err(Error::Link(LinkError::new("x", LinkErrorKind::Lost)));
         let mut mode = Possible::known(0);
         mode.becomes(1, &Ok(()));
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn a_restart_that_may_have_come_leaves_operation_possible() {
+    fn a_possible_restart_leaves_operation_mode_possible() {
         let mut standing = LeftState::in_operation(false);
         assert!(standing.is_in_operation());
         standing.mode = Possible::known(DeviceMode::PRESET);

@@ -323,7 +323,7 @@ mod tests {
 
     /// Manual 6.3 and 6.4.
     #[test]
-    fn a_start_is_possible_only_where_everything_fits() {
+    fn a_start_requires_direction_speed_and_stability() {
         let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
         let allowed = SpeedRange { least: 300.0, greatest: 700.0 };
         let cases = [
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn temperature_and_missing_positions_stand_against_a_start() {
+    fn temperature_and_missing_positions_block_a_start() {
         let task = Task::Turn(Run::CalibrationCounterclockwise);
         for (celsius, fits) in [(24, false), (25, true), (40, true), (41, false)] {
             let measured = Measured { celsius: Some(celsius), ..turning(-500.0, 0.0) };
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn advice_is_given_and_stops_nobody() {
+    fn advice_does_not_block_a_start() {
         let advice = |run, rpm, spread| demand(Task::Turn(run), turning(rpm, spread)).advice;
         let speed = Advice::Speed { recommended: SpeedRange { least: 498.0, greatest: 502.0 } };
         assert_eq!(advice(Run::CalibrationCounterclockwise, -500.0, 1.9), []);
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shaft_that_is_to_stand_may_not_turn() {
+    fn a_turning_shaft_blocks_a_standstill_step() {
         for task in [Task::Stand, Task::StandAtPlace] {
             assert_eq!(demand(task, turning(3.0, 0.0)).blockers, [Blocker::Turning { rpm: 3.0 }]);
             assert!(demand(task, turning(0.0, 0.0)).is_ready());
@@ -394,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_starts_as_soon_as_it_fits_and_waits_so_long() {
+    fn an_unattended_run_starts_when_ready_and_times_out() {
         let mut nobody = Unattended { patience: Duration::from_secs(10) };
         let task = Task::Turn(Run::WiegandClockwise);
         let mut ask = |measured, seconds| nobody.attend(&Demand::new(task, measured, Duration::from_secs(seconds)));
@@ -408,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_belongs_to_what_was_asked() {
+    fn an_answer_applies_only_to_its_question() {
         let seat = OperatorChannel::default();
         let mut operator = seat.clone();
         let (first, second) = (Task::Turn(Run::WiegandClockwise), Task::Turn(Run::WiegandCounterclockwise));

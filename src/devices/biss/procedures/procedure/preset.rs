@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shorter_way_counts() {
+    fn distance_takes_the_shorter_direction() {
         assert_eq!(distance(0, &reading(0xFFFF, 0x1FFFF)), 1);
         assert_eq!(distance(1, &reading(0, 0)), 1);
         assert_eq!(distance(1 << 32, &reading(0, 0)), 1 << 32);

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_steady_shaft_has_its_speed_and_direction() {
+    fn a_steady_shaft_yields_speed_and_direction() {
         // 500 rpm are 25/3 revolutions per second, across the end of the range and without counted turns.
         for (bits, rpm) in [(16, 500.0), (16, -500.0), (16, 2000.0), (0, 700.0), (0, -300.0)] {
             let motion = measured(bits, |seconds| 0.25 + seconds * rpm / 60.0);
@@ -154,7 +154,7 @@ mod tests {
 
     /// From 490 to 510 rpm within the second: the quarters have 492.5, 497.5, 502.5 and 507.5 rpm.
     #[test]
-    fn a_shaft_that_accelerates_wavers() {
+    fn an_accelerating_shaft_is_unsteady() {
         let motion = measured(16, |seconds| {
             let from = seconds - 0.2;
             from * 490.0 / 60.0 + from * from * 20.0 / 120.0
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shaft_that_stands_may_tremble() {
+    fn a_shaft_at_rest_may_jitter() {
         let tremble = |steps: f64| {
             measured(16, move |seconds| 0.5 + if (seconds * 50.0) as i64 % 2 == 0 { steps / REVOLUTION } else { 0.0 })
         };
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_begins_anew() {
+    fn a_gap_restarts_the_measurement() {
         let mut gauge = SpeedMonitor::over(Duration::from_secs(1));
         for at in (0..=1000).step_by(20) {
             gauge.next(&reading(at, 0.0, 0));

@@ -33,7 +33,7 @@ fn items(plan: &BissPlan) -> Vec<(String, u64)> {
 }
 
 #[test]
-fn edits_of_an_area_are_one_save_and_what_stands_there_is_left_out() {
+fn edits_of_an_area_need_one_save_and_skip_equal_bytes() {
     let mut before = Bank::filled(0x24, 0);
     before.bytes[1] = 7;
     let banks = [before, Bank::filled(0x25, 0), Bank::filled(0x04, 0)];
@@ -49,7 +49,7 @@ fn edits_of_an_area_are_one_save_and_what_stands_there_is_left_out() {
 
 /// Manual, appendix 9.1: which registers are commands, read-only, or the lock.
 #[test]
-fn registers_are_written_only_where_no_procedure_does() {
+fn registers_owned_by_a_procedure_are_not_written_directly() {
     let kit = kit();
     for text in
         ["0x6A", "0x6B", "0x00:0x00", "0x00:0x06", "0x00:0x1A", "0x00:0x24", "0x01:0x00", "0x01:0x02", "0x01:0x07"]
@@ -76,7 +76,7 @@ fn registers_are_written_only_where_no_procedure_does() {
 }
 
 #[test]
-fn a_filter_is_selected_where_there_is_a_choice() {
+fn a_filter_is_selected_if_it_differs() {
     let plan = plan_filter(&kit(), &device(), Filter::Dynamic).unwrap();
     assert_eq!(items(&plan), [("0x6E".to_owned(), 1)]);
     assert_eq!(plan.base.filter, Some(Filter::Balanced));
@@ -93,7 +93,7 @@ fn a_filter_is_selected_where_there_is_a_choice() {
 }
 
 #[test]
-fn a_preset_is_stored_and_carried_out() {
+fn a_preset_is_stored_and_executed() {
     let value = PresetValue::new(0x18000, 2);
     let cases: [(Option<PresetValue>, Option<PresetParts>, &[&str]); 5] = [
         (value, Some(PresetParts::Both), &["0x01:0x02+6", "position"]),
@@ -124,7 +124,7 @@ fn a_preset_is_stored_and_carried_out() {
 }
 
 #[test]
-fn a_mounting_run_is_one_plan() {
+fn a_mounting_run_forms_one_plan() {
     let mut data = profile("another");
     with_bytes(&mut data, 0x24, &[(0, 1), (1, 2)]);
     let run = MountingRun {

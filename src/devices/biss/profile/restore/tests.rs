@@ -42,7 +42,7 @@ fn planned(profile: &BissProfile, device: &DeviceState) -> Restore {
 
 /// By the issue: three bytes of one bank are three registers and one save.
 #[test]
-fn what_differs_in_an_area_is_one_save() {
+fn differences_in_an_area_need_one_save() {
     let now = profile("1");
     let mut wanted = now.clone();
     with_bytes(&mut wanted, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
@@ -58,7 +58,7 @@ fn what_differs_in_an_area_is_one_save() {
 }
 
 #[test]
-fn plans_by_case() {
+fn restore_plans_for_each_case() {
     type Change = fn(&mut BissProfile);
     let cases: [(&str, Change, &[&str], u64); 6] = [
         ("nothing differs", |_| {}, &[], 0),
@@ -113,7 +113,7 @@ fn plans_by_case() {
 }
 
 #[test]
-fn a_bank_that_the_profile_calls_empty_is_emptied() {
+fn a_bank_marked_empty_in_the_profile_is_cleared() {
     let wanted = profile("1");
     let mut now = wanted.clone();
     with_bytes(&mut now, 0x25, &[(1, 0xAB)]);
@@ -127,7 +127,7 @@ fn a_bank_that_the_profile_calls_empty_is_emptied() {
 
 /// Issue 22.9: another kind of encoder needs its own permission; the one for another serial number is not enough.
 #[test]
-fn another_kind_needs_a_permit_of_its_own() {
+fn another_kind_needs_a_separate_permission() {
     let mut wanted = profile("1");
     with_bytes(&mut wanted, 0x24, &[(0, 1)]);
     let now = device(&profile("2"));
@@ -188,7 +188,7 @@ fn another_encoder_keeps_its_mounting() {
 /// Issue 22.9: another device ID, or a position of another width, is another type, which needs its own permission; another
 /// serial number needs the other one as well.
 #[test]
-fn another_type_needs_a_permit_of_its_own() {
+fn another_type_needs_a_separate_permission() {
     let mut wanted = profile("1");
     with_preset(&mut wanted, 5, 5);
     let same = device(&profile("1"));
@@ -216,7 +216,7 @@ fn another_type_needs_a_permit_of_its_own() {
 }
 
 #[test]
-fn another_kind_and_an_encoder_without_a_number_are_not_the_same() {
+fn another_kind_and_a_missing_serial_number_are_refused() {
     let wanted = profile("1");
     let mut now = device(&wanted);
     now.identity.device_id = [9; 6];
@@ -232,7 +232,7 @@ fn another_kind_and_an_encoder_without_a_number_are_not_the_same() {
 }
 
 #[test]
-fn what_the_encoder_cannot_have_is_told_or_refused() {
+fn values_the_encoder_cannot_have_are_reported_or_refused() {
     let mut wanted = profile("1");
     with_preset(&mut wanted, 5, 5);
     wanted.filter = Some(Filter::Dynamic);
@@ -284,7 +284,7 @@ fn an_area_without_a_procedure_is_written_directly() {
 
 /// The effect of the ready-made profiles on an encoder as delivered, with another serial number.
 #[test]
-fn the_ready_made_profiles_do_what_they_say() {
+fn ready_made_profiles_plan_the_expected_writes() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/biss").join(name);
         let text = std::fs::read_to_string(path).unwrap();

@@ -20,7 +20,7 @@ fn profile(text: &str) -> BissProfile {
 }
 
 #[test]
-fn a_profile_written_by_hand_is_read() {
+fn a_handwritten_profile_parses() {
     let profile = profile(SHORT);
     assert_eq!(profile.identity.serial_number, "1234567");
     assert_eq!(profile.identity.device_id, [0x01, 0x01, 0x68, 0x11, 0x00, 0x01]);
@@ -61,7 +61,7 @@ fn full() -> BissProfile {
 }
 
 #[test]
-fn what_is_written_is_read() {
+fn emitted_profiles_parse_back() {
     let mut document = Document::new("2026-11-21T13:20:18Z".to_owned(), Body::new(full()));
     document.note = Some("two\nlines".to_owned());
     let text = document.emit();
@@ -86,7 +86,7 @@ fn what_is_written_is_read() {
 }
 
 #[test]
-fn what_is_not_known_is_kept() {
+fn unknown_fields_are_kept() {
     let text = SHORT
         .replace("schema: 1,", "schema: 1, owner: (name: \"CK\", floors: [1, 2]),")
         .replace("serial_number:", "colour: Some(\"red\"), serial_number:")
@@ -113,7 +113,7 @@ fn what_is_not_known_is_kept() {
 }
 
 #[test]
-fn a_wrong_profile_is_told_where() {
+fn profile_errors_name_their_location() {
     let cases = [
         ("schema: 1", "schema: 0", "schema 0; this program knows schema 1 to 1"),
         ("identity:", "identy:", "line 3, column 5: identy is unknown, and identity is missing"),
@@ -170,7 +170,7 @@ fn a_wrong_profile_is_told_where() {
 }
 
 #[test]
-fn banks_that_hold_nothing_are_not_written() {
+fn empty_banks_are_not_written() {
     let area = Area { name: "OEM data".to_owned().into(), first: 0x24, last: 0x27, access: Access::Rw, open: Some(2) };
     let some = |number| {
         let mut bank = Bank::filled(number, 0);
@@ -209,7 +209,7 @@ fn a_mark_covers_its_registers() {
 
 /// Issue 22.26: one changed value changes one place in the text.
 #[test]
-fn a_change_touches_nothing_else() {
+fn a_change_edits_only_its_value() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/biss.ron"));
     let edit = |own: &mut BissProfile| own.filter = Some(Filter::from_byte(0));
     changed_in_place(text, edit, "filter: 4", "filter: 0x00");

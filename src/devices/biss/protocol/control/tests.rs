@@ -114,7 +114,7 @@ impl Line {
 }
 
 #[test]
-fn the_published_reads() {
+fn published_reads_match() {
     for (address, cdm) in READS {
         let mut line = Line::new(0);
         let value = line.registers[usize::from(address)];
@@ -125,7 +125,7 @@ fn the_published_reads() {
 }
 
 #[test]
-fn the_published_writes() {
+fn published_writes_match() {
     for (address, value, cdm) in WRITES {
         let mut line = Line::new(0);
         assert_eq!(line.ask(Request::write(0, address, &[value]).unwrap()), Ok(vec![value]), "{address:02X}");
@@ -137,7 +137,7 @@ fn the_published_writes() {
 
 /// Both sides alone, against the literal bits of the other.
 #[test]
-fn the_published_answer() {
+fn published_reply_matches() {
     let (_, cdm) = READS[4];
     let mut encoder = Encoder::new(0);
     (0..REST_CYCLES).for_each(|_| assert!(!encoder.cds() && encoder.cdm(false).is_none()));
@@ -161,7 +161,7 @@ fn the_published_answer() {
 }
 
 #[test]
-fn several_registers_one_after_the_other() {
+fn consecutive_registers_are_read_and_written() {
     let mut line = Line::new(0);
     let read = line.ask(Request::read(0, 0x78, 8).unwrap());
     assert_eq!(read, Ok(vec![0xDD, 0xDC, 0xDF, 0xDE, 0xD9, 0xD8, 0xDB, 0xDA]));
@@ -171,7 +171,7 @@ fn several_registers_one_after_the_other() {
 }
 
 #[test]
-fn an_encoder_may_keep_the_host_waiting() {
+fn an_encoder_may_delay_the_host() {
     for processing in [1, 13, 14, 50] {
         let mut line = Line::new(processing);
         assert_eq!(line.ask(Request::read(0, 0x66, 2).unwrap()), Ok(vec![0xC3, 0xC2]), "{processing} cycles");
@@ -184,7 +184,7 @@ fn an_encoder_may_keep_the_host_waiting() {
 }
 
 #[test]
-fn nobody_and_nothing_understood() {
+fn unknown_slaves_and_damaged_requests_get_no_reply() {
     let mut line = Line::new(0);
     assert_eq!(line.ask(Request::read(3, 0x66, 1).unwrap()), Err(ControlError::NoSlave(3)));
     line.attach(3);
@@ -210,7 +210,7 @@ fn a_command_is_ignored() {
 
 /// After any traffic on the line, fourteen zeros return it to rest.
 #[test]
-fn fourteen_zeros_lead_back_from_every_cycle() {
+fn fourteen_zeros_reset_every_cycle() {
     let (_, _, write) = WRITES[2];
     for cut in 0..=write.len() {
         let mut line = Line::new(0);
@@ -230,7 +230,7 @@ fn fourteen_zeros_lead_back_from_every_cycle() {
 }
 
 #[test]
-fn a_host_that_gives_up_is_ready_for_the_next() {
+fn an_aborted_request_leaves_the_host_ready() {
     let mut host = Host::default();
     host.ask(Request::read(0, 0x66, 1).unwrap()).unwrap();
     assert!(host.ask(Request::read(0, 0x67, 1).unwrap()).is_err());
@@ -245,7 +245,7 @@ fn a_host_that_gives_up_is_ready_for_the_next() {
 /// A flipped bit of the encoder's answer never results in a wrong value read, and one of the host's never in a wrong value
 /// written.
 #[test]
-fn one_flipped_bit_anywhere_is_found() {
+fn any_single_flipped_bit_is_detected() {
     let read = || Request::read(0, 0x66, 1).unwrap();
     for cycle in 0..32 {
         let mut line = Line::new(0);
@@ -268,7 +268,7 @@ fn one_flipped_bit_anywhere_is_found() {
 }
 
 #[test]
-fn what_cannot_be_asked_is_refused() {
+fn impossible_requests_are_refused() {
     assert_eq!(Request::read(8, 0, 1), Err(RequestError::Slave(8)));
     assert_eq!(Request::read(0, 0x80, 1), Err(RequestError::Range { address: 0x80, count: 1 }));
     assert_eq!(Request::read(0, 0x7F, 2), Err(RequestError::Range { address: 0x7F, count: 2 }));
@@ -279,7 +279,7 @@ fn what_cannot_be_asked_is_refused() {
 
 proptest! {
     #[test]
-    fn what_is_written_is_read(
+    fn written_registers_read_back(
         address in 0u8..0x80, values in proptest::collection::vec(any::<u8>(), 1..20), processing in 0u8..=50,
     ) {
         let values: Vec<u8> = values.into_iter().take(0x80 - usize::from(address)).collect();
@@ -290,7 +290,7 @@ proptest! {
     }
 
     #[test]
-    fn noise_panics_neither_side(noise in proptest::collection::vec(any::<bool>(), 0..400)) {
+    fn noise_does_not_panic_host_or_encoder(noise in proptest::collection::vec(any::<bool>(), 0..400)) {
         let (mut host, mut encoder) = (Host::default(), Encoder::new(0));
         for bit in noise {
             if !host.is_busy() {

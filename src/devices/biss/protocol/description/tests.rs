@@ -22,7 +22,7 @@ fn kit_identity() -> Identity {
 }
 
 #[test]
-fn both_built_in_descriptions_can_be_read() {
+fn both_built_in_descriptions_parse() {
     let (all, errors) = Descriptions::read(Descriptions::BUILT_IN);
     assert_eq!(errors, []);
     assert_eq!(all.iter().map(Description::name).collect::<Vec<_>>(), ["POSITAL IXARC kit encoder", "BiSS C encoder"]);
@@ -31,7 +31,7 @@ fn both_built_in_descriptions_can_be_read() {
 
 /// Reference 4, "Direct": address, width, access, default.
 #[test]
-fn the_kit_encoders_registers_are_the_references() {
+fn kit_encoder_registers_match_the_reference() {
     use Access::{R, Rw};
     let cases: [(&str, u8, Access, &[u8], Firmware); 24] = [
         ("0x40", 1, Rw, &[], Firmware::new(0, 0, 0)),
@@ -81,7 +81,7 @@ fn the_kit_encoders_registers_are_the_references() {
 
 /// Reference 5.
 #[test]
-fn the_procedures_are_where_the_reference_has_them() {
+fn procedure_registers_match_the_reference() {
     let kit = kit();
     let cases = [
         (ProcedureKind::WiegandTest, DeviceMode::WIEGAND_TEST, "0x00:0x06", "0x00:0x07", Firmware::new(0, 0, 0)),
@@ -111,7 +111,7 @@ fn the_procedures_are_where_the_reference_has_them() {
 
 /// The words of the file are those of the code, which the simulator and the procedures use.
 #[test]
-fn the_file_and_the_tables_say_the_same() {
+fn the_file_agrees_with_the_protocol_tables() {
     let kit = kit();
     for bank in [EdsBank::Common, EdsBank::Encoder] {
         for field in bank.fields() {
@@ -170,7 +170,7 @@ fn registers_are_decoded() {
 }
 
 #[test]
-fn names_are_there_in_german_and_fall_back_to_english() {
+fn names_exist_in_german_and_fall_back_to_english() {
     for (file, text) in Descriptions::BUILT_IN {
         let description = Description::parse(file, text).unwrap();
         let all =
@@ -213,7 +213,7 @@ fn an_encoder_finds_its_description() {
 }
 
 #[test]
-fn a_broken_description_says_where() {
+fn description_errors_name_their_location() {
     let register = |row: &str| format!("(\n    name: \"x\",\n    registers: [\n        {row},\n    ],\n)");
     let cases = [
         (String::new(), 1, ""),
@@ -252,7 +252,7 @@ fn a_broken_description_says_where() {
 
 proptest! {
     #[test]
-    fn a_number_is_kept_in_either_order(number: u64, width in 1u8..=8, low_first: bool) {
+    fn numbers_round_trip_in_either_byte_order(number: u64, width in 1u8..=8, low_first: bool) {
         let mut register = kit().registers()[0].clone();
         (register.width, register.order) = (width, if low_first { ByteOrder::LowFirst } else { ByteOrder::HighFirst });
         let fits = width == 8 || number >> (8 * u32::from(width)) == 0;

@@ -43,7 +43,7 @@ fn summed(mut bank: [u8; 64]) -> [u8; 64] {
 
 /// Reference 4: checksums F4 and 31, and every field.
 #[test]
-fn the_published_data_sheet() {
+fn published_data_sheet_parses() {
     let eds = Eds::parse(EdsBank::Common, common()).unwrap();
     assert_eq!(Eds::delivered(EdsBank::Common), eds);
     assert_eq!(eds.emit(), common());
@@ -102,7 +102,7 @@ fn the_published_data_sheet() {
 }
 
 #[test]
-fn a_changed_byte_is_found() {
+fn a_changed_byte_is_detected() {
     for (bank, bytes) in [(EdsBank::Common, common()), (EdsBank::Encoder, encoder())] {
         for bit in 0..64 * 8 {
             let mut damaged = bytes;
@@ -117,7 +117,7 @@ fn a_changed_byte_is_found() {
 }
 
 #[test]
-fn values_that_stand_for_something_else() {
+fn special_values_are_decoded() {
     let mut bank = common();
     (bank[0x02], bank[0x03], bank[0x05], bank[0x0C], bank[0x17]) = (0xFF, 0x05, 0x00, 0x00, 0x00);
     let eds = Eds::parse(EdsBank::Common, summed(bank)).unwrap();
@@ -129,7 +129,7 @@ fn values_that_stand_for_something_else() {
 }
 
 #[test]
-fn the_frame_comes_from_the_data_sheet() {
+fn the_frame_format_is_derived_from_the_data_sheet() {
     let with = |changes: &[(usize, u8)]| {
         let mut bank = encoder();
         changes.iter().for_each(|(offset, byte)| bank[*offset] = *byte);
@@ -162,7 +162,7 @@ fn the_frame_comes_from_the_data_sheet() {
 
 proptest! {
     #[test]
-    fn any_bank_is_kept_and_read_without_panic(mut bytes in proptest::array::uniform32(any::<[u8; 2]>())) {
+    fn any_bank_round_trips_without_panic(mut bytes in proptest::array::uniform32(any::<[u8; 2]>())) {
         let mut bank = [0; 64];
         bank.iter_mut().zip(bytes.iter_mut().flatten()).for_each(|(place, byte)| *place = *byte);
         let bank = summed(bank);

@@ -95,7 +95,7 @@ fn a_fast_stream_has_no_gap() {
 }
 
 #[test]
-fn noise_is_found_by_the_crc() {
+fn noise_is_detected_by_the_crc() {
     let mut host = behind_adapter("noise=0.25&seed=5");
     host.ask(BISS);
     host.ask(Request::BissStream { period_us: 100 });
@@ -110,7 +110,7 @@ fn noise_is_found_by_the_crc() {
 }
 
 #[test]
-fn it_dies_in_a_store_and_comes_back_with_the_next_host() {
+fn power_lost_in_a_store_returns_with_the_next_host() {
     let mut host = behind_adapter("fault=die-in-store:1");
     host.ask(BISS);
     for (address, value) in [(0x6B, 0x2A), (0x6A, 0x07), (0x40, 0x01)] {

@@ -22,7 +22,7 @@ fn a_mode_needs_the_password() {
 }
 
 #[test]
-fn modes_that_there_are_not_are_ignored() {
+fn nonexistent_modes_are_ignored() {
     let mut host = Host::with("");
     host.put("0x6B", 0x2A);
     for mode in [0x03, 0x06, 0x08, 0xFF] {
@@ -54,7 +54,7 @@ fn commands_need_their_mode() {
 }
 
 #[test]
-fn a_loss_of_power_ends_everything() {
+fn a_loss_of_power_resets_all_state() {
     let mut host = Host::with("rpm=500");
     host.enter(0x02);
     host.put("0x40", 0x24);

@@ -26,7 +26,7 @@ fn a_calibration_takes_two_runs() {
 }
 
 #[test]
-fn a_calibration_fails_for_its_reasons() {
+fn a_calibration_fails_with_the_matching_status() {
     let cases = [
         ("rpm=500", 0x30),
         ("rpm=-500&temperature=24", 0x31),
@@ -150,7 +150,7 @@ fn a_motor_that_pauses_only_takes_longer() {
 }
 
 #[test]
-fn a_wiegand_test_fails_for_its_reasons() {
+fn a_wiegand_test_fails_with_the_matching_status() {
     // The motor was not reversed.
     let mut host = Host::with("rpm=1000&calibration-silent=off");
     host.enter(0x02);
@@ -173,7 +173,7 @@ fn a_wiegand_test_fails_for_its_reasons() {
 }
 
 #[test]
-fn whoever_holds_the_motor_turns_the_shaft() {
+fn the_motor_handle_turns_the_shaft() {
     let mut host = Host::with("rpm=60&position=0");
     let motor = host.encoder.motor();
     host.wait(1.0);
@@ -196,7 +196,7 @@ fn whoever_holds_the_motor_turns_the_shaft() {
 }
 
 #[test]
-fn a_motor_that_reverses_does_so_when_a_procedure_waits_for_it() {
+fn a_reversing_motor_reverses_when_a_procedure_waits() {
     let mut host = Host::with("rpm=-500&motor=reverse&cycles=0");
     host.enter(0x01);
     host.put("0x00:0x00", 0x01);

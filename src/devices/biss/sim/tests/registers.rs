@@ -5,7 +5,7 @@ use crate::devices::biss::protocol::{Descriptions, ErrorRegister};
 
 /// Every register with a default in the description has that value.
 #[test]
-fn the_encoder_is_as_delivered() {
+fn a_new_encoder_has_factory_settings() {
     let mut host = Host::with("");
     let all = Descriptions::built_in();
     let kit = all.named("POSITAL IXARC kit encoder").unwrap();
@@ -27,7 +27,7 @@ fn the_encoder_is_as_delivered() {
 }
 
 #[test]
-fn there_are_68_banks() {
+fn the_encoder_has_68_banks() {
     let mut host = Host::with("");
     host.expect("0x43:0x3F", 0);
     assert_eq!(host.encoder.read(host.now, address("0x44:0x00")), None);
@@ -41,7 +41,7 @@ fn there_are_68_banks() {
 }
 
 #[test]
-fn what_is_read_only_is_refused() {
+fn writes_to_read_only_registers_are_refused() {
     let mut host = Host::with("");
     for register in ["0x41", "0x66", "0x6E", "0x74", "0x7F", "0x67", "0x00:0x01", "0x00:0x09", "0x02:0x05", "0x03:0x0A"]
     {
@@ -86,7 +86,7 @@ fn an_error_makes_the_position_invalid() {
 }
 
 #[test]
-fn older_firmware_has_less() {
+fn older_firmware_has_fewer_registers() {
     let mut host = Host::with("firmware=1.5.9&errors=0x12&temperature=130");
     host.expect("0x68", 0);
     host.expect("0x69", 0);

@@ -5,7 +5,7 @@ use crate::devices::biss::protocol::Filter;
 
 /// Reference 5.3.
 #[test]
-fn oem_data_is_written_by_the_references_steps() {
+fn oem_data_is_written_as_in_the_reference() {
     let mut host = Host::with("cycles=10");
     assert!(!host.write("0x24:0x10", 0xAB), "closed");
     host.enter(0x04);
@@ -31,7 +31,7 @@ fn oem_data_is_written_by_the_references_steps() {
 }
 
 #[test]
-fn motor_data_has_an_area_of_its_own() {
+fn motor_data_has_a_separate_area() {
     let mut host = Host::with("");
     host.enter(0x04);
     host.put("0x00:0x1A", 0x01);
@@ -44,7 +44,7 @@ fn motor_data_has_an_area_of_its_own() {
 }
 
 #[test]
-fn what_is_cancelled_or_left_is_forgotten() {
+fn cancelled_or_abandoned_writes_are_discarded() {
     for end in [("0x00:0x1A", 0x04), ("0x6A", 0x00)] {
         let mut host = Host::with("cycles=10");
         host.enter(0x04);
@@ -64,7 +64,7 @@ fn what_is_cancelled_or_left_is_forgotten() {
 
 /// Reference 5.4.
 #[test]
-fn the_filter_is_chosen_by_the_references_steps() {
+fn the_filter_is_selected_as_in_the_reference() {
     let mut host = Host::with("cycles=0");
     host.enter(0x05);
     host.expect("0x00:0x25", 0x00);
@@ -86,7 +86,7 @@ fn the_filter_is_chosen_by_the_references_steps() {
 
 /// Reference 5.5: 270°.
 #[test]
-fn the_position_is_preset_by_the_references_steps() {
+fn the_position_is_preset_as_in_the_reference() {
     let mut host = Host::with("cycles=0&position=0x12345");
     host.enter(0x07);
     assert!(!host.write("0x01:0x02", 0x00), "not opened");
@@ -118,7 +118,7 @@ fn the_position_is_preset_by_the_references_steps() {
 }
 
 #[test]
-fn singleturn_or_multiturn_alone() {
+fn singleturn_and_multiturn_are_preset_separately() {
     for (command, position) in [(0x04, (0, 0)), (0x05, (0, 0x18000)), (0x01, (0, 0))] {
         let mut host = Host::with("position=0x18000");
         host.enter(0x07);
@@ -142,7 +142,7 @@ fn a_preset_beyond_the_range_is_refused() {
 }
 
 #[test]
-fn power_is_lost_in_the_middle_of_the_second_store() {
+fn power_can_fail_in_the_second_store() {
     let mut host = Host::with("fault=die-in-store:2");
     for _ in 0..2 {
         host.enter(0x04);

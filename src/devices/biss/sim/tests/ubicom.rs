@@ -51,7 +51,7 @@ const TEMPERATURE: &str = "80 01 01 01 00 4B 31";
 
 /// UBICOM reference 6.
 #[test]
-fn the_published_exchanges() {
+fn published_exchanges_match() {
     let mut line = Line::with("temperature=25");
     line.expect(READ_TEMPERATURE, TEMPERATURE);
     line.expect("80 01 01 02 00 C5 00 B6", "80 01 01 01 00 1C 60");
@@ -70,14 +70,14 @@ fn the_published_exchanges() {
 
 /// The probe of UBICOM reference 2.
 #[test]
-fn the_probe_tells_the_byte_order() {
+fn the_probe_reveals_the_byte_order() {
     Line::with("").expect("80 01 01 02 00 01 00 7A", "80 01 01 01 00 02 7A");
     Line::with("order=high-first").expect("80 01 01 02 00 01 00 7A", "80 01 01 01 00 01 7B");
 }
 
 /// Eight bytes, a millisecond, seven bytes, at 86.8 µs each.
 #[test]
-fn an_exchange_takes_its_time() {
+fn an_exchange_takes_the_expected_time() {
     let mut line = Line::with("");
     line.port.on_bytes(line.now, &parse_hex(READ_TEMPERATURE).unwrap());
     let (_, last) = line.receive();
@@ -91,7 +91,7 @@ fn an_exchange_takes_its_time() {
 
 /// UBICOM reference 6, "Negative".
 #[test]
-fn what_is_not_understood_is_not_answered() {
+fn invalid_requests_get_no_reply() {
     let mut line = Line::with("temperature=25");
     let silent = [
         "80 01 01 02 00 26 00 54", // wrong checksum
@@ -110,7 +110,7 @@ fn what_is_not_understood_is_not_answered() {
 }
 
 #[test]
-fn a_partial_frame_is_forgotten_after_20_ms() {
+fn a_partial_frame_is_discarded_after_20_ms() {
     let mut line = Line::with("temperature=25");
     line.port.on_bytes(line.now, &[0x80, 0x01, 0x01, 0x02]);
     assert_eq!(line.receive().0, "");
@@ -125,13 +125,13 @@ fn a_partial_frame_is_forgotten_after_20_ms() {
 }
 
 #[test]
-fn own_bytes_come_back_on_one_wire() {
+fn sent_bytes_are_echoed_on_a_single_wire() {
     let mut line = Line::with("temperature=25&echo=on&fault=delay:10");
     line.expect(READ_TEMPERATURE, &format!("{READ_TEMPERATURE} {TEMPERATURE}"));
 }
 
 #[test]
-fn a_request_while_the_encoder_works_or_talks_is_lost() {
+fn a_request_while_the_encoder_is_busy_is_lost() {
     let mut line = Line::with("temperature=25");
     line.expect(&format!("{READ_TEMPERATURE} {READ_TEMPERATURE}"), TEMPERATURE);
     line.wait(1.0);
@@ -142,7 +142,7 @@ fn a_request_while_the_encoder_works_or_talks_is_lost() {
 }
 
 #[test]
-fn a_restart_is_answered_and_then_silent() {
+fn a_restart_is_acknowledged_and_followed_by_silence() {
     let mut line = Line::with("cycles=0");
     for request in ["80 01 02 03 00 2B 00 2A 24", "80 01 02 03 00 2A 00 07 48", "80 01 02 03 00 80 00 01 F8"] {
         line.expect(request, "80 01 02 01 00 90 EB");
@@ -153,7 +153,7 @@ fn a_restart_is_answered_and_then_silent() {
 }
 
 #[test]
-fn a_calibration_is_silent() {
+fn the_encoder_is_silent_during_calibration() {
     let mut line = Line::with("rpm=-500&temperature=25");
     for request in ["80 01 02 03 00 2B 00 2A 24", "80 01 02 03 00 2A 00 01 4E", "80 01 02 03 00 40 00 01 38"] {
         line.expect(request, "80 01 02 01 00 90 EB");
@@ -164,7 +164,7 @@ fn a_calibration_is_silent() {
 }
 
 #[test]
-fn faults_of_the_line() {
+fn line_faults_are_injected() {
     Line::with("fault=drop:1").expect(READ_TEMPERATURE, "");
     Line::with("fault=flip:1").expect(READ_TEMPERATURE, "");
     let mut line = Line::with("fault=silent-after:2&temperature=25");
@@ -182,7 +182,7 @@ fn faults_of_the_line() {
 }
 
 #[test]
-fn another_speed_gives_no_frame() {
+fn a_wrong_baud_rate_yields_no_frame() {
     let mut line = Line::with("temperature=25");
     let format = CharacterFormat { baud: Baud::B9600, parity: Parity::None };
     line.port.set_host_format(line.now, format);
@@ -193,7 +193,7 @@ fn another_speed_gives_no_frame() {
 
 /// A store during which the encoder loses its power is not answered; opening the link restores the power.
 #[test]
-fn a_dead_encoder_comes_back_with_the_link() {
+fn reopening_the_link_revives_a_dead_encoder() {
     let mut line = Line::with("fault=die-in-store:1");
     for request in ["80 01 02 03 00 2B 00 2A 24", "80 01 02 03 00 2A 00 07 48"] {
         line.expect(request, "80 01 02 01 00 90 EB");
@@ -210,7 +210,7 @@ fn a_dead_encoder_comes_back_with_the_link() {
 
 /// Issue 22.18: bytes beyond the buffer of a UART are lost, so that the line is not busy for longer than its buffer lasts.
 #[test]
-fn a_flood_of_bytes_does_not_make_it_deaf() {
+fn the_encoder_answers_after_a_flood_of_bytes() {
     let mut line = Line::with("temperature=25");
     for _ in 0..2_000 {
         line.port.on_bytes(line.now, &[0x55; 512]);

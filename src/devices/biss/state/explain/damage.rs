@@ -44,7 +44,7 @@ mod tests {
     use crate::app::Language;
 
     #[test]
-    fn damage_is_called_as_the_lower_floors_call_it() {
+    fn damage_texts_match_the_protocol_errors() {
         let cases = [
             Damage::NoFrame { bytes: 7 },
             Damage::Reply(ReplyError::Address { expected: 1, got: 2 }),

@@ -226,7 +226,7 @@ mod tests {
     use crate::devices::biss::protocol::{PresetValue, WiegandResult};
 
     #[test]
-    fn modes_are_called_as_the_protocol_calls_them_and_have_german_names() {
+    fn modes_have_protocol_names_and_german_names() {
         for byte in 0..=255 {
             let own = DeviceMode::new(byte);
             assert_eq!(mode(own).words(English), own.to_string());
@@ -236,7 +236,7 @@ mod tests {
 
     /// Manual 6.3: the average minus four standard deviations must be above 5.3 V.
     #[test]
-    fn a_wiegand_result_is_measured_against_the_limit() {
+    fn a_wiegand_result_is_compared_with_the_limit() {
         let result = WiegandResult {
             average_cw: PulseVoltage::new(63),
             lowest_cw: PulseVoltage::new(54),
@@ -255,7 +255,7 @@ mod tests {
 
     /// Manual 6.7: 18000h of 17 bits are 270°.
     #[test]
-    fn a_stored_preset_value_is_told_as_an_angle() {
+    fn a_stored_preset_value_is_shown_as_an_angle() {
         let value = PresetValue::new(0x18000, 2).unwrap();
         let texts = outcome(&Outcome::PresetStored { value, singleturn_bits: 17 });
         assert_eq!(texts[0].words(English), "Preset value saved: 270.000° (step 98304), turn 2.");
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_left_out_is_named() {
+    fn skipped_operations_are_named() {
         let report = report(&Op::Calibrate, &Outcome::Skipped { after: None });
         let [(Severity::Note, text)] = report.as_slice() else { panic!("{report:?}") };
         assert!(text.words(English).contains("Calibration") && text.words(German).contains("Kalibrierung"));

@@ -255,7 +255,7 @@ mod tests {
         Interrupted { done, unfinished: None, cause, end_state: left }
     }
 
-    fn told(cause: Failure, left: Option<LeftState>) -> (Vec<String>, Vec<String>) {
+    fn interruption_texts(cause: Failure, left: Option<LeftState>) -> (Vec<String>, Vec<String>) {
         let texts = interruption(&cut_off(1, cause, left), Path::new("b.ron"), 3, ChangeKind::Guided);
         let words = |language| texts.iter().map(|text| text.words(language)).collect();
         (words(English), words(German))
@@ -263,7 +263,7 @@ mod tests {
 
     /// Each action has its own words, also at a terminal; and nothing is reported as unchanged that may have changed.
     #[test]
-    fn what_to_do_about_a_write_that_was_cut_off_fits_its_kind() {
+    fn the_remedy_for_an_interrupted_write_matches_its_kind() {
         let last = |interrupted: &Interrupted, kind| {
             let text = interruption(interrupted, Path::new("b.ron"), 3, kind).pop().unwrap();
             assert!(text.terminal().contains("b.ron") && text.words(German).contains("b.ron"), "{text:?}");
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn a_calibration_that_failed_names_the_limits_of_its_run() {
+    fn a_failed_calibration_names_the_limits_of_its_run() {
         let cases = [(CalibrationStatus::Speed, "300…700"), (CalibrationStatus::Temperature, "25…40 °C")];
         for (status, limits) in cases {
             let text = failure(&Failure::Calibration { run: Run::CalibrationClockwise, status });
@@ -299,7 +299,7 @@ mod tests {
         }
     }
 
-    fn standing(modes: &[DeviceMode], password: bool, activity: Activity) -> Option<LeftState> {
+    fn left_state(modes: &[DeviceMode], password: bool, activity: Activity) -> Option<LeftState> {
         let mut mode = Possible::known(modes[0]);
         modes[1..].iter().for_each(|own| mode.or(*own));
         Some(LeftState { mode, password: Possible::known(password), activity })
@@ -307,14 +307,14 @@ mod tests {
 
     /// Issue 22.5: the remedy comes after returning the encoder to operation.
     #[test]
-    fn what_completes_a_write_comes_after_leading_back() {
+    fn completing_a_write_is_advised_after_leading_back() {
         for kind in [ChangeKind::Restore, ChangeKind::Bytes, ChangeKind::Guided, ChangeKind::Filter] {
             let last = |left| {
                 let interrupted = cut_off(1, Failure::Device(Error::NeverSilent), left);
                 interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
             };
             let found = last(None);
-            let unknown = last(standing(&[DeviceMode::CALIBRATION], true, Activity::Nothing));
+            let unknown = last(left_state(&[DeviceMode::CALIBRATION], true, Activity::Nothing));
             assert_eq!(unknown.terminal(), format!("First return the encoder to operation. {}", found.terminal()));
             assert!(unknown.words(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "), "{unknown:?}");
             assert_eq!(weight(&unknown), weight(&found));
@@ -322,11 +322,11 @@ mod tests {
     }
 
     #[test]
-    fn a_write_that_was_cut_off_says_where_why_and_in_which_state() {
+    fn an_interrupted_write_names_step_cause_and_state() {
         let mode = DeviceMode::CALIBRATION;
         let activity = Activity::Running(Run::CalibrationClockwise);
-        let left = standing(&[mode, DeviceMode::OPERATION], true, activity);
-        let (english, german) = told(Failure::Device(Error::NeverSilent), left);
+        let left = left_state(&[mode, DeviceMode::OPERATION], true, activity);
+        let (english, german) = interruption_texts(Failure::Device(Error::NeverSilent), left);
         let expected = [
             ["1 of 3", "1 von 3"],
             ["Second run, clockwise", "Zweiter Lauf, im Uhrzeigersinn"],
@@ -340,12 +340,12 @@ mod tests {
         for (words, [own, deutsch]) in english.iter().zip(&german).zip(expected) {
             assert!(words.0.contains(own) && words.1.contains(deutsch), "{words:?}");
         }
-        let (english, _) = told(Failure::Device(Error::Cancelled), None);
+        let (english, _) = interruption_texts(Failure::Device(Error::Cancelled), None);
         assert!(english[0].contains("1 of 3") && english[2].contains("in operation again"), "{english:?}");
     }
 
     #[test]
-    fn every_activity_is_told() {
+    fn every_activity_is_explained() {
         let activities = [
             Activity::Running(Run::CalibrationCounterclockwise),
             Activity::Running(Run::CalibrationClockwise),
@@ -356,19 +356,21 @@ mod tests {
         ];
         let mut seen = Vec::new();
         for activity in activities {
-            let left = standing(&[DeviceMode::PRESET], false, activity);
-            let (english, german) = told(Failure::Device(Error::NeverSilent), left);
+            let left = left_state(&[DeviceMode::PRESET], false, activity);
+            let (english, german) = interruption_texts(Failure::Device(Error::NeverSilent), left);
             assert!(!seen.contains(&english[3]) && english[3] != german[3], "{english:?}");
             seen.push(english[3].clone());
         }
-        let (idle, _) =
-            told(Failure::Device(Error::NeverSilent), standing(&[DeviceMode::PRESET], false, Activity::Nothing));
+        let (idle, _) = interruption_texts(
+            Failure::Device(Error::NeverSilent),
+            left_state(&[DeviceMode::PRESET], false, Activity::Nothing),
+        );
         assert!(idle[3].contains("Return the encoder to operation"), "{idle:?}");
     }
 
     /// Manual 6.3 and 6.4, every code; what happened, and what to do.
     #[test]
-    fn every_failure_says_what_happened_and_what_to_do() {
+    fn failures_name_cause_and_remedy() {
         let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
         let calibration = |run, byte| Failure::Calibration { run, status: CalibrationStatus::from_byte(byte) };
         let wiegand =

@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn intervals_fall_into_buckets() {
+    fn intervals_are_counted_in_buckets() {
         let mut histogram = Histogram::default();
         assert_eq!((histogram.total(), histogram.range_us()), (0, None));
         let wanted = Duration::from_millis(10);

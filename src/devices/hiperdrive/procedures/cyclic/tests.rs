@@ -52,7 +52,7 @@ fn report(sequence: u32, status: u16, position: i32) -> Vec<u8> {
 }
 
 #[test]
-fn packets_of_the_reference() {
+fn packets_match_the_reference() {
     let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(0));
     let out = OutData { control: 0x0439, speed: 100, torque: 100, target: 163_840 };
     let image = OutImage { drives: vec![out], pkw: None };
@@ -72,7 +72,7 @@ fn packets_of_the_reference() {
 
 /// Reference 2: 8 bytes per drive, and 8 of parameter words at the end if present; 14 to 78 bytes of data per packet.
 #[test]
-fn images_are_laid_out_by_the_connection() {
+fn the_connection_determines_the_image_layout() {
     for (topology, pkw, data) in [
         (Topology::Adapter, false, 8),
         (Topology::Adapter, true, 16),
@@ -173,7 +173,7 @@ impl Bench {
 /// Reference, issue and manual: three intervals without a packet are a loss. The stop word is still sent, since only the
 /// return path may be cut. Then off, then nothing more, whatever arrives.
 #[test]
-fn a_loss_stops_and_stays() {
+fn a_lost_connection_stops_and_stays_lost() {
     let mut bench = Bench::jogs();
     bench.answers = false;
     assert_eq!(bench.cycles(3).join(" "), "1459");
@@ -192,7 +192,7 @@ fn a_loss_stops_and_stays() {
 /// A computer that was busy for 70 ms has not listened, and cannot tell that nothing arrived: received packets are still
 /// queued. After the target's time-out (80 ms here) the drives have stopped by themselves.
 #[test]
-fn whoever_was_kept_from_listening_listens_before_giving_up() {
+fn a_delayed_thread_reads_pending_packets_before_giving_up() {
     for (away, lost) in [(70, false), (100, true)] {
         let mut bench = Bench::jogs();
         // Packets received meanwhile are queued when the thread wakes up.
@@ -218,7 +218,7 @@ fn whoever_was_kept_from_listening_listens_before_giving_up() {
 
 /// Issue 21.13: at rest the connection is kept until the target's own time-out (80 ms here), whatever is missing before.
 #[test]
-fn at_rest_silence_is_borne_until_the_time_out_of_the_target() {
+fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     let mut bench = Bench::new();
     bench.act(MotionRequest::Lead(Goal::Enabled));
     bench.cycles(20);
@@ -241,7 +241,7 @@ fn at_rest_silence_is_borne_until_the_time_out_of_the_target() {
 
 /// Closing: stop, standstill, off three times.
 #[test]
-fn an_end_stops_and_switches_off() {
+fn ending_the_connection_stops_and_switches_off() {
     let mut bench = Bench::jogs();
     bench.drives.close(at(bench.ms));
     let begun = bench.ms;
@@ -254,7 +254,7 @@ fn an_end_stops_and_switches_off() {
 
 /// A drive that does not stop: after the ladder the connection is to be closed.
 #[test]
-fn a_drive_that_does_not_stand_ends_the_connection() {
+fn a_drive_that_does_not_stop_ends_the_connection() {
     let mut bench = Bench::jogs();
     bench.act(MotionRequest::Stop);
     let mut words = Vec::new();
@@ -269,7 +269,7 @@ fn a_drive_that_does_not_stand_ends_the_connection() {
 
 /// One drive moves at a time: an act for another one stops the first.
 #[test]
-fn the_others_rest() {
+fn only_one_drive_moves_at_a_time() {
     let second = DriveNumber::new(2).unwrap();
     let mut drives =
         Drives::new(&opened(Topology::Hub4, false, ByteOrder::Little), &[DriveNumber::FIRST, second], 0, at(0));
@@ -315,7 +315,7 @@ fn the_others_rest() {
 proptest! {
     /// Any packet is counted, and a malformed one neither moves a drive nor keeps the connection alive.
     #[test]
-    fn any_packets(packets in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..80), 1..40)) {
+    fn arbitrary_packets_move_no_drive(packets in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..80), 1..40)) {
         let mut bench = Bench::new();
         bench.cycles(5);
         bench.answers = false;
@@ -335,7 +335,7 @@ proptest! {
 
     /// A report that is cut, has a bit flipped, is repeated or late: no panic, and it counts at most once.
     #[test]
-    fn damaged_reports(
+    fn damaged_reports_count_at_most_once(
         reports in prop::collection::vec((0u32..40, 0usize..37, 0usize..400, 0u8..4), 1..60)
     ) {
         let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(0));

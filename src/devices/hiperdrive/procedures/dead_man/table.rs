@@ -155,7 +155,7 @@ fn table() -> Vec<Vec<&'static str>> {
 }
 
 #[test]
-fn motions_end_as_the_document_says() {
+fn motions_end_as_documented() {
     let rows = table();
     let (head, events) = rows.split_first().unwrap();
     assert_eq!((head.len(), events.len()), (9, 13), "all phases and all events");

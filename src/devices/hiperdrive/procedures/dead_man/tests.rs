@@ -85,7 +85,7 @@ fn heard(said: Option<(u16, i32)>) -> Option<Actual> {
 
 /// Every relevant status before every relevant word: a standing word starts nothing.
 #[test]
-fn nothing_begins_with_a_word_that_stands() {
+fn a_standstill_word_starts_no_motion() {
     let befores: Vec<ControlWord> =
         (0..=u16::MAX).step_by(0x40).filter_map(|word| ControlWord::parse(word | 0x0439).ok()).collect();
     let mut standing = 0;
@@ -106,7 +106,7 @@ fn nothing_begins_with_a_word_that_stands() {
 /// The trap of reference 3: after a run, no word on the way clears bit 12 while the drive is enabled and bits 4 and 5 are
 /// set, and the drive is below operational before it is enabled again.
 #[test]
-fn out_of_speed_mode_through_ready() {
+fn leaving_speed_mode_passes_through_ready() {
     let mut man = DeadMan::new(DriveNumber::FIRST, 0);
     let permit = Permit::within(-1000, 1000);
     let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
@@ -135,7 +135,7 @@ fn out_of_speed_mode_through_ready() {
 
 /// Between two calls of a thread that was suspended, a stop may have been requested, followed by something else.
 #[test]
-fn a_stop_that_nobody_has_seen_ends_the_job_all_the_same() {
+fn an_unseen_stop_still_ends_the_job() {
     let permit = Permit::within(-1000, 1000);
     for (waits, next) in [(true, MotionRequest::Resume), (false, MotionRequest::Pause)] {
         let mut man = DeadMan::new(DriveNumber::FIRST, 0);
@@ -198,7 +198,7 @@ const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Cloc
 /// Issue 21.3: parameters that are doubted while a drive is still being led up are read before it moves; a running motion
 /// continues, and a paused one does not resume.
 #[test]
-fn a_doubt_keeps_a_motion_from_its_beginning() {
+fn doubted_limits_delay_the_start_of_a_motion() {
     let doubted = Ended::Refused(Refusal::Locked(Lock::Outdated));
     for wish in [CLOCKWISE, MotionRequest::Move { target: 500, effort: FULL }] {
         let mut looks = Looks::new();
@@ -229,7 +229,7 @@ fn a_doubt_keeps_a_motion_from_its_beginning() {
 /// Issue 21.4: limits that another master changes, or a shaft that is pushed, between the last word on the way up and the
 /// first of the motion: a drive that is outside then did not start there, and does not move further out.
 #[test]
-fn a_drive_that_gets_outside_before_it_moves_does_not_begin() {
+fn a_drive_outside_its_limits_before_moving_does_not_start() {
     for (wish, direction) in [
         (CLOCKWISE, Direction::Clockwise),
         (
@@ -256,7 +256,7 @@ fn a_drive_that_gets_outside_before_it_moves_does_not_begin() {
 
 /// Issue 21.4: if both limits are within a degree, status bit 15 does not tell at which of them the drive is.
 #[test]
-fn near_both_limits_bit_15_does_not_tell_the_way_in() {
+fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
     let at = |position| Permit::within(-150, 150).outside(heard(Some((0xAA37, position))).unwrap());
     assert_eq!((at(-20), at(0), at(20)), (Some(Outside::Unclear), Some(Outside::Unclear), Some(Outside::Unclear)));
     assert_eq!((at(-34), at(34)), (Some(Outside::At(Side::Below)), Some(Outside::At(Side::Above))));
@@ -281,7 +281,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 
     #[test]
-    fn whatever_happens(ticks in prop::collection::vec(tick(), 1..120)) {
+    fn the_dead_man_holds_its_invariants_for_any_events(ticks in prop::collection::vec(tick(), 1..120)) {
         let mut man = DeadMan::new(DriveNumber::FIRST, 5);
         let mut now = Moment::START;
         let mut intent = Intent::rest(DriveNumber::FIRST, 5, now);

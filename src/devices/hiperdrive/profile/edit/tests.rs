@@ -38,14 +38,14 @@ fn plan(wanted: &[(u16, i64)], position: i32) -> Result<HiperdrivePlan, PlanErro
 }
 
 #[test]
-fn nothing_differs_nothing_is_written() {
+fn without_differences_nothing_is_written() {
     let device = image(&[1, 3]);
     let plan = plan_edits(&device, &device, &at(1, 0)).unwrap();
     assert_eq!((plan.is_empty(), plan.write_cycles(), plan.base), (true, 0, Base::default()));
 }
 
 #[test]
-fn what_differs_is_written_and_saved_once() {
+fn differences_are_written_and_saved_once() {
     let plan = plan(&[(24, 5), (26, 7), (166, 200), (366, 100)], 0).unwrap();
     assert_eq!(steps(&plan), [(24, 5), (166, 200), (366, 100), (47, 1)]);
     assert_eq!(plan.write_cycles(), 1);
@@ -55,14 +55,14 @@ fn what_differs_is_written_and_saved_once() {
 }
 
 #[test]
-fn what_is_not_saved_costs_no_save() {
+fn volatile_parameters_need_no_save() {
     let device = image(&[1]).with(&image_of(&[(170, 4096)]));
     let plan = plan_edits(&device, &image_of(&[(170, 100)]), &Positions::new()).unwrap();
     assert_eq!((steps(&plan), plan.write_cycles()), (vec![(170, 100)], 0));
 }
 
 #[test]
-fn the_scale_comes_first_and_the_limits_after_the_speed() {
+fn the_scale_is_written_first_and_the_limits_after_the_speed() {
     let wanted = [(152, 1), (154, 400), (156, 256), (158, -1000), (160, 1000), (162, 1), (166, 200), (186, 10)];
     let plan = plan(&wanted, 0).unwrap();
     let expected = [(156, 256), (154, 400), (162, 1), (166, 200), (158, -1000), (160, 1000), (186, 10), (47, 1)];
@@ -70,7 +70,7 @@ fn the_scale_comes_first_and_the_limits_after_the_speed() {
 }
 
 #[test]
-fn a_drive_is_requested_before_all_else_and_given_up_after_it() {
+fn a_drive_is_requested_first_and_released_last() {
     let device = image(&[1, 3]).with(&image_of(&[(152, 0)]));
     let wanted = image_of(&[(24, 1), (152, 1), (166, 200), (352, 0), (366, 200)]);
     let plan = plan_edits(&device, &wanted, &Positions::new()).unwrap();
@@ -81,7 +81,7 @@ fn a_drive_is_requested_before_all_else_and_given_up_after_it() {
 /// Old limits, position, new limits; and which of them the drive accepts first. The rules (reference 4): 160 is above 158,
 /// and the drive between both, at every write.
 #[test]
-fn limits_are_written_in_the_order_that_the_drive_takes() {
+fn limits_are_written_in_the_order_the_drive_accepts() {
     let cases = [
         ("closer", (-1000, 1000), 0, (-100, 100), [158, 160]),
         ("wider", (-100, 100), 0, (-1000, 1000), [158, 160]),
@@ -114,7 +114,7 @@ fn limits_are_written_in_the_order_that_the_drive_takes() {
 proptest::proptest! {
     /// For any limits and any position: each write leaves the drive between limits that are in order.
     #[test]
-    fn limits_are_always_written_as_the_drive_takes_them(
+    fn any_limits_are_written_in_an_accepted_order(
         old in (-100i64..100, 1i64..100),
         new in (-100i64..100, 1i64..100),
         position in -110i32..110,
@@ -138,7 +138,7 @@ proptest::proptest! {
 }
 
 #[test]
-fn a_drive_outside_its_new_limits_is_not_touched() {
+fn a_drive_outside_its_new_limits_is_not_changed() {
     let refused = |wanted: &[(u16, i64)], position| plan(wanted, position).unwrap_err();
     let outside = |position, lower, upper| PlanError::PositionOutside { drive: drive(1), position, lower, upper };
     assert_eq!(refused(&[(158, 0), (160, 1000)], -1), outside(-1, 0, 1000));
@@ -153,14 +153,14 @@ fn a_drive_outside_its_new_limits_is_not_touched() {
 }
 
 #[test]
-fn a_position_without_room_is_refused() {
+fn a_position_too_large_for_the_new_scale_is_refused() {
     // 500 turns of 65536 steps, times 255.996: 500 · 256 · 65535 = 8388480000.
     let error = plan(&[(154, 65_535)], 32_768_000).unwrap_err();
     assert_eq!(error, PlanError::PositionTooLarge { drive: drive(1), position: 8_388_480_000 });
 }
 
 #[test]
-fn limits_have_an_order() {
+fn crossed_limits_are_refused() {
     for (lower, upper) in [(100, 100), (101, 100)] {
         let error = plan(&[(158, lower), (160, upper)], 100).unwrap_err();
         assert_eq!(error, PlanError::LimitsCrossed { drive: drive(1), lower, upper });
@@ -169,7 +169,7 @@ fn limits_have_an_order() {
 }
 
 #[test]
-fn what_cannot_be_written_is_told_by_its_reason() {
+fn unwritable_parameters_are_refused_with_a_reason() {
     let device = image(&[1]).with(&image_of(&[(101, 0), (104, 0), (105, 0), (107, 0), (47, 0), (199, 0)]));
     let refused = |own, value| plan_edits(&device, &image_of(&[(own, value)]), &Positions::new()).unwrap_err();
     let item = |own| Item(number(own));
@@ -237,7 +237,7 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
 }
 
 #[test]
-fn a_scale_that_moves_limits_is_told() {
+fn a_scale_that_moves_limits_is_warned_about() {
     let warned = |wanted: &[(u16, i64)]| warnings(&plan(wanted, 0).unwrap());
     // 511 turns of 65536 steps are 33488896; of 400 steps they are 83722.24 turns.
     let moved = warned(&[(154, 400), (156, 256)]);
@@ -252,7 +252,7 @@ fn a_scale_that_moves_limits_is_told() {
 }
 
 #[test]
-fn what_else_a_plan_brings_is_told() {
+fn side_effects_of_a_plan_are_warned_about() {
     let warned = |wanted: &[(u16, i64)]| warnings(&plan(wanted, 0).unwrap());
     assert_eq!(warned(&[(186, 255)]), [Warning::NoTimeout(drive(1))]);
     assert_eq!(warned(&[(390, 9600)]), [Warning::AfterReset(Item(number(390)))]);
@@ -284,7 +284,7 @@ fn a_position_beyond_the_limits_is_not_set() {
 }
 
 #[test]
-fn services_rest_upon_all_that_they_may_change() {
+fn services_depend_on_every_value_they_may_change() {
     let device = image(&[1]);
     for (service, code, cost) in
         [(Service::Save, 1, 1), (Service::Factory, -1, 0), (Service::FactoryAll, -3, 1), (Service::Recall, -2, 0)]

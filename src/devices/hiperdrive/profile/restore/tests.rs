@@ -26,7 +26,7 @@ fn written(restore: &Restore) -> Vec<u16> {
 }
 
 #[test]
-fn only_what_differs_is_written() {
+fn only_differences_are_written() {
     let mut device = device();
     device.image = device.image.with(&image_of(&[(166, 100), (398, 64)]));
     let restore = plan_restore(&profile(), &device, NONE).unwrap();
@@ -40,7 +40,7 @@ fn only_what_differs_is_written() {
 }
 
 #[test]
-fn places_without_a_drive_are_skipped_and_named() {
+fn ports_without_a_drive_are_skipped_and_named() {
     let mut device = device();
     device.image = image(&[1]).with(&image_of(&[(166, 100)]));
     device.identity = identity("100", &[(1, "4711")]);
@@ -95,7 +95,7 @@ fn another_type_of_device_or_drive_is_refused() {
 }
 
 #[test]
-fn what_a_person_marks_stays_on_its_own_drive() {
+fn marked_parameters_stay_on_their_own_drive() {
     let mut marked = profile();
     let mark = |own| MountingMark { item: Item(number(own)), meaning: String::new(), unknown: Default::default() };
     marked.mounting.extend([mark(160), mark(360)]);
@@ -128,7 +128,7 @@ fn differences_are_named_by_drive() {
 /// = 20 of 0.1 mm in 2 mm; 256 · 3600 / 256 = 3600 of 0.1 degree. 511 turns of them are 204400 and 10220; half a turn is
 /// 1800.
 #[test]
-fn the_ready_made_profiles_do_what_they_say() {
+fn ready_made_profiles_plan_the_expected_writes() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/hiperdrive").join(name);
         let text = std::fs::read_to_string(path).unwrap();

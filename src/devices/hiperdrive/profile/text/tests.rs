@@ -30,7 +30,7 @@ fn replaced(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn what_is_written_is_what_is_read() {
+fn emitted_profiles_parse_back() {
     let text = document(profile()).emit();
     assert_eq!(Document::parse(&text, HiperdriveProfile::FORMATS).unwrap(), document(profile()));
     for line in [
@@ -49,7 +49,7 @@ fn what_is_written_is_what_is_read() {
 }
 
 #[test]
-fn a_profile_by_hand_is_of_no_device() {
+fn a_handwritten_profile_has_no_identity() {
     let profile = parse(SHORT).unwrap();
     assert!(profile.identity.is_of_no_device());
     assert_eq!(profile.image, image_of(&[(24, 16), (254, 400), (256, 256), (258, -1000), (260, 204_400)]));
@@ -62,13 +62,13 @@ fn a_profile_by_hand_is_of_no_device() {
 }
 
 #[test]
-fn parameters_of_drives_may_stand_beside_those_of_the_device() {
+fn drive_parameters_may_be_listed_with_device_parameters() {
     let text = r#"(schema: 1, device: "hiperdrive", parameters: {166: 200, 366: 100})"#;
     assert_eq!(parse(text).unwrap().image, image_of(&[(166, 200), (366, 100)]));
 }
 
 #[test]
-fn what_is_not_known_is_kept() {
+fn unknown_fields_are_kept() {
     let text = SHORT
         .replace("24: 0x10", "24: 0x10, \"owner\": (name: \"CK\")")
         .replace("number: 2,", "number: 2, axis: \"feed\",")
@@ -97,7 +97,7 @@ fn what_is_not_known_is_kept() {
 }
 
 #[test]
-fn a_slip_is_told_where_it_stands() {
+fn profile_errors_name_their_location() {
     let cases = [
         ("24: 0x10", "24: \"a\"", "parameters.24 must be a whole number"),
         ("24: 0x10", "24: 1, 24: 2", "line 4, column "),
@@ -131,7 +131,7 @@ fn a_slip_is_told_where_it_stands() {
 }
 
 #[test]
-fn who_it_is_is_kept() {
+fn the_identity_round_trips() {
     let profile = HiperdriveProfile::of(identity("7", &[(8, "1")]), image_of(&[(898, 64)]));
     assert_eq!(parse(&document(profile.clone()).emit()), Ok(profile));
 }
@@ -141,14 +141,14 @@ const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests
 
 /// Issue 22.26: one changed value changes one place in the text.
 #[test]
-fn a_change_touches_nothing_else() {
+fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperdriveProfile| assert_eq!(own.image.values.insert(number(166), 40), Some(50));
     changed_in_place(COMMENTED, edit, "166: 50", "166: 40");
 }
 
 /// Issue 22.26: an added or removed entry changes its own line only.
 #[test]
-fn entries_come_and_go() {
+fn adding_or_removing_an_entry_changes_only_its_line() {
     let (_, carried) = edited(COMMENTED, |_, own: &mut HiperdriveProfile| {
         own.image.values.remove(&number(158));
         own.image.values.insert(number(24), 1);

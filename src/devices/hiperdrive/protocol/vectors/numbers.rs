@@ -20,7 +20,7 @@ fn millimetres(hundredths: u64) -> Length {
 
 /// Reference 9: −511 turns are −33488896 = FE010000h.
 #[test]
-fn the_published_parameter_words() {
+fn published_parameter_words_match() {
     let little = ByteOrder::Little;
     let requests = [
         ("A6 10 00 00 00 00 00 00", Pkw::request(Task::Read, 166, 0, 0)),
@@ -58,7 +58,7 @@ fn the_published_parameter_words() {
 
 /// A reply for another parameter or another task is no answer.
 #[test]
-fn what_answers_a_request() {
+fn a_reply_matches_only_its_own_request() {
     let read = Pkw::request(Task::Read, 166, 0, 0);
     let reply = |code: u16, number: u16| Pkw { pke: code << 12 | number, ind: 0, pwe: 5 };
     assert_eq!(reply(1, 158).answer_to(read), None, "another parameter");
@@ -77,7 +77,7 @@ fn what_answers_a_request() {
 
 /// Reference 7.
 #[test]
-fn where_cip_has_parameters() {
+fn parameters_map_to_cip_attributes() {
     for (own, class, attribute, drive, base) in [
         (47, 0x64, 0x2F, None, 47),
         (101, 0x65, 0x65, DriveNumber::new(1), 101),
@@ -106,7 +106,7 @@ fn where_cip_has_parameters() {
 
 /// Reference 4.
 #[test]
-fn the_table_of_parameters() {
+fn the_parameter_table_matches_the_reference() {
     assert!(PARAMETERS.is_sorted_by(|one, other| one.number < other.number));
     let numbers: Vec<u16> = PARAMETERS.iter().map(|row| row.number).collect();
     // 9 read-only parameters of the device, 10 registers, 47; 101 to 129; 22 from 152 to 199.
@@ -133,7 +133,7 @@ fn the_table_of_parameters() {
 
 /// Reference 4: limits, at and beyond them.
 #[test]
-fn what_a_parameter_may_be() {
+fn parameter_ranges_are_checked() {
     for (own, good, bad) in [
         (102, &[1, 100][..], &[0, 101][..]),
         (152, &[0, 1], &[2, -1]),
@@ -170,7 +170,7 @@ fn what_a_parameter_may_be() {
 
 /// Reference 7 and 9: 1, 2 or 4 bytes, low byte first; a text with or without its length.
 #[test]
-fn values_have_the_length_of_their_kind() {
+fn values_have_the_length_of_their_type() {
     for (kind, text, value) in [
         (Kind::I32, "00 80 02 00", 163_840),
         (Kind::I32, "00 00 01 FE", -33_488_896),
@@ -213,7 +213,7 @@ fn nominal_data_may_be_tenths() {
 
 /// Reference 5: the table, and the manual's examples.
 #[test]
-fn steps_turns_and_spindles() {
+fn steps_convert_to_turns_and_millimetres() {
     for (numerator, denominator, steps) in [(256, 1, 65_536), (400, 256, 400), (100, 256, 100), (20, 256, 20)] {
         let scale = PositionScale::new(numerator, denominator).unwrap();
         assert_eq!(scale.steps_of_turns(1), Some(steps));
@@ -256,7 +256,7 @@ fn steps_turns_and_spindles() {
 
 /// Reference 2 and 5.
 #[test]
-fn turns_references_torque_and_speed() {
+fn turns_reference_torque_and_speed_convert() {
     for (position, expected) in [(-1, (-1, 65_535)), (0, (0, 0)), (163_840, (2, 32_768)), (i32::MIN, (-32_768, 0))] {
         assert_eq!(turns(position), expected);
     }
@@ -276,7 +276,7 @@ fn turns_references_torque_and_speed() {
 
 /// Reference 1 and 4.
 #[test]
-fn the_tables_of_errors_variants_lamps_and_switches() {
+fn error_variant_led_and_switch_tables_match_the_reference() {
     assert!(ERROR_CODES.is_sorted_by(|one, other| one.code.code() < other.code.code()));
     assert_eq!(ErrorCode::FOLLOWING.to_string(), "8203 following error");
     assert_eq!(ErrorCode::new(0x8999).to_string(), "8999 unknown error");
@@ -311,7 +311,7 @@ fn the_tables_of_errors_variants_lamps_and_switches() {
 
 proptest! {
     #[test]
-    fn every_parameter_word_survives(bytes: [u8; 8], request: [u8; 8]) {
+    fn every_parameter_word_round_trips(bytes: [u8; 8], request: [u8; 8]) {
         for order in [ByteOrder::Little, ByteOrder::Big] {
             let reply = Pkw::parse(bytes, order);
             prop_assert_eq!(reply.emit(order), bytes);
@@ -320,13 +320,13 @@ proptest! {
     }
 
     #[test]
-    fn every_parameter_has_one_place(own in 1u16..900) {
+    fn every_parameter_has_one_address(own in 1u16..900) {
         let parameter = number(own);
         prop_assert_eq!(ParameterNumber::of_attribute(parameter.class(), parameter.attribute()), Some(parameter));
     }
 
     #[test]
-    fn a_scale_has_exactly_its_step(pitch in 1u64..20_000_000, step in 1u64..1_000_000) {
+    fn a_scale_has_exactly_the_requested_step(pitch in 1u64..20_000_000, step in 1u64..1_000_000) {
         let (pitch, step) = (Length { nanometres: pitch }, Length { nanometres: step });
         if let Ok(scale) = PositionScale::for_spindle(pitch, step) {
             // 256 · numerator / denominator = pitch / step.
@@ -336,7 +336,7 @@ proptest! {
     }
 
     #[test]
-    fn every_number_of_a_kind_survives(number: i64) {
+    fn every_number_of_a_type_round_trips(number: i64) {
         for kind in [Kind::U8, Kind::I8, Kind::U16, Kind::I16, Kind::U32, Kind::I32] {
             match kind.emit(&Value::Number(number)) {
                 Ok(data) => prop_assert_eq!(kind.parse(&data), Ok(Value::Number(number))),

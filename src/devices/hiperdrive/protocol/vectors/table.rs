@@ -128,7 +128,7 @@ fn probe(typed: &Typed<'_>) -> (Vec<i64>, Vec<i64>) {
 
 /// Issue 21.10: type, access, unit, saved, factory value and allowed values of every row; no row more or less.
 #[test]
-fn every_row_is_the_manuals() {
+fn every_row_matches_the_manual() {
     let typed = typed();
     let own: Vec<u16> = PARAMETERS.iter().map(|row| row.number).collect();
     assert_eq!(own, typed.iter().map(|row| row.number).collect::<Vec<_>>());
@@ -202,7 +202,7 @@ fn every_row_is_answered_within_the_manuals_time() {
 /// Issue 21.10: for each family, in steps of each scale. Turns · 256 · numerator / denominator, rounded towards 0,
 /// within 32 bits.
 #[test]
-fn limits_are_the_familys_turns_in_the_unit_of_the_scale() {
+fn limit_ranges_are_the_familys_turns_in_scaled_units() {
     let names = [("HDA 30, HDA 45", Family::Short), ("HDA 70", Family::Long), ("PSE441", Family::Pse441)];
     let mut families = families();
     assert_eq!(families.len(), names.len());

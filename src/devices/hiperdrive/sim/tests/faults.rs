@@ -18,7 +18,7 @@ fn acknowledge(bench: &mut Bench) {
 }
 
 #[test]
-fn a_blocked_drive_fails_and_comes_back() {
+fn a_blocked_drive_faults_and_recovers() {
     for (target, wall, code) in [
         (655_360, SpindleLoad { wall_above: Some(30_000.0), ..SpindleLoad::default() }, ErrorCode::BLOCK_FORWARD),
         (-655_360, SpindleLoad { wall_below: Some(-30_000.0), ..SpindleLoad::default() }, ErrorCode::BLOCK_REVERSE),
@@ -43,7 +43,7 @@ fn a_blocked_drive_fails_and_comes_back() {
 
 /// 26 % of torque are 50, which is too little for 60.
 #[test]
-fn a_weak_drive_does_not_follow() {
+fn insufficient_torque_causes_a_following_error() {
     let mut bench = Bench::single();
     bench.load(SpindleLoad { percent: 60, ..SpindleLoad::default() });
     bench.out[FIRST].torque = 26;
@@ -60,7 +60,7 @@ fn a_weak_drive_does_not_follow() {
 
 /// 50 °C ambient and 40 K of its own at full torque: above 80 °C after 60 s · ln 4 = 83 s of motion.
 #[test]
-fn a_hot_drive_fails() {
+fn a_hot_drive_faults() {
     let hot = SpindleLoad { ambient: 50.0, ..SpindleLoad::default() };
     let mut bench = Bench::new(Setup { drives: vec![Some((Variant::new(13), hot))], ..Setup::default() });
     assert_eq!(bench.read(119), Value::Number(50));
@@ -97,7 +97,7 @@ fn a_target_beyond_the_limits_is_a_fault() {
 
 /// Below operational something that goes wrong is a warning, which 197 = 0 takes away.
 #[test]
-fn a_drive_that_is_not_on_warns() {
+fn a_drive_that_is_switched_off_warns() {
     let mut bench = Bench::single();
     let now = bench.now;
     bench.drive().fail(now, ErrorCode::RS485);
@@ -108,7 +108,7 @@ fn a_drive_that_is_not_on_warns() {
 
 /// Reference 3: if bit 0 was cleared before the acknowledgement, the lock needs another falling edge.
 #[test]
-fn the_lock_needs_an_edge() {
+fn releasing_the_lock_needs_an_edge() {
     let mut bench = Bench::single();
     bench.enable();
     let now = bench.now;
@@ -150,7 +150,7 @@ fn a_lost_master_stops_all_drives() {
 
 /// An idle master stops the drive and is not lost; one that closes the connection is.
 #[test]
-fn an_idle_master_and_one_that_goes() {
+fn an_idle_master_stops_the_drive_and_a_closed_one_is_lost() {
     let mut bench = Bench::single();
     bench.start(655_360);
     bench.run(500);

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::State;
 /// Reference 3 and 9: the start sequence with its status words. 2.5 turns at 35 rpm, with 0.1 s each for acceleration and
 /// braking (0.0583 turns): 0.2 + (2.5 − 0.0583) / 0.58333 s = 4.386 s.
 #[test]
-fn the_published_start_sequence() {
+fn published_start_sequence_works() {
     let mut bench = Bench::single();
     for (control, status) in [(0x0000, 0x2A30), (0x0400, 0x2A31), (0x0401, 0x2A33), (0x0409, 0x2A37), (0x0439, 0x2A37)]
     {
@@ -32,7 +32,7 @@ fn the_published_start_sequence() {
 
 /// The state machine advances step by step while the word is unchanged; a word with reserved bits has no effect.
 #[test]
-fn a_word_leads_as_far_as_it_can() {
+fn a_control_word_advances_as_far_as_possible() {
     let mut bench = Bench::single();
     assert_eq!(bench.word(0x0409), 0x2A37);
     assert_eq!(bench.word(0x2000), 0x2A37);
@@ -68,7 +68,7 @@ fn jobs_are_stopped_and_paused() {
 
 /// Reference 3: anything that disables operation ends the motion.
 #[test]
-fn what_is_not_enabled_does_not_move() {
+fn disabling_operation_ends_the_motion() {
     for control in [0x0401, 0x0400, 0x0000, 0x0008] {
         let mut bench = Bench::single();
         bench.start(655_360);
@@ -85,7 +85,7 @@ fn what_is_not_enabled_does_not_move() {
 
 /// Reference 3 and 9: the conditions for a start.
 #[test]
-fn what_a_start_needs() {
+fn a_start_needs_speed_and_torque() {
     for (speed, torque) in [(0, 100), (100, 0)] {
         let mut bench = Bench::single();
         bench.enable();
@@ -98,7 +98,7 @@ fn what_a_start_needs() {
 /// Reference 3: a run ends at the range, an endless one does not; clearing bit 12 after it starts a job to a stale target,
 /// and 0400 avoids it.
 #[test]
-fn speed_mode_and_its_trap() {
+fn leaving_speed_mode_directly_starts_a_stale_job() {
     let mut bench = Bench::single();
     assert_eq!((bench.write(160, 65_536), bench.write(158, -65_536)), (Ok(()), Ok(())));
     bench.enable();
@@ -131,7 +131,7 @@ fn speed_mode_and_its_trap() {
 
 /// Reference 3 and 5: 4096 steps, which bit 4 does not stop; 16 of them are a turn.
 #[test]
-fn a_jog_step_runs_to_its_end() {
+fn a_jog_step_runs_to_completion() {
     let mut bench = Bench::single();
     bench.enable();
     bench.word(0x0509);
@@ -150,7 +150,7 @@ fn a_jog_step_runs_to_its_end() {
 
 /// Reference 4: the drives of a hub are not requested at first, and move one by one.
 #[test]
-fn a_hub_moves_what_is_requested() {
+fn a_hub_moves_only_requested_drives() {
     let mut bench = Bench::hub();
     bench.out[1].target = 65_536;
     let both = |bench: &mut Bench, control| {
@@ -176,7 +176,7 @@ fn a_hub_moves_what_is_requested() {
 
 /// The result does not depend on how often the state is read.
 #[test]
-fn time_passes_the_same_in_any_portions() {
+fn motion_is_independent_of_the_polling_interval() {
     let run = |portions: &[u64]| {
         let mut drive = Drive::new(Variant::new(7), Topology::Adapter, SpindleLoad::default());
         let at = |ms| Moment::START + Duration::from_millis(ms);
@@ -199,7 +199,7 @@ proptest! {
 
     /// With arbitrary input: no panic, and no motion beyond the range except in endless runs.
     #[test]
-    fn whatever_is_sent(
+    fn arbitrary_commands_stay_within_limits(
         sent in prop::collection::vec((any::<u16>(), 0u8..=120, 0u8..=120, -200_000i32..200_000, 1u64..400), 1..60)
     ) {
         let mut bench = Bench::single();

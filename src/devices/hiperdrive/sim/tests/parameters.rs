@@ -11,7 +11,7 @@ fn value(number: i64) -> Value {
 
 /// Every parameter of the table can be read for a drive and for a device, and has its type.
 #[test]
-fn every_parameter_is_there() {
+fn every_parameter_can_be_read() {
     let mut bench = Bench::hub();
     for row in PARAMETERS {
         for own in if row.number < 100 { vec![row.number] } else { vec![row.number, row.number + 100] } {
@@ -29,7 +29,7 @@ fn every_parameter_is_there() {
 }
 
 #[test]
-fn what_is_refused_says_why() {
+fn refusals_have_the_matching_status() {
     let mut bench = Bench::single();
     let text = Value::Text("x".to_owned());
     for (own, refused, status) in [
@@ -48,7 +48,7 @@ fn what_is_refused_says_why() {
 
 /// Reference 4: 160 is above 158, the position between them.
 #[test]
-fn limits_hold_the_position() {
+fn limits_must_contain_the_position() {
     let mut bench = Bench::single();
     assert_eq!(bench.write(158, 1), Err(Refused::Value), "the position is 0");
     assert_eq!(bench.write(160, -1), Err(Refused::Value));
@@ -59,7 +59,7 @@ fn limits_hold_the_position() {
 /// Issue 21.10: ±512 turns of an HDA30, ±16000 of an HDA70, in scaled steps; a step of its keys is no longer than its
 /// travel.
 #[test]
-fn no_limit_is_taken_beyond_the_turns_of_the_drive() {
+fn limits_beyond_the_turns_of_the_drive_are_refused() {
     let mut bench = Bench::single();
     for (own, good, bad) in [
         (158, -33_554_432, -33_554_433),
@@ -79,7 +79,7 @@ fn no_limit_is_taken_beyond_the_turns_of_the_drive() {
 
 /// Reference 5: the nearest multiple of 64, within the limits, and only at standstill.
 #[test]
-fn the_position_is_set() {
+fn the_position_can_be_set() {
     let mut bench = Bench::single();
     for (given, becomes) in [(100, 128), (31, 0), (-33, -64), (163_840, 163_840)] {
         assert_eq!(bench.write(198, given), Ok(()));
@@ -96,7 +96,7 @@ fn the_position_is_set() {
 
 /// Reference 3 and 5: with 400 steps per turn a turn is 400; the limits keep their numbers.
 #[test]
-fn scaling_moves_everything_but_the_numbers_of_the_limits() {
+fn scaling_keeps_the_numeric_limits() {
     let mut bench = Bench::single();
     assert_eq!((bench.write(154, 400), bench.write(156, 256)), (Ok(()), Ok(())));
     assert_eq!(bench.read(160), value(33_488_896));
@@ -115,7 +115,7 @@ fn scaling_moves_everything_but_the_numbers_of_the_limits() {
 
 /// Reference 4: 47 saves, recalls and resets; values that are never saved are lost with the supply.
 #[test]
-fn what_survives_the_supply() {
+fn saved_parameters_survive_a_power_cycle() {
     let mut bench = Bench::single();
     let set = [(24, 7), (166, 200), (170, 64)];
     let write_all =
@@ -143,7 +143,7 @@ fn what_survives_the_supply() {
 /// Issue 21.6 (d): 47 = −1 and −2 concern the parameters that the adapter or hub stores itself (manual, 47): its registers,
 /// which drives are requested (152), their baud rate (190). Scale, limits and reference of a drive stay.
 #[test]
-fn the_device_recalls_its_own_parameters_alone() {
+fn the_device_recalls_only_its_own_parameters() {
     let own = [24, 152, 190];
     let of_the_drive = [154, 156, 158, 160, 166, 198];
     let mut bench = Bench::single();
@@ -169,7 +169,7 @@ fn the_device_recalls_its_own_parameters_alone() {
 /// Issue 21.6 (d): a reset has no effect on the position that was set, saved or not; the factory state makes it that of the
 /// shaft, between 0 and 1 turn (manual, 198).
 #[test]
-fn a_position_that_was_set_outlasts_a_reset() {
+fn a_set_position_survives_a_reset() {
     let mut bench = Bench::single();
     bench.start(81_920);
     bench.until(0x3E37);
@@ -189,7 +189,7 @@ fn a_position_that_was_set_outlasts_a_reset() {
 
 /// −4: the drives restart, at most 2 s later, with unchanged positions.
 #[test]
-fn drives_are_reset() {
+fn drives_can_be_reset() {
     let mut bench = Bench::single();
     bench.start(65_536);
     bench.until(0x3E37);

@@ -111,7 +111,7 @@ fn confirm_spindle(axis: &mut Axis, seen: &mut DriveFacts) {
 }
 
 #[test]
-fn a_step_is_looked_at_for_a_while_before_it_is_left() {
+fn a_step_is_shown_for_a_minimum_time() {
     let ms = Duration::from_millis;
     assert_eq!([0, 599, 600].map(|age| Axis::may_leave(ms(age))), [Err(ms(600)), Err(ms(1)), Ok(())]);
     let (mut axis, mut seen) = until_jog();
@@ -125,7 +125,7 @@ fn a_step_is_looked_at_for_a_while_before_it_is_left() {
 
 /// A proposed step has the same decimal sign as the numbers beside it, and is accepted in either language.
 #[test]
-fn what_is_proposed_has_the_decimal_sign_of_the_language() {
+fn proposed_values_use_the_decimal_sign_of_the_language() {
     for (language, step) in [(Language::English, "0.01"), (Language::German, "0,01")] {
         let shown = run().entries().shown(language);
         assert_eq!(shown.resolution, step);
@@ -136,7 +136,7 @@ fn what_is_proposed_has_the_decimal_sign_of_the_language() {
 
 /// A limit that was written twice is reported once, with its present value.
 #[test]
-fn what_was_written_again_is_told_as_it_is_now() {
+fn rewritten_parameters_are_reported_once() {
     let mut axis = run();
     axis.changes =
         vec![AxisChange::Parameter(158, 9), AxisChange::Parameter(160, 10_050), AxisChange::Parameter(160, 250)];
@@ -224,7 +224,7 @@ fn until_power() -> (Axis, DriveFacts) {
 }
 
 #[test]
-fn from_a_new_drive_to_an_axis_that_survives_the_supply() {
+fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
     let (mut axis, mut seen) = until_power();
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_power");
     // Reading without switching off proves nothing.
@@ -255,7 +255,7 @@ fn from_a_new_drive_to_an_axis_that_survives_the_supply() {
 }
 
 #[test]
-fn what_did_not_survive_the_supply_is_told() {
+fn values_lost_in_a_power_cycle_are_reported() {
     let survive = |change: fn(&mut DriveFacts)| {
         let (mut axis, mut seen) = until_power();
         press(&mut axis, &mut seen, Button::Do);
@@ -274,7 +274,7 @@ fn what_did_not_survive_the_supply_is_told() {
 }
 
 #[test]
-fn nothing_is_pressed_that_cannot_be_done() {
+fn impossible_steps_are_refused_with_a_reason() {
     let why = |axis: &Axis, seen: &DriveFacts, button| axis.ask(button, seen).unwrap_err().id();
     let (axis, seen) = until_jog();
     for (label, changed, id) in [
@@ -304,7 +304,7 @@ fn nothing_is_pressed_that_cannot_be_done() {
 }
 
 #[test]
-fn what_is_taught_has_to_hold_the_axis() {
+fn taught_limits_must_contain_the_position() {
     let (mut axis, mut seen) = until_test();
     axis.back(&seen);
     let typed = |lower: &str, upper: &str, axis: &Axis| Entries {
@@ -329,7 +329,7 @@ fn what_is_taught_has_to_hold_the_axis() {
 }
 
 #[test]
-fn a_test_that_did_not_arrive_does_not_count() {
+fn a_test_that_misses_its_target_does_not_count() {
     let (mut axis, mut seen) = until_test();
     // 1° of 400 steps are 1.1: two.
     go(&mut axis, &mut seen, TestTarget::Middle, 503);
@@ -347,7 +347,7 @@ fn a_test_that_did_not_arrive_does_not_count() {
 }
 
 #[test]
-fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
+fn cancelling_reports_written_and_unsaved_values() {
     let (mut axis, mut seen) = until_test();
     axis.cancel(&seen, "");
     assert_eq!((axis.end(), axis.is_saved()), (Some(End::Cancelled), false));
@@ -373,7 +373,7 @@ fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
 }
 
 #[test]
-fn a_position_that_is_right_is_left_as_it_is() {
+fn a_correct_position_is_not_written() {
     let (mut axis, mut seen) = until_jog();
     axis.skip(&seen, "");
     assert_eq!(axis.step(), AxisStep::Jog, "this one cannot be left out");
@@ -389,7 +389,7 @@ fn a_position_that_is_right_is_left_as_it_is() {
 }
 
 #[test]
-fn pitch_and_step_are_seen_before_they_are_written() {
+fn pitch_and_step_are_previewed_before_writing() {
     let preview = |pitch: &str, resolution: &str, family| {
         let entries = Entries { pitch: pitch.to_owned(), resolution: resolution.to_owned(), ..Entries::default() };
         entries.preview(&DriveFacts { family: Some(family), ..fresh() }).map_err(|text| text.id())
@@ -415,7 +415,7 @@ fn pitch_and_step_are_seen_before_they_are_written() {
 }
 
 #[test]
-fn every_step_says_what_to_do_and_what_was_found() {
+fn every_step_has_instructions_and_a_result() {
     let (axis, seen) = until_power();
     for step in AxisStep::ALL {
         let texts = [words::title(step), words::todo(step, &seen), words::button(step)];

@@ -15,7 +15,7 @@ use crate::profile::{Document, Formats, Profile};
 const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Unit::KIND], &[]);
 
 #[test]
-fn a_wrong_link_is_told_in_both_languages() {
+fn link_errors_are_explained_in_both_languages() {
     for text in ["rpi=1", "timeout=1", "order=middle", "udp=0"] {
         let query: Query = text.parse().unwrap();
         let error = Station::from_query(&query, None, Duration::ZERO).unwrap_err();
@@ -24,7 +24,7 @@ fn a_wrong_link_is_told_in_both_languages() {
 }
 
 #[test]
-fn a_wrong_setting_of_a_virtual_drive_is_told_in_both_languages() {
+fn virtual_drive_setting_errors_are_explained_in_both_languages() {
     for text in ["sed=1", "s3=10", "switch=100", "hub=2", "variant=x", "drives=1,1", "speed=1", "load=x", "name=ä"] {
         let query: Query = text.parse().unwrap();
         let error = Config::from_pairs(query.pairs()).unwrap_err();
@@ -33,7 +33,7 @@ fn a_wrong_setting_of_a_virtual_drive_is_told_in_both_languages() {
 }
 
 #[test]
-fn a_wrong_profile_is_told_in_both_languages() {
+fn profile_errors_are_explained_in_both_languages() {
     let good = r#"(schema: 1, device: "hiperdrive", identity: (category: "HIPERDRIVE HUB-4"),
         drives: [(number: 1, parameters: {158: 5}), (number: 2)], mounting: [(item: "198")])"#;
     assert!(Document::parse(good, HiperdriveProfile::FORMATS).is_ok());

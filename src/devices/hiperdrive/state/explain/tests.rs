@@ -21,7 +21,7 @@ fn number(number: u16) -> ParameterNumber {
 
 /// Sentences, with nothing left open in them.
 #[track_caller]
-fn says(text: &Text, sentences: usize) {
+fn assert_complete(text: &Text, sentences: usize) {
     for words in [text.words(Language::English), text.words(Language::German), text.terminal()] {
         assert!(!words.contains(['{', '}']), "{words}");
         assert!(words.ends_with('.') && words.matches(['.', ':', ';', '?']).count() >= sentences, "{words}");
@@ -29,7 +29,7 @@ fn says(text: &Text, sentences: usize) {
 }
 
 #[test]
-fn bad_input_has_its_sentence_and_its_remedy() {
+fn invalid_input_names_cause_and_remedy() {
     let english = |text: &Text| text.words(Language::English);
     let out = OutOfRange { number: number(166), name: "maximum speed", value: 351, range: Range::Within(5, 350) };
     assert_eq!(
@@ -54,7 +54,7 @@ fn bad_input_has_its_sentence_and_its_remedy() {
 }
 
 #[test]
-fn errors_say_what_happened_and_what_to_do() {
+fn errors_name_cause_and_remedy() {
     let requested = RequestedItem::Set(number(158));
     let refusal =
         |status: u8| Refused { service: Service::SET, status: GeneralStatus::new(status), extended: Vec::new() };
@@ -88,7 +88,7 @@ fn errors_say_what_happened_and_what_to_do() {
         Error::Changed { item: "158".to_owned() },
     ];
     for error in errors {
-        says(&device(&error), 2);
+        assert_complete(&device(&error), 2);
     }
     // Issue 21.9: both lengths, in both languages.
     for (language, said) in [
@@ -104,12 +104,12 @@ fn errors_say_what_happened_and_what_to_do() {
         assert!(!text.words(Language::English).contains("timeout="));
     }
     for status in 0..=0x30 {
-        says(&device(&Error::Refused { requested, refusal: refusal(status) }), 2);
+        assert_complete(&device(&Error::Refused { requested, refusal: refusal(status) }), 2);
     }
 }
 
 #[test]
-fn plans_and_ends_say_what_to_do() {
+fn plan_errors_and_ended_motions_name_a_remedy() {
     let item = Item(number(258));
     let (profile, here) = (|| "17".to_owned(), || "18".to_owned());
     let plans = [
@@ -126,7 +126,7 @@ fn plans_and_ends_say_what_to_do() {
         PlanError::Address(AddressError::None),
         PlanError::Source(7),
     ];
-    plans.iter().for_each(|error| says(&plan(error), 2));
+    plans.iter().for_each(|error| assert_complete(&plan(error), 2));
     let turns = (-511.0, 511.0);
     let warnings = [
         Warning::LimitsMove { drive: ONE, now: turns, then: (-83_722.24, 83_722.24) },
@@ -134,7 +134,7 @@ fn plans_and_ends_say_what_to_do() {
         Warning::NoTimeout(ONE),
         Warning::NotRequested(ONE),
     ];
-    warnings.iter().for_each(|own| says(&warning(own), 2));
+    warnings.iter().for_each(|own| assert_complete(&warning(own), 2));
     let locks = [Lock::Unread, Lock::NoTimeout, Lock::LimitsUnconfirmed, Lock::NotRequested];
     let refusals = [
         Refusal::NoEffort,
@@ -157,13 +157,13 @@ fn plans_and_ends_say_what_to_do() {
         Ended::Left(State::Fault),
         Ended::Short,
     ];
-    locks.iter().for_each(|own| says(&lock(*own), 2));
+    locks.iter().for_each(|own| assert_complete(&lock(*own), 2));
     for own in bad.into_iter().chain(refusals.map(Ended::Refused)).chain(locks.map(Ended::Locked)) {
-        says(&ended(own, plain), 2);
+        assert_complete(&ended(own, plain), 2);
         assert!(weight(own) >= Severity::Warning, "{own:?}");
     }
     for own in [Ended::Done, Ended::Arrived, Ended::Stopped, Ended::Replaced] {
-        says(&ended(own, plain), 1);
+        assert_complete(&ended(own, plain), 1);
         assert_eq!(weight(own), Severity::Note, "nobody has to do anything");
     }
 }

@@ -27,7 +27,7 @@ fn staged() -> Staged {
 }
 
 #[test]
-fn an_edit_stands_beside_the_device_and_can_be_undone() {
+fn an_edit_is_separate_from_the_device_and_can_be_undone() {
     let mut staged = staged();
     assert!(!staged.is_dirty() && !staged.can_undo());
     assert_eq!(staged.edit(&Edit::Set(number(166), 200)), Ok(true));
@@ -44,7 +44,7 @@ fn an_edit_stands_beside_the_device_and_can_be_undone() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_its_reason() {
+fn invalid_edits_are_refused_with_a_reason() {
     let mut staged = staged();
     let out = |staged: &mut Staged, own, value| match staged.edit(&Edit::Set(number(own), value)) {
         Err(EditError::OutOfRange(error)) => (error.value, error.range),
@@ -94,7 +94,7 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
 }
 
 #[test]
-fn edits_survive_a_reading_and_the_rest_follows() {
+fn edits_survive_a_reading_and_other_values_are_updated() {
     let mut staged = staged();
     staged.edit(&Edit::Set(number(166), 200)).unwrap();
     staged.edit(&Edit::Set(number(24), 7)).unwrap();
@@ -114,7 +114,7 @@ fn edits_survive_a_reading_and_the_rest_follows() {
 }
 
 #[test]
-fn a_draft_waits_for_what_it_is_about() {
+fn a_draft_waits_until_its_parameters_are_read() {
     let mut first = staged();
     first.edit(&Edit::Set(number(166), 200)).unwrap();
     let kept = first.saved_edits();
@@ -136,7 +136,7 @@ fn a_draft_waits_for_what_it_is_about() {
 }
 
 #[test]
-fn a_scale_takes_the_limits_along_or_moves_them() {
+fn a_new_scale_converts_or_moves_the_limits() {
     let hundredths = PositionScale::new(400, 256).unwrap();
     let mut along = staged();
     along.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace }).unwrap();
@@ -157,7 +157,7 @@ fn a_scale_takes_the_limits_along_or_moves_them() {
 }
 
 #[test]
-fn what_somebody_should_look_at_is_marked() {
+fn questionable_values_are_marked() {
     let mut profile = Staged::of_profile(image(&[(158, 10), (160, 10), (166, 999), (186, 255)]));
     let marks = profile.marks(|_| None);
     assert!(matches!(marks[0], Mark::OutOfRange(error) if error.number == number(166)));

@@ -26,7 +26,7 @@ fn profile(text: &str) -> HiperfaceProfile {
 }
 
 #[test]
-fn a_profile_written_by_hand_is_read() {
+fn a_handwritten_profile_parses() {
     let profile = profile(SHORT);
     assert_eq!(profile.identity.serial_number, "A1");
     let bytes = Some((0..16).collect());
@@ -36,7 +36,7 @@ fn a_profile_written_by_hand_is_read() {
 }
 
 #[test]
-fn a_slip_of_the_hand_is_no_profile() {
+fn a_typo_is_refused() {
     let cases = [
         ("fields: [(", "fields: [], fields: [(", "fields appears twice"),
         ("status: 0xC8", "status: 0xC9, status: 0xC8", "status appears twice"),
@@ -49,7 +49,7 @@ fn a_slip_of_the_hand_is_no_profile() {
 }
 
 #[test]
-fn what_is_written_is_read() {
+fn emitted_profiles_parse_back() {
     let mut document = parse(SHORT).unwrap();
     let profile = document.body.get_mut::<HiperfaceProfile>().unwrap();
     profile.recorded.position = Some(0x000E_0531);
@@ -68,7 +68,7 @@ fn what_is_written_is_read() {
 }
 
 #[test]
-fn a_wrong_profile_is_told_where() {
+fn profile_errors_name_their_location() {
     let cases = [
         ("", "", "line 1, column 1: "),
         ("schema: 1,", "schema: 1,,", "line 2, column 15: "),
@@ -100,7 +100,7 @@ fn a_wrong_profile_is_told_where() {
 
 /// Issue 22.17: the user's own entries are in `extra`, in any structure.
 #[test]
-fn entries_of_ones_own_are_kept() {
+fn user_entries_are_kept() {
     let text = SHORT
         .replace("schema: 1,", "schema: 1, extra: {\"owner\": (name: \"CK\")},")
         .replace("serial_number:", "extra: (colour: Some(\"red\")), serial_number:")
@@ -120,7 +120,7 @@ fn entries_of_ones_own_are_kept() {
 
 /// Issue 22.17: entries outside the schema in a file from before `extra` are moved into it, and named.
 #[test]
-fn what_older_files_hold_beyond_the_schema_is_taken_over() {
+fn unknown_entries_of_older_files_move_to_extra() {
     let text = SHORT.replace("schema: 1,", "schema: 1, owner: \"CK\",").replace("number: 0,", "number: 0, label: 3,");
     let document = parse(&text).unwrap();
     assert_eq!(document.beyond, ["fields[0].label", "owner"]);
@@ -132,7 +132,7 @@ fn what_older_files_hold_beyond_the_schema_is_taken_over() {
 
 /// Issue 22.17: nothing of a newer schema is lost, because nothing of it is written.
 #[test]
-fn a_newer_schema_is_only_looked_at() {
+fn a_newer_schema_is_read_only() {
     let newer = SHORT.replace("schema: 1,", "schema: 7, feilds: 1,").replace("number: 0,", "number: 0, statsu: 3,");
     let document = parse(&newer).unwrap();
     assert!(document.is_newer());
@@ -145,14 +145,14 @@ fn a_newer_schema_is_only_looked_at() {
 
 /// Issue 22.26: one changed value changes one place in the text.
 #[test]
-fn a_change_touches_nothing_else() {
+fn a_change_edits_only_its_value() {
     let edit = |own: &mut HiperfaceProfile| own.interface.address = 0x41;
     changed_in_place(&commented(), edit, "address: 64", "address: 0x41");
 }
 
 /// Issue 22.26: bytes in lines of another length are rewritten, which is reported; the rest stays.
 #[test]
-fn bytes_in_lines_of_a_persons_own_are_written_anew() {
+fn bytes_with_custom_line_breaks_are_reformatted() {
     let (_, carried) = edited(&commented(), |_, own: &mut HiperfaceProfile| {
         own.fields[0].bytes.as_mut().unwrap()[1] = 0xFF;
     });

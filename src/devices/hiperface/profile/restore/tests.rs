@@ -61,7 +61,7 @@ fn ops(profile: &HiperfaceProfile, device: &DeviceState, options: RestoreOptions
 }
 
 #[test]
-fn plans_by_case() {
+fn restore_plans_for_each_case() {
     type Case = (&'static str, Vec<FieldImage>, Vec<FieldImage>, &'static [&'static str]);
     let cases: [Case; 11] = [
         ("nothing differs", vec![field(0, 0xC9, &[])], vec![field(0, 0xC9, &[])], &[]),
@@ -129,7 +129,7 @@ fn another_size_needs_consent_to_create_again() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused_before_anything_is_written() {
+fn profiles_that_do_not_fit_are_refused_before_writing() {
     let now = device(1, vec![field(0, 0xC8, &[])]);
     let too_large = profile("A", vec![field(0, 0xC8, &[]), field(1, 0xC9, &[])]);
     let error = ops(&too_large, &now, RestoreOptions::default()).unwrap_err();
@@ -161,7 +161,7 @@ fn another_encoder_keeps_its_mounting() {
 
 /// Issue 22.8: bytes of unknown meaning are written to another encoder only after an answer, field by field.
 #[test]
-fn bytes_of_unknown_meaning_are_left_unless_they_are_to_be_copied() {
+fn bytes_of_unknown_meaning_are_copied_only_on_request() {
     let mut wanted =
         profile("B", vec![field(0, 0xC8, &[(3, 1)]), field(1, 0x88, &[(0, 7)]), field(2, 0xC8, &[(1, 2)])]);
     wanted.mounting.push(MountingMark {
@@ -216,7 +216,7 @@ fn bytes_of_unknown_meaning_are_left_unless_they_are_to_be_copied() {
 
 /// Issue 22.9: another type needs its own permission; the one for another serial number is not enough.
 #[test]
-fn another_type_needs_a_permit_of_its_own() {
+fn another_type_needs_a_separate_permission() {
     let mut wanted = profile("B", vec![]);
     wanted.identity.encoder_type = 0x32;
     let now = device(10, vec![]);
@@ -241,7 +241,7 @@ fn another_type_needs_a_permit_of_its_own() {
 }
 
 #[test]
-fn another_type_and_an_encoder_without_a_number_are_not_the_same() {
+fn another_type_and_a_missing_serial_number_are_refused() {
     let mut wanted = profile("A", vec![field(0, 0xC9, &[])]);
     wanted.identity.encoder_type = 0x22;
     let now = device(10, vec![field(0, 0xC9, &[])]);
@@ -253,7 +253,7 @@ fn another_type_and_an_encoder_without_a_number_are_not_the_same() {
 }
 
 #[test]
-fn what_stays_is_counted() {
+fn unchanged_bytes_are_counted() {
     let restore = plan_restore(
         &profile("A", vec![field(0, 0xC9, &[(3, 1)])]),
         &device(10, vec![field(0, 0xC9, &[]), field(1, 0xC8, &[])]),
@@ -269,7 +269,7 @@ fn what_stays_is_counted() {
 /// Issue 22.12: a before-image deletes the fields that the write created, from the last one on, and only if they are
 /// unchanged. Any other file leaves surplus fields.
 #[test]
-fn a_before_image_deletes_what_its_write_created() {
+fn restoring_a_backup_deletes_fields_its_write_created() {
     let wanted = profile("A", vec![field(0, 0xC9, &[(0, 1)]), field(1, 0xA8, &[(3, 7)]), field(2, 0xC8, &[])]);
     let before = device(100, vec![field(0, 0xC8, &[])]);
     let restore = plan_restore(&wanted, &before, RestoreOptions::default()).unwrap().common;

@@ -201,7 +201,7 @@ fn a_position_of_type_37_has_turns() {
 }
 
 #[test]
-fn requests_and_replies_mean_what_the_table_says() {
+fn requests_and_replies_match_the_table() {
     for vector in vectors() {
         let line = bytes(vector.bytes);
         assert_eq!(vector.request.emit(vector.address).bytes(), line, "{}", vector.bytes);
@@ -214,13 +214,13 @@ fn requests_and_replies_mean_what_the_table_says() {
 
 /// Access codes are never shown, so this checks that the equality above really compares them.
 #[test]
-fn requests_with_other_codes_are_other_requests() {
+fn requests_with_other_codes_are_not_equal() {
     assert_ne!(read(1, 5, 2, CODE), read(1, 5, 2, CODE_66));
     assert_ne!(change_code(2, CODE, CODE_66), change_code(2, CODE_66, CODE));
 }
 
 #[test]
-fn errors_are_rejections_of_what_was_asked() {
+fn error_replies_reject_the_request() {
     let wrong_old = change_code(2, AccessCode::new(0x00), CODE_66);
     let cases = [
         ("40 50 01 11", false, 1),
@@ -255,7 +255,7 @@ fn errors_are_rejections_of_what_was_asked() {
 }
 
 #[test]
-fn wrong_checksums_are_told() {
+fn wrong_checksums_are_reported() {
     let misprint = Frame::parse(&bytes("40 4D 01 E0 55 69")).unwrap_err();
     assert_eq!(misprint, FrameError::Checksum { expected: 0xB9, got: 0x69 });
     let other = Frame::parse(&bytes("40 42 03")).unwrap_err();
@@ -278,7 +278,7 @@ fn silence_inside_a_request_leaves_no_frame() {
 }
 
 #[test]
-fn another_sender_is_refused_but_for_a_new_address_and_a_broadcast() {
+fn another_sender_is_refused_except_after_an_address_change_or_broadcast() {
     let from_41 = bytes("41 42 00 0E 05 31 39");
     let mismatch = Err(ReplyError::Address { expected: 0x40, got: 0x41 });
     assert_eq!(Request::ReadPosition.parse_reply(0x40, &from_41), mismatch);

@@ -7,7 +7,7 @@ use crate::devices::hiperface::sim::AtAdapter;
 /// The reference's status request and its reply; the times are those of HIPERFACE: eleven bits per character, 44 bits of
 /// silence, half of the five milliseconds that the command may take.
 #[test]
-fn the_serial_line_leads_to_a_hiperface_encoder() {
+fn the_adapters_uart_reaches_a_hiperface_encoder() {
     let mut host = Host::to("uart=hiperface", &[&AtAdapter]);
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
     assert!(hello.capabilities.has(Capabilities::UART));

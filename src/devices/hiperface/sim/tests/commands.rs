@@ -4,7 +4,7 @@ use super::*;
 use crate::devices::hiperface::protocol::{Command, StatusCode};
 
 #[test]
-fn the_manuals_example_with_the_right_checksum() {
+fn the_manuals_example_works_with_the_right_checksum() {
     let mut host = Host::new(&blank());
     host.expect("40 4E 0E", "40 4E 08 00 06");
     host.expect("40 4D 00 C9 55 91", "40 4D 00 C9 C4");
@@ -27,7 +27,7 @@ fn the_manuals_example_with_the_right_checksum() {
 }
 
 #[test]
-fn reading_the_default_encoder() {
+fn the_default_encoder_can_be_read() {
     let mut host = Host::with("");
     host.expect("40 42 02", "40 42 00 0E 05 31 38");
     host.expect("FF 42 BD", "40 42 00 0E 05 31 38");
@@ -45,7 +45,7 @@ fn reading_the_default_encoder() {
 }
 
 #[test]
-fn the_other_vectors_of_the_reference() {
+fn the_other_vectors_of_the_reference_match() {
     let mut host = Host::with("temperature=-10");
     host.expect("40 44 48 4C", "40 44 48 FF F6 45");
     host.expect("40 4B 00 00 04 55 DE AD BE EF 78", "40 4B 00 00 04 0F");
@@ -83,7 +83,7 @@ fn the_kit_encoder_describes_itself() {
 }
 
 #[test]
-fn the_singleturn_encoder_and_another_type() {
+fn model_and_type_can_be_chosen() {
     let mut host = Host::with("model=sks36");
     host.expect("40 42 02", "40 42 00 00 05 31 36");
     host.expect("40 52 12", "40 52 E4 32 80 01 45");
@@ -95,7 +95,7 @@ fn the_singleturn_encoder_and_another_type() {
 }
 
 #[test]
-fn refusals_in_the_order_of_the_checks() {
+fn requests_are_checked_in_order() {
     let mut host = Host::with("");
     let cases = [
         ("checksum", "40 42 03", "40 50 0A 1A"),
@@ -130,14 +130,14 @@ fn refusals_in_the_order_of_the_checks() {
 }
 
 #[test]
-fn a_request_longer_than_any_is_one_wrong_frame() {
+fn an_overlong_request_is_one_wrong_frame() {
     let mut host = Host::with("");
     let request = format!("40 42 {}", "00 ".repeat(300));
     host.expect(&request, "40 50 0C 1C");
 }
 
 #[test]
-fn codes_wait_in_the_queue_and_show_in_every_reply() {
+fn queued_status_codes_flag_every_reply() {
     let mut host = Host::with("");
     for code in [0x1C, 0x1D, 0x1E, 0x01, 0x02] {
         host.encoder_mut().report(StatusCode::new(code));
@@ -194,7 +194,7 @@ fn a_moving_shaft_is_sampled_when_the_reply_starts() {
 }
 
 #[test]
-fn the_address_changes_at_once_and_stays() {
+fn the_address_changes_immediately_and_persists() {
     let mut host = Host::with("");
     host.expect("40 55 41 55 01", "40 55 41 54");
     host.expect("40 42 02", "");
@@ -205,7 +205,7 @@ fn the_address_changes_at_once_and_stays() {
 }
 
 #[test]
-fn other_access_codes_are_asked_for() {
+fn configured_access_codes_are_required() {
     let mut host = Host::with("codes=0:66");
     host.expect("40 4A 00 00 04 55 5B", "40 50 0F 1F");
     host.expect("40 4A 00 00 04 66 68", "40 4A 00 00 04 45 4D 44 37 75");

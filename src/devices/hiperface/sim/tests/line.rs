@@ -7,7 +7,7 @@ const POSITION: &str = "40 42 00 0E 05 31 38";
 
 /// Manual: 42h at 9600 takes 16.04…26.04 ms from the first bit of the request to the last of the reply.
 #[test]
-fn durations_at_9600() {
+fn durations_at_9600_baud() {
     // request, shortest and longest in ms (the reference's table of total durations)
     let cases = [
         ("40 42 02", 16.04, 26.05),
@@ -31,7 +31,7 @@ fn durations_at_9600() {
 }
 
 #[test]
-fn a_store_takes_longer_the_more_it_writes() {
+fn a_longer_store_takes_longer() {
     let mut host = Host::with("");
     // 11 + 6 characters, 44 bits, 20 ms and 4 · 1.5 ms
     let duration = host.duration("40 4B 00 00 04 55 DE AD BE EF 78");
@@ -50,7 +50,7 @@ fn a_store_takes_effect_at_the_end_of_its_processing() {
 }
 
 #[test]
-fn bytes_arrive_one_character_after_the_other() {
+fn bytes_arrive_character_by_character() {
     let mut host = Host::with("");
     host.send("40 42 02");
     assert_eq!(host.bus.poll(host.now + ms(12.8)), [0u8; 0]); // the first has passed at 12.87 ms
@@ -61,7 +61,7 @@ fn bytes_arrive_one_character_after_the_other() {
 }
 
 #[test]
-fn a_gap_shorter_than_the_time_out_is_within_the_frame() {
+fn a_gap_shorter_than_the_timeout_does_not_end_the_frame() {
     let mut host = Host::with("");
     host.send("40 42");
     host.wait(CHARACTER * 2 + ms(4.5));
@@ -69,7 +69,7 @@ fn a_gap_shorter_than_the_time_out_is_within_the_frame() {
 }
 
 #[test]
-fn a_gap_of_the_time_out_makes_two_frames() {
+fn a_gap_of_the_timeout_splits_the_frame() {
     let mut host = Host::with("");
     host.send("40 42");
     host.wait(CHARACTER * 2 + ms(4.6));
@@ -79,7 +79,7 @@ fn a_gap_of_the_time_out_makes_two_frames() {
 }
 
 #[test]
-fn the_short_time_out_of_11_bits() {
+fn the_short_timeout_is_11_bits() {
     let mut host = Host::with("settings=0xA4");
     host.expect("40 42 02", POSITION);
     host.send("40 42");
@@ -88,7 +88,7 @@ fn the_short_time_out_of_11_bits() {
 }
 
 #[test]
-fn what_is_sent_while_the_encoder_works_is_lost() {
+fn bytes_sent_while_the_encoder_is_busy_are_lost() {
     let mut host = Host::with("");
     host.send("40 4B 00 00 04 55 DE AD BE EF 78");
     host.wait(ms(25.0));
@@ -103,7 +103,7 @@ fn the_echo_comes_before_the_reply() {
 }
 
 #[test]
-fn every_format_is_understood() {
+fn every_character_format_works() {
     for speed in 0..7u8 {
         for parity in [0x00, 0x20, 0x30] {
             let settings = 0xC0 | parity | speed;
@@ -115,7 +115,7 @@ fn every_format_is_understood() {
 }
 
 #[test]
-fn another_format_is_garbage_in_both_directions() {
+fn a_mismatched_format_yields_garbage_in_both_directions() {
     let mut host = Host::with("");
     for settings in [0xE5, 0xE3, 0xC4, 0xF4] {
         host.set_format(settings);
@@ -149,7 +149,7 @@ fn several_encoders_answer_under_their_addresses() {
 }
 
 #[test]
-fn several_answers_to_a_broadcast_destroy_each_other() {
+fn several_replies_to_a_broadcast_collide() {
     let mut host = Host::with("encoders=2");
     let garbage = parse_hex(&host.ask("FF 42 BD")).unwrap();
     assert!(!garbage.is_empty() && garbage.iter().all(|byte| (0x80..0xFF).contains(byte)), "{garbage:02X?}");
@@ -178,7 +178,7 @@ fn one_long_poll_equals_many_short_ones() {
 
 /// Issue 22.18: bytes beyond the buffer of a UART are lost, so that the line is not busy for longer than its buffer lasts.
 #[test]
-fn a_flood_of_bytes_does_not_make_it_deaf() {
+fn the_encoder_answers_after_a_flood_of_bytes() {
     let mut host = Host::with("");
     for _ in 0..2_000 {
         host.bus.on_bytes(host.now, &[0x55; 512]);

@@ -12,7 +12,7 @@ fn restarted() -> Host {
 }
 
 #[test]
-fn long_after_power_on_the_stored_settings_hold() {
+fn after_power_up_the_stored_settings_apply() {
     let mut host = Host::with("settings=0xE5");
     host.set_format(0xE5);
     host.expect("40 42 02", POSITION);
@@ -20,7 +20,7 @@ fn long_after_power_on_the_stored_settings_hold() {
 }
 
 #[test]
-fn power_up_in_its_windows() {
+fn settings_change_through_the_power_up_windows() {
     // start of the request in ms after power-on, settings of the host, answered
     let cases = [
         ("INIT", 0.0, 0xE4, false),
@@ -67,7 +67,7 @@ fn a_plausible_command_in_the_window_keeps_the_factory_settings() {
 }
 
 #[test]
-fn settings_57_hold_after_the_reset() {
+fn settings_57_apply_after_the_reset() {
     let mut host = Host::with("");
     host.expect("40 57 E5 55 A7", "40 57 E5 F2");
     host.expect("40 52 12", "40 52 E5 37 80 01 41");
@@ -80,7 +80,7 @@ fn settings_57_hold_after_the_reset() {
 }
 
 #[test]
-fn settings_67_hold_at_once_and_until_the_reset() {
+fn settings_67_apply_immediately_and_until_the_reset() {
     let mut host = Host::with("");
     host.expect("40 67 E6 C1", "40 67 E6 C1"); // still at 9600
     host.set_format(0xE6);
@@ -104,7 +104,7 @@ fn a_reset_has_no_reply_and_clears_the_queue() {
 }
 
 #[test]
-fn what_is_stored_survives_a_power_cycle() {
+fn stored_data_survives_a_power_cycle() {
     let mut host = Host::with("");
     host.expect("40 43 00 00 12 34 55 70", "40 43 03");
     host.expect("40 47 07", "40 47 07");
@@ -117,7 +117,7 @@ fn what_is_stored_survives_a_power_cycle() {
 }
 
 #[test]
-fn power_cut_in_the_middle_of_a_reply() {
+fn a_power_cut_truncates_a_reply() {
     let mut host = Host::with("");
     host.send("40 42 02");
     host.wait(ms(14.0)); // the reply started at 11.7 ms: one character has passed, one is in transit

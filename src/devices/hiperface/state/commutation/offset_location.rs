@@ -109,7 +109,7 @@ mod tests {
     const PLATE: &[u8; 16] = b"EMD71K-4 3000rpm";
 
     #[test]
-    fn an_empty_place_is_proposed_or_none() {
+    fn only_an_empty_location_is_proposed() {
         let service: Vec<u8> = [PLATE.as_slice(), b"SERVICE\x00\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF", &[0xFF; 16]].concat();
         let empty = &[0; 32];
         for (label, fields, record, number) in [
@@ -129,7 +129,7 @@ mod tests {
 
     /// The record of the reference: offset 5305 1EB8h, four pole pairs, its CRC by Python's `binascii.crc_hqx`.
     #[test]
-    fn a_record_that_is_there_is_the_place_for_a_new_one() {
+    fn an_existing_record_is_proposed_for_replacement() {
         let record = [0x43, 0x4F, 0x31, 0x00, 0x53, 0x05, 0x1E, 0xB8, 4, 0, 0, 0, 0, 0, 0x2A, 0x23];
         let fields = memory(&[(0xD8, &record), (0xD9, &[0; 32])]);
         assert_eq!(proposed(&fields, Storage::Record, None), Ok((0, 0)));

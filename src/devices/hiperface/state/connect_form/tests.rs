@@ -8,7 +8,7 @@ fn form(link: &str) -> LinkForm {
 }
 
 #[test]
-fn links_fill_the_form_and_come_out_of_it_again() {
+fn links_round_trip_through_the_form() {
     let same = [
         "sim:",
         "sim:?model=sel37&rpm=60&fault=drop:0.01",
@@ -42,7 +42,7 @@ fn links_fill_the_form_and_come_out_of_it_again() {
 }
 
 #[test]
-fn the_entries_are_what_the_link_says() {
+fn the_entries_match_the_link() {
     let serial = form("serial:COM3?address=0x41&parity=odd&baud=19200");
     assert_eq!((serial.kind, serial.port.as_str(), serial.address.as_str()), (LinkKind::Serial, "COM3", "41"));
     assert_eq!((serial.parity, serial.baud.bits_per_second()), (Parity::Odd, 19200));
@@ -54,7 +54,7 @@ fn the_entries_are_what_the_link_says() {
 }
 
 #[test]
-fn entries_are_taken_as_people_write_them() {
+fn entries_accept_common_notations() {
     for address in ["5f", "0x5F", "5Fh", " 5F "] {
         let written = LinkForm { address: address.to_owned(), ..form("serial:COM3") };
         assert_eq!(written.url().unwrap().to_string(), "serial:COM3?address=0x5F", "{address}");
@@ -69,7 +69,7 @@ fn entries_are_taken_as_people_write_them() {
 }
 
 #[test]
-fn another_kind_of_link_takes_along_only_what_it_has() {
+fn switching_the_kind_of_link_keeps_only_its_settings() {
     let mut changed = form("sim:?model=sel37&rpm=60&seed=7&address=0x41");
     changed.kind = LinkKind::Serial;
     changed.port = "COM3".to_owned();
@@ -79,7 +79,7 @@ fn another_kind_of_link_takes_along_only_what_it_has() {
 }
 
 #[test]
-fn what_cannot_be_used_is_named_with_what_could() {
+fn rejected_entries_name_the_allowed_values() {
     type Change = fn(&mut LinkForm);
     let cases: [(&str, Change, &str, &str); 23] = [
         ("serial:x", |f| f.port.clear(), "form.port_missing", "COM3"),

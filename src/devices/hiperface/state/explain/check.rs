@@ -75,7 +75,7 @@ mod tests {
     use crate::devices::hiperface::protocol::{DataFieldStatus, StatusCode};
 
     #[test]
-    fn findings_are_said_to_each_in_his_words() {
+    fn findings_are_worded_for_terminal_and_window() {
         let status = DataFieldStatus::from_byte(0xAA);
         let cases = [
             (

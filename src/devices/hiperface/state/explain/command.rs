@@ -37,7 +37,7 @@ mod tests {
     use crate::devices::hiperface::protocol::COMMANDS;
 
     #[test]
-    fn commands_are_called_as_the_protocol_calls_them() {
+    fn commands_have_their_protocol_names() {
         for row in COMMANDS {
             assert_eq!(command(row.command).words(Language::English), row.name);
             assert_ne!(command(row.command).words(Language::German), row.name);

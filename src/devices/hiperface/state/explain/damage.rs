@@ -46,7 +46,7 @@ mod tests {
     use crate::devices::hiperface::protocol::StatusCode;
 
     #[test]
-    fn damage_is_called_as_the_lower_floors_call_it() {
+    fn damage_texts_match_the_protocol_errors() {
         let cases = [
             Damage::Reply(ReplyError::Frame(FrameError::Short { got: 2 })),
             Damage::Reply(ReplyError::Frame(FrameError::Checksum { expected: 0x0A, got: 0xB0 })),

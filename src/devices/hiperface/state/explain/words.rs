@@ -119,7 +119,7 @@ mod tests {
     use crate::units::Parity;
 
     #[test]
-    fn codes_are_called_as_the_protocol_calls_them() {
+    fn codes_have_their_protocol_names() {
         for byte in 0..=0xFF {
             let code = StatusCode::new(byte);
             assert_eq!(status(code).words(Language::English), code.text());
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn properties_are_called_as_the_protocol_calls_them() {
+    fn properties_have_their_protocol_names() {
         for byte in 0..=0xFF {
             let (field, line) = (DataFieldStatus::from_byte(byte), LineSettings::from_byte(byte));
             assert_eq!(field_status(field).words(Language::English), field.to_string());
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn german_has_words_and_commas_of_its_own() {
+    fn german_texts_have_german_words_and_commas() {
         let cases = [
             (
                 field_status(DataFieldStatus::from_byte(0xAA)),

@@ -38,7 +38,7 @@ fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
 }
 
 #[test]
-fn a_position_read_on_its_own_does_not_push_the_samples_before_it_away() {
+fn a_single_position_read_keeps_the_polled_samples() {
     let mut record = Record::default();
     record.add((0..=10).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
     // It was read in between, and is reported after those.
@@ -55,7 +55,7 @@ fn a_position_read_on_its_own_does_not_push_the_samples_before_it_away() {
 }
 
 #[test]
-fn nothing_is_joined_across_what_is_missing() {
+fn lines_break_at_missing_samples() {
     let mut record = Record::default();
     record.watch(&[Watch::TEMPERATURE]);
     record.add(vec![position(0, 0), watched(0, 40), position(100_000, 1), watched(500_000, 41)], 0, Some(SKM36));
@@ -83,7 +83,7 @@ fn nothing_is_joined_across_what_is_missing() {
 }
 
 #[test]
-fn what_is_stopped_and_started_again_is_not_joined() {
+fn lines_break_between_stop_and_start() {
     let mut record = Record::default();
     let every = Some(Duration::from_millis(50));
     record.track.poll(every, true);
@@ -99,7 +99,7 @@ fn what_is_stopped_and_started_again_is_not_joined() {
 
 /// Ten minutes at 1 kHz, at 600 rpm round the end of the range, with a pause of three seconds every ten thousand samples.
 #[test]
-fn a_long_run_misses_no_break_and_no_wrap() {
+fn a_long_recording_keeps_every_break_and_wrap() {
     let mut record = Record::default();
     record.track.poll(Some(Duration::from_millis(1)), false);
     let (mut microseconds, mut expected) = (0, Vec::new());

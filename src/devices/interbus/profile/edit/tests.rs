@@ -16,7 +16,7 @@ fn sent(device: &Image, wanted: &Image) -> Vec<(Parameter, u32)> {
 }
 
 #[test]
-fn what_is_so_already_costs_nothing() {
+fn equal_values_are_not_written() {
     let plan = plan_edits(&image(), &image()).unwrap();
     assert_eq!(plan, InterbusPlan { base: Base::default(), ops: vec![] });
     // Values that are not wanted need not be known.
@@ -27,7 +27,7 @@ fn what_is_so_already_costs_nothing() {
 
 /// Issue 22.6: a zero shift is a position within the measuring range; one beyond the new range is changed first.
 #[test]
-fn a_zero_shift_lies_within_the_measuring_range() {
+fn a_zero_shift_must_be_within_the_measuring_range() {
     let device = Image::of(Parameters { steps: 255, revolutions: 1, preset: 0, zero_shift: 0, ..image().parameters });
     let with = |change: &dyn Fn(&mut Parameters)| {
         let mut wanted = device.clone();
@@ -51,7 +51,7 @@ fn a_zero_shift_lies_within_the_measuring_range() {
 /// By the issue: a full set (64 cams, 8 masks) written to an encoder that already has 60 of the cams changes only the
 /// differences, and costs a store for each program that changes.
 #[test]
-fn a_full_set_touches_only_what_differs() {
+fn a_full_set_writes_only_differences() {
     let device = image();
     let wanted = with(
         &device,
@@ -94,7 +94,7 @@ fn a_full_set_touches_only_what_differs() {
 }
 
 #[test]
-fn all_parameters_are_one_store() {
+fn all_parameters_need_one_store() {
     let device = image();
     let items = [
         ("steps", Number(7200)),
@@ -111,7 +111,7 @@ fn all_parameters_are_one_store() {
 
 /// A number is sent when it is within its limits: steps ≤ 8192 · turns, preset < steps (reference 3).
 #[test]
-fn parameters_are_sent_in_an_order_in_which_each_is_legal() {
+fn parameters_are_sent_in_a_legal_order() {
     use Parameter::{Preset, Steps, Turns};
     let image = Image::of(image().parameters);
     let gear = |steps, turns, preset| {
@@ -141,7 +141,7 @@ fn parameters_are_sent_in_an_order_in_which_each_is_legal() {
 }
 
 #[test]
-fn the_shift_rides_along() {
+fn the_shift_is_stored_with_a_changed_program() {
     let device = image();
     let (zero, eight) = (WindowShift::new(0).unwrap(), WindowShift::new(8).unwrap());
     let items = [("shift", Number(8)), ("cam-mask:3", ItemValue::Mask(1)), ("cam-mask:6", ItemValue::Mask(2))];
@@ -163,7 +163,7 @@ fn the_shift_rides_along() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_both_limits() {
+fn invalid_values_are_refused_with_both_limits() {
     let device = image();
     let refusal = |items: &[(&str, ItemValue)]| plan_edits(&device, &with(&device, items)).unwrap_err();
     assert_eq!(refusal(&[("steps", Number(8193))]), GearError::Steps { steps: 8193, turns: 1, most: 8192 }.into());
@@ -186,7 +186,7 @@ fn what_cannot_be_is_refused_with_both_limits() {
 
 /// Cams that are not written may be beyond the range; active ones may not be left there.
 #[test]
-fn a_shorter_range_leaves_no_working_cam_beyond_it() {
+fn a_shorter_range_refuses_enabled_cams_beyond_it() {
     let device = image();
     let shorter = with(&device, &[("steps", Number(750))]);
     // Cam 7 of program 1 ends at 750; those of program 8 at 757.
@@ -203,7 +203,7 @@ fn a_shorter_range_leaves_no_working_cam_beyond_it() {
 }
 
 #[test]
-fn nothing_is_changed_that_was_not_read() {
+fn unread_values_are_not_changed() {
     let device = Image::of(image().parameters);
     let refusal = |items: &[(&str, ItemValue)]| plan_edits(&device, &with(&device, items)).unwrap_err();
     assert_eq!(refusal(&[("cam-mask:4", ItemValue::Mask(1))]), PlanError::NotRead { item: item("cam-mask:4") });
@@ -214,7 +214,7 @@ fn nothing_is_changed_that_was_not_read() {
 }
 
 #[test]
-fn a_preset_is_programmed_each_time_it_is_fired() {
+fn a_preset_is_programmed_whenever_it_is_fired() {
     let parameters = image().parameters;
     let plan = plan_preset(&parameters, 500).unwrap();
     let again = ParameterChange { parameter: Parameter::Preset, from: 500, to: 500 };

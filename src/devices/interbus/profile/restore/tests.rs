@@ -19,7 +19,7 @@ fn operations(restore: &Restore) -> Vec<String> {
 }
 
 #[test]
-fn the_same_again_writes_nothing() {
+fn an_equal_profile_writes_nothing() {
     let restore = plan_restore(&profile(MINE), &device(MINE, &[]), RestoreOptions::default()).unwrap();
     // 5 parameters, the shift, 8 masks, 64 cams.
     assert_eq!((restore.plan.is_empty(), restore.unchanged), (true, 78));
@@ -27,7 +27,7 @@ fn the_same_again_writes_nothing() {
 }
 
 #[test]
-fn only_what_differs_is_written() {
+fn only_differences_are_written() {
     let items = [("steps", Number(4096)), ("preset", Number(1)), ("cam:3:4", Cam(edges(1, 2))), ("shift", Number(8))];
     let restore = plan_restore(&profile(MINE), &device(MINE, &items), RestoreOptions::default()).unwrap();
     let expected =
@@ -59,7 +59,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
 
 /// The marks in the file count, not the usual ones of a mounting.
 #[test]
-fn marks_are_what_belongs_to_the_mounting() {
+fn only_marked_items_belong_to_the_mounting() {
     let mut of = profile(MINE);
     of.mounting.retain(|mark| mark.item == Item::Preset);
     if let Some(mark) = of.mounting.first_mut() {
@@ -73,14 +73,14 @@ fn marks_are_what_belongs_to_the_mounting() {
 
 /// A profile written by hand is of no particular encoder: it may be written to any, except the mounting.
 #[test]
-fn a_profile_of_no_encoder_is_refused_by_none() {
+fn a_profile_without_identity_suits_any_encoder() {
     let options = RestoreOptions::default();
     let restore = plan_restore(&profile(""), &device(MINE, &[("preset", Number(7))]), options).unwrap();
     assert_eq!((restore.plan.is_empty(), restore.mounting_left), (true, vec![Item::Preset]));
 }
 
 #[test]
-fn a_preset_that_is_left_has_to_fit() {
+fn a_kept_preset_must_be_within_the_range() {
     let other = device("7654321", &[("steps", Number(8192)), ("preset", Number(5000))]);
     let options = RestoreOptions { allow_other_device: true, ..RestoreOptions::default() };
     let left = PlanError::MountingLeft { item: Item::Preset, value: 5000, low: 0, high: 3599 };
@@ -91,7 +91,7 @@ fn a_preset_that_is_left_has_to_fit() {
 /// Issue 22.9: an encoder that reports its steps minus one, or that counts no turns, is of another type, which needs its
 /// own permission; another serial number needs the other one as well.
 #[test]
-fn another_type_needs_a_permit_of_its_own() {
+fn another_type_needs_a_separate_permission() {
     let mut own = device(MINE, &[("preset", Number(7))]);
     let (device_only, type_only) = (
         RestoreOptions { allow_other_device: true, ..RestoreOptions::default() },
@@ -120,7 +120,7 @@ fn another_type_needs_a_permit_of_its_own() {
 }
 
 #[test]
-fn programs_are_read_as_far_as_they_are_needed() {
+fn only_needed_programs_are_read() {
     let mut of = profile(MINE);
     let numbers = |profile: &InterbusProfile| -> Vec<u8> {
         programs_needed(profile).into_iter().map(ProgramNumber::get).collect()
@@ -138,7 +138,7 @@ fn programs_are_read_as_far_as_they_are_needed() {
 }
 
 #[test]
-fn what_the_encoder_does_not_have_is_named() {
+fn values_missing_on_the_encoder_are_listed() {
     let mut own = device(MINE, &[]);
     (own.image.shift, own.image.programs[2]) = (None, None);
     let restore = plan_restore(&profile(MINE), &own, RestoreOptions::default()).unwrap();
@@ -148,7 +148,7 @@ fn what_the_encoder_does_not_have_is_named() {
 
 /// Written to an encoder with the programs of the tests.
 #[test]
-fn the_ready_made_profiles_do_what_they_say() {
+fn ready_made_profiles_plan_the_expected_writes() {
     let read = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles/interbus").join(name);
         let text = std::fs::read_to_string(path).unwrap();
@@ -177,7 +177,7 @@ fn the_ready_made_profiles_do_what_they_say() {
 }
 
 #[test]
-fn a_comparison_names_what_differs() {
+fn a_comparison_lists_the_differences() {
     let (left, mut right) = (profile(MINE), profile("7654321"));
     right.recorded.temperature_tenths = None;
     assert_eq!(left.compare(&right).compared, 78);

@@ -32,7 +32,7 @@ fn replaced(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn what_is_written_is_what_is_read() {
+fn emitted_profiles_parse_back() {
     let mut full = profile("1234567");
     full.names.set_program(program(8), "\"best\" cartons".to_owned());
     full.names.set_cam(program(8), cam(0), "Leimdüse".to_owned());
@@ -51,7 +51,7 @@ fn what_is_written_is_what_is_read() {
 }
 
 #[test]
-fn a_short_one_says_nothing_of_the_rest() {
+fn a_short_profile_leaves_the_rest_unset() {
     let read = parse(SHORT).unwrap();
     assert_eq!(read.image.parameters.direction, Direction::Counterclockwise);
     assert_eq!((read.image.shift, read.image.known().count()), (None, 1));
@@ -65,7 +65,7 @@ fn a_short_one_says_nothing_of_the_rest() {
 }
 
 #[test]
-fn what_is_not_known_is_kept_where_it_stands() {
+fn unknown_fields_are_kept_in_place() {
     let text = replaced("zero_shift: 0", "zero_shift: 0, gearbox: 3");
     let text = text.replace("mask: 0b101", "mask: 5, colour: \"red\"").replace("stop: 0x28", "stop: 40, lamp: 7");
     let once = Document::parse(&text, InterbusProfile::FORMATS).unwrap().emit();
@@ -78,7 +78,7 @@ fn what_is_not_known_is_kept_where_it_stands() {
 }
 
 #[test]
-fn what_is_wrong_names_its_entry() {
+fn errors_name_their_entry() {
     let cases = [
         ("steps: 3600, ", "", "parameters.steps is missing"),
         ("steps: 3600", "steps: -1", "parameters.steps must be a number from 0 to 33554431"),
@@ -112,7 +112,7 @@ const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests
 
 /// Issue 22.26: one changed value changes one place in the text.
 #[test]
-fn a_change_touches_nothing_else() {
+fn a_change_edits_only_its_value() {
     let edit = |own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
         program.set_cam(cam(1), Some(edges(15, 20)));
@@ -122,7 +122,7 @@ fn a_change_touches_nothing_else() {
 
 /// Issue 22.26: an added or removed entry changes its own line only.
 #[test]
-fn entries_come_and_go() {
+fn adding_or_removing_an_entry_changes_only_its_line() {
     let (_, carried) = edited(COMMENTED, |note, own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(2).unwrap()).unwrap().as_mut().unwrap();
         program.set_cam(cam(1), None);
@@ -140,7 +140,7 @@ fn entries_come_and_go() {
 
 /// Issue 22.26: the comments of the ready-made profiles about their values change with the values.
 #[test]
-fn comments_of_the_program_follow_their_values() {
+fn generated_comments_follow_their_values() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/interbus/packaging-machine.ron"));
     let (document, carried) = edited(text, |_, own: &mut InterbusProfile| {
         let program = own.image.program_mut(ProgramNumber::new(1).unwrap()).unwrap().as_mut().unwrap();
@@ -152,7 +152,7 @@ fn comments_of_the_program_follow_their_values() {
 
 /// Issue 22.25: the changes of two users since a common profile.
 #[test]
-fn who_changed_what_is_told_entry_by_entry() {
+fn divergent_changes_are_listed_by_entry() {
     let base = parse_document(COMMENTED);
     let theirs = parse_document(&COMMENTED.replace("start: 10,", "start: 12,").replace("mask: 3", "mask: 1"));
     let mine = parse_document(&COMMENTED.replace("start: 10,", "start: 14,").replace("stop: 200", "stop: 222"));

@@ -18,7 +18,7 @@ fn word() -> impl Strategy<Value = u32> {
 
 proptest! {
     #[test]
-    fn words(words in prop::collection::vec((word(), 0_u64..30), 0..60), stores in 495_u32..505) {
+    fn any_words_keep_the_memory_consistent(words in prop::collection::vec((word(), 0_u64..30), 0..60), stores in 495_u32..505) {
         let mut master = Master::with(&format!("stale=1&busy=5&cams=demo&steps=360&revolutions=1&stores={stores}&rpm=60"));
         for (word, pause) in words {
             let before = master.encoder.stores();
@@ -37,7 +37,7 @@ proptest! {
     }
 
     #[test]
-    fn bytes(pieces in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..40), 0..20)) {
+    fn arbitrary_bytes_do_not_panic(pieces in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..40), 0..20)) {
         let mut host = Host::with("encoders=3&fault=flip:0.1,drop:0.1,garbage:0.1");
         for piece in pieces {
             host.gateway.on_bytes(host.now, &piece);
@@ -48,7 +48,7 @@ proptest! {
 
     /// Every request in a frame gets one reply with its number, unit and function.
     #[test]
-    fn requests(number in any::<u16>(), unit in any::<u8>(), pdu in prop::collection::vec(any::<u8>(), 1..60), function in 0_u8..20) {
+    fn every_request_gets_one_matching_reply(number in any::<u16>(), unit in any::<u8>(), pdu in prop::collection::vec(any::<u8>(), 1..60), function in 0_u8..20) {
         let mut host = Host::with("encoders=3");
         let pdu: Vec<u8> = [&[function][..], &pdu[1..]].concat();
         let length = u8::try_from(pdu.len() + 1).unwrap();

@@ -16,7 +16,7 @@ fn outputs(master: &mut Master, position: i32) -> u32 {
 }
 
 #[test]
-fn the_example_of_the_manual() {
+fn the_manuals_example_matches() {
     let mut master = Master::with(SETTINGS);
     master.exchange(&[
         (0x2080_0001, 0xE080_0001),
@@ -33,7 +33,7 @@ fn the_example_of_the_manual() {
 }
 
 #[test]
-fn cams_are_on_where_the_reference_says() {
+fn cams_are_on_as_in_the_reference() {
     let mut master = Master::with(SETTINGS);
     // Cam 0 from 15 to 213, cam 1 over the end from 100 to 20.
     master.put(&[0x2080_0002, 0x4000_000F, 0x6000_00D5, 0x4200_0064, 0x6200_0014, 0x2040_0003, 0x8000_0000]);
@@ -48,7 +48,7 @@ fn cams_are_on_where_the_reference_says() {
 
 /// Position 1ABCDEFh with cam 5 on, as in the reference; all steps over all turns, a step is a position.
 #[test]
-fn the_window_shows_the_bits_of_the_position_that_the_shift_says() {
+fn the_shift_selects_the_position_bits_of_the_window() {
     let cases = [(0, 0x01CD_EF20), (4, 0x00BC_DE20), (8, 0x01AB_CD20), (25, 0x0000_0020)];
     for (shift, expected) in cases {
         let mut master = Master::with("cams=none");
@@ -59,7 +59,7 @@ fn the_window_shows_the_bits_of_the_position_that_the_shift_says() {
 }
 
 #[test]
-fn edges_beyond_the_range_and_more_cams_than_there_are_are_refused() {
+fn edges_beyond_the_range_and_nonexistent_cams_are_refused() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001, 0x4000_0001, 0x8000_0000]);
     let position = 0x0000_6400;
@@ -81,7 +81,7 @@ fn edges_beyond_the_range_and_more_cams_than_there_are_are_refused() {
 }
 
 #[test]
-fn cams_mask_and_shift_are_read_out_of_the_program_that_runs() {
+fn cams_mask_and_shift_are_read_from_the_running_program() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001, 0x4600_0015, 0x6600_0213, 0x2040_0008, 0x2010_0004, 0x8000_0000]);
     let live = 0x0000_0608;
@@ -103,7 +103,7 @@ fn cams_mask_and_shift_are_read_out_of_the_program_that_runs() {
 }
 
 #[test]
-fn what_was_set_and_not_stored_keeps_the_outputs_invalid() {
+fn unstored_changes_keep_the_outputs_invalid() {
     let mut master = Master::with(SETTINGS);
     master.put(&[0x2080_0001]);
     master.exchange(&[(0x4600_0015, 0xC600_0015), (0x2020_0013, 0xA000_0015), (0, 0x8000_0000)]);
@@ -131,7 +131,7 @@ fn presets_are_cam_words_while_a_program_runs() {
 }
 
 #[test]
-fn a_selected_program_can_go_straight_to_its_outputs() {
+fn selecting_a_program_can_enable_its_outputs_directly() {
     let mut master = Master::with(&format!("{SETTINGS}&selection=output&program=7"));
     master.exchange(&[
         (0, 0x0000_6400),
@@ -142,7 +142,7 @@ fn a_selected_program_can_go_straight_to_its_outputs() {
 }
 
 #[test]
-fn the_demonstration_has_the_example_and_cams_over_the_end() {
+fn the_demo_has_the_example_and_cams_across_the_end() {
     for steps in [1, 2, 20, 4096] {
         let config = config(&format!("steps={steps}&revolutions=1&cams=demo"));
         for number in [1, 2, 3] {

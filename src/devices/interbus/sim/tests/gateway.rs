@@ -14,7 +14,7 @@ impl Host {
     }
 
     /// Returns another client of the same gateway.
-    fn beside(&self) -> Host {
+    fn second_client(&self) -> Host {
         Host { gateway: self.gateway.connection(), now: self.now }
     }
 
@@ -44,7 +44,7 @@ fn hex(bytes: &[u8]) -> String {
 const READ: &str = "00 01 00 00 00 06 01 04 00 00 00 02";
 
 #[test]
-fn words_are_two_registers_in_the_usual_order() {
+fn words_are_two_registers_in_the_default_order() {
     // 1193046 is 123456h; the gear drops a step of 33554432: (123457h positions).
     let mut host = Host::with("position=1193047");
     host.exchange(&[
@@ -58,7 +58,7 @@ fn words_are_two_registers_in_the_usual_order() {
 }
 
 #[test]
-fn order_registers_and_unit_are_those_that_were_asked_for() {
+fn word_order_registers_and_unit_are_configurable() {
     let mut host = Host::with("position=1193047&order=low-first&unit=17&input=100&output=0x200");
     host.exchange(&[
         ("00 01 00 00 00 06 11 04 00 64 00 02", "00 01 00 00 00 07 11 04 04 34 56 00 12"),
@@ -83,7 +83,7 @@ fn a_single_register_is_half_a_word() {
 }
 
 #[test]
-fn what_is_wrong_with_a_request_is_told_by_its_exception() {
+fn invalid_requests_get_the_matching_exception() {
     let mut host = Host::with("");
     let cases = [
         ("a function of coils", "00 01 00 00 00 06 01 01 00 00 00 02", "81 01"),
@@ -109,7 +109,7 @@ fn what_is_wrong_with_a_request_is_told_by_its_exception() {
 }
 
 #[test]
-fn frames_come_in_pieces_and_several_at_once() {
+fn split_and_concatenated_frames_are_accepted() {
     let mut host = Host::with("position=1193047");
     let reply = "00 01 00 00 00 07 01 04 04 00 12 34 56";
     let all = bytes(READ);
@@ -126,7 +126,7 @@ fn frames_come_in_pieces_and_several_at_once() {
 }
 
 #[test]
-fn several_encoders_have_their_registers_one_behind_the_other() {
+fn several_encoders_have_consecutive_registers() {
     let mut host = Host::with("encoders=2&serial=4000&position=0&steps=360&revolutions=1");
     host.exchange(&[
         ("00 01 00 00 00 0B 01 10 00 02 00 02 04 20 21 00 00", "00 01 00 00 00 06 01 10 00 02 00 02"),
@@ -140,9 +140,9 @@ fn several_encoders_have_their_registers_one_behind_the_other() {
 }
 
 #[test]
-fn clients_beside_each_other_say_words_to_the_same_encoder() {
+fn several_clients_share_the_encoder() {
     let mut host = Host::with("position=0");
-    let mut other = host.beside();
+    let mut other = host.second_client();
     host.exchange(&[("00 01 00 00 00 0B 01 10 00 00 00 02 04 02 00 01 68", "00 01 00 00 00 06 01 10 00 00 00 02")]);
     // Half a request of one client does not affect the other.
     assert_eq!(host.ask("00 05 00 00 00 06"), "");
@@ -157,7 +157,7 @@ fn clients_beside_each_other_say_words_to_the_same_encoder() {
 }
 
 #[test]
-fn replies_take_their_time_and_come_in_their_order() {
+fn replies_are_delayed_and_stay_in_order() {
     let mut host = Host::with("position=0&fault=delay:100");
     host.gateway.on_bytes(host.now, &bytes(READ));
     let due = Moment::START + Duration::from_millis(102);
@@ -166,7 +166,7 @@ fn replies_take_their_time_and_come_in_their_order() {
 }
 
 #[test]
-fn faults_are_those_asked_for() {
+fn configured_faults_are_injected() {
     let good = "00 01 00 00 00 07 01 04 04 00 00 00 00";
     let mut silent = Host::with("position=0&fault=silent-after:2");
     silent.exchange(&[(READ, good), (READ, good), (READ, ""), (READ, "")]);
@@ -189,7 +189,7 @@ fn faults_are_those_asked_for() {
 
 /// A request that is not carried out leaves no trace; a cable can be repaired.
 #[test]
-fn an_exception_of_the_gateway_keeps_the_word_from_the_encoder() {
+fn a_gateway_exception_keeps_the_word_from_the_encoder() {
     let mut host = Host::with("exception=1");
     let write = "00 01 00 00 00 0B 01 10 00 00 00 02 04 02 00 01 68";
     host.exchange(&[(write, "00 01 00 00 00 03 01 90 0B")]);
@@ -202,7 +202,7 @@ fn an_exception_of_the_gateway_keeps_the_word_from_the_encoder() {
 }
 
 #[test]
-fn an_encoder_without_power_does_not_answer_the_gateway_until_somebody_connects() {
+fn an_encoder_without_power_answers_only_after_a_new_connection() {
     let mut host = Host::with("position=0&fault=die-in-store:1");
     host.exchange(&[
         ("00 01 00 00 00 0B 01 10 00 00 00 02 04 06 00 00 03", "00 01 00 00 00 06 01 10 00 00 00 02"),
@@ -210,13 +210,13 @@ fn an_encoder_without_power_does_not_answer_the_gateway_until_somebody_connects(
         (READ, "00 01 00 00 00 03 01 84 0B"),
         ("00 01 00 00 00 0B 01 10 00 00 00 02 04 00 00 00 00", "00 01 00 00 00 03 01 90 0B"),
     ]);
-    let mut other = host.beside();
+    let mut other = host.second_client();
     other.gateway.connect(host.now);
     host.exchange(&[(READ, "00 01 00 00 00 07 01 04 04 86 00 00 00")]);
 }
 
 #[test]
-fn the_shaft_turns_as_its_motor_does() {
+fn the_motor_handle_turns_the_shaft() {
     let mut host = Host::with("position=0&steps=8192&revolutions=1");
     let motor = host.gateway.shaft();
     assert_eq!(host.ask(READ), "00 01 00 00 00 07 01 04 04 00 00 00 00");

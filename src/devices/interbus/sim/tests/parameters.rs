@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn the_worked_example_of_the_reference() {
+fn the_worked_example_of_the_reference_matches() {
     let mut master = Master::with("stale=1&position=5000&steps=8192&revolutions=1");
     let steps = [
         (0x0000_0000, [0x0000_1388, 0x0000_1388]),
@@ -28,7 +28,7 @@ fn the_worked_example_of_the_reference() {
 }
 
 #[test]
-fn busy_words_come_for_the_time_that_was_asked_for() {
+fn busy_words_last_the_configured_time() {
     let mut master = Master::with("busy=20&stale=2&position=7&steps=8192&revolutions=1");
     master.write(0x0200_0168);
     let words: Vec<u32> = (0..5)
@@ -52,7 +52,7 @@ fn busy_words_come_for_the_time_that_was_asked_for() {
 }
 
 #[test]
-fn steps_turns_and_places_give_the_positions_of_the_reference() {
+fn steps_and_turns_scale_positions_as_in_the_reference() {
     // Steps, turns, position of the disc, position.
     let cases = [
         (255, 1, 0, 0),
@@ -74,7 +74,7 @@ fn steps_turns_and_places_give_the_positions_of_the_reference() {
 }
 
 #[test]
-fn what_is_beyond_its_limits_is_wrong_data_and_changes_nothing() {
+fn out_of_range_values_are_wrong_data_and_change_nothing() {
     let mut master = Master::with("steps=8192&revolutions=1");
     let wrong = [0x0200_2001, 0x0200_0000, 0x0400_0000, 0x0400_1001, 0x0600_0002, 0x0600_0005, 0x0800_2000];
     for word in wrong {
@@ -87,7 +87,7 @@ fn what_is_beyond_its_limits_is_wrong_data_and_changes_nothing() {
 }
 
 #[test]
-fn codes_that_the_manual_does_not_have_are_unknown() {
+fn undocumented_codes_are_unknown() {
     let mut master = Master::with("position=0");
     for code in [6, 8, 9, 10, 11, 12, 13, 14, 15] {
         master.exchange(&[(code << 25, 0x8400_0000), (0x8000_0000, 0), (0, 0)]);
@@ -112,7 +112,7 @@ fn only_the_edge_of_run_ends_a_parameterisation() {
 }
 
 #[test]
-fn a_preset_is_fired_once_for_each_that_was_set() {
+fn each_set_preset_fires_once() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096&preset=7");
     master.exchange(&[(0x4000_0000, 180), (0, 180), (0x2021_0006, 0xA000_0000), (0, 180)]);
     master.exchange(&[(0x0800_0064, 0xC800_0064), (0x8000_0000, 180), (0, 180), (0x2021_0006, 0xA000_0001), (0, 180)]);
@@ -129,7 +129,7 @@ fn a_preset_is_fired_once_for_each_that_was_set() {
 }
 
 #[test]
-fn every_preset_can_be_reached_whatever_the_gear_and_the_zero_shift() {
+fn every_preset_is_reachable_with_any_gear_and_zero_shift() {
     for (steps, turns, zero_shift) in [(255, 1, 0), (360, 1, 359), (1000, 10, 1), (8191, 1, 5), (33_554_431, 4096, 9)] {
         for preset in [0, 1, steps / 3, steps - 1] {
             let mut master = Master::with(&format!("steps={steps}&revolutions={turns}&rpm=0&position=30000000"));
@@ -159,7 +159,7 @@ fn zero_shift_moves_the_position_within_the_range() {
 }
 
 #[test]
-fn speed_stands_in_the_word_while_it_is_asked_for() {
+fn the_word_holds_the_speed_while_requested() {
     let mut master = Master::with("rpm=1500&position=0&steps=8192&revolutions=1");
     master.exchange(&[(0x2040_0001, 1500), (0x2021_0009, 0xA000_0002), (0, 1500), (0x2040_0000, 0), (0, 0)]);
     master.encoder.motor().set_rpm(-3.0);
@@ -170,7 +170,7 @@ fn speed_stands_in_the_word_while_it_is_asked_for() {
 }
 
 #[test]
-fn steps_less_one_are_those_of_older_encoders() {
+fn older_encoders_report_steps_less_one() {
     let mut master = Master::with("steps-minus-one=on&revolutions=1&steps=360&position=4096");
     master.exchange(&[(0x2021_0001, 0xA000_0167), (0, 180), (0x2021_000A, 0xA000_0003), (0, 180)]);
     master.exchange(&[(0x0200_00FF, 0xC200_00FF), (0x8000_0000, 128), (0, 128), (0x2021_0001, 0xA000_00FF)]);
@@ -178,7 +178,7 @@ fn steps_less_one_are_those_of_older_encoders() {
 }
 
 #[test]
-fn default_gives_back_what_was_delivered_and_leaves_the_cams_alone() {
+fn default_restores_factory_parameters_and_keeps_the_cams() {
     let mut master = Master::with("steps=360&revolutions=1&direction=ccw&preset=5&zero-shift=6&cams=demo");
     let programs = *master.encoder.memory().program(program(2));
     master.exchange(&[(0x0E00_0001, 0x8200_0000), (0x0E00_0000, 0xCE00_0000)]);
@@ -189,7 +189,7 @@ fn default_gives_back_what_was_delivered_and_leaves_the_cams_alone() {
 }
 
 #[test]
-fn encoders_of_the_other_classes_have_a_position_and_take_no_words() {
+fn encoders_of_other_classes_ignore_commands() {
     for (class, expected) in [("K1", 0x0FFF), ("K2", 0x0000_5FFE)] {
         let mut master = Master::with(&format!("class={class}&steps=0x2000&revolutions=1"));
         master.put_shaft(0x5FFE);

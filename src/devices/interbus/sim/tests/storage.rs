@@ -4,7 +4,7 @@ use super::*;
 use crate::devices::interbus::protocol::StartupMode;
 
 #[test]
-fn what_was_not_stored_is_forgotten_without_power() {
+fn unstored_values_are_lost_without_power() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0200_00B4, 0x8000_0000, 0, 0x0200_0009]);
     master.encoder.disconnect();
@@ -16,7 +16,7 @@ fn what_was_not_stored_is_forgotten_without_power() {
 
 /// The gateway sends the same word as before, which the encoder takes as a new one.
 #[test]
-fn what_the_master_still_says_is_taken_when_power_comes_back() {
+fn the_masters_word_is_processed_when_power_returns() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
     master.put(&[0x0200_00B4]);
     master.power_cycle();
@@ -34,7 +34,7 @@ fn mode_zero_point_and_a_fired_preset_survive_without_a_store() {
 }
 
 #[test]
-fn power_lost_in_a_store_loses_what_was_stored() {
+fn power_lost_in_a_store_loses_the_parameters() {
     let mut master = Master::with("steps=360&revolutions=1&cams=demo&fault=die-in-store:2");
     master.put(&[0x0600_0004, 0x8000_0000, 0, 0x0200_00B4]);
     master.write(0x8000_0000);
@@ -50,7 +50,7 @@ fn power_lost_in_a_store_loses_what_was_stored() {
 }
 
 #[test]
-fn power_lost_in_the_store_of_a_program_loses_that_program() {
+fn power_lost_in_a_program_store_loses_that_program() {
     let mut master = Master::with("steps=360&revolutions=1&cams=demo&fault=die-in-store:1");
     master.put(&[0x2080_0001, 0x4000_0001]);
     master.write(0x8000_0000);
@@ -62,7 +62,7 @@ fn power_lost_in_the_store_of_a_program_loses_that_program() {
 }
 
 #[test]
-fn a_worn_out_eeprom_keeps_nothing_any_more() {
+fn a_worn_out_eeprom_keeps_nothing() {
     let mut master = Master::with("steps=360&revolutions=1&stores=499&position=4096");
     master.exchange(&[(0x0600_0004, 0xC600_0004), (0x8000_0000, 180), (0, 180)]);
     assert_eq!(master.encoder.stores(), 500);

@@ -102,7 +102,7 @@ fn values_are_read_out() {
 }
 
 #[test]
-fn a_k1_encoder_has_the_place_within_a_turn() {
+fn a_k1_encoder_sends_the_position_within_a_turn() {
     // 1FFEh of 2000h positions are FFFh of 1000h.
     walk("class=K1&position=24574", &[("00000000", "00000FFF"), ("02000168", "00000FFF")]);
 }

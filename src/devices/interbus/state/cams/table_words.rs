@@ -119,7 +119,7 @@ mod tests {
     use crate::devices::interbus::protocol::ProgramNumber;
 
     #[test]
-    fn a_table_is_told_in_sentences() {
+    fn a_table_is_described_in_sentences() {
         let scale = Scale::degrees(8192.0, 1000).unwrap();
         let options = TableOptions { scale, range: 8192, program: ProgramNumber::new(2).unwrap() };
         let table = options.read("name;start;stop\nfeed;350;10\nglue;20;30\nglue;40;x\nGlue;100;110,5\n");
@@ -138,7 +138,7 @@ mod tests {
 
     /// 10.05 steps are 0.05 beyond step 10.
     #[test]
-    fn what_was_asked_for_stands_as_it_was_written() {
+    fn rounding_shows_the_value_as_typed() {
         let scale = Scale::default();
         let options = TableOptions { scale, range: 3600, program: ProgramNumber::FIRST };
         let table = options.read("name;start;stop\nglue;10,05;20\n");
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_one_sentence() {
+    fn each_problem_is_one_sentence() {
         let options = TableOptions { scale: Scale::default(), range: 1000, program: ProgramNumber::new(1).unwrap() };
         let table = options.read("program;cam;start;stop\n9;0;1;2\n1;8;1;2\n1;0;1000;2\n1;1;1\n1;2;1;2\n1;2;3;4\n");
         let told: Vec<String> = table.problems.iter().map(|own| problem(own).words(Language::English)).collect();

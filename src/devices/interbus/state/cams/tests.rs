@@ -44,7 +44,7 @@ fn chart(cams: &[(u8, u32, u32)]) -> Chart {
 }
 
 #[test]
-fn a_cam_over_the_end_is_two_stretches() {
+fn a_cam_across_the_end_is_two_segments() {
     let whole = |start, stop| stretches(edges(start, stop), 1000);
     assert_eq!(whole(15, 213), [Stretch { first: 15, last: 213 }]);
     assert_eq!(whole(900, 20), [Stretch { first: 0, last: 20 }, Stretch { first: 900, last: 999 }]);
@@ -56,7 +56,7 @@ fn a_cam_over_the_end_is_two_stretches() {
 }
 
 #[test]
-fn lamps_tell_what_is_simulated_from_what_the_encoder_says() {
+fn simulated_outputs_are_compared_with_the_encoders() {
     // The manual's example and reference 7: 15..213 has 15 and 213 and not 214; 100..20 has 5 and not 50.
     let chart = chart(&[(3, 15, 213), (5, 100, 20)]);
     for (position, outputs) in [(15, 0b10_1000), (213, 0b10_1000), (214, 0b10_0000), (5, 0b10_0000), (50, 0b00_1000)] {
@@ -73,7 +73,7 @@ fn lamps_tell_what_is_simulated_from_what_the_encoder_says() {
 }
 
 #[test]
-fn edges_are_pulled_and_go_over_the_end() {
+fn edges_can_be_dragged_across_the_end() {
     for (cam, edge, by, expected) in [
         ((100, 199), Edge::Start, 10, (110, 199)),
         ((100, 199), Edge::Start, 150, (199, 199)),
@@ -93,7 +93,7 @@ fn edges_are_pulled_and_go_over_the_end() {
 }
 
 #[test]
-fn cams_are_moved_and_drawn_anew() {
+fn cams_can_be_moved_and_drawn() {
     for (cam, by, expected) in [
         ((100, 199), 50, (150, 249)),
         ((100, 199), -150, (950, 49)),
@@ -110,7 +110,7 @@ fn cams_are_moved_and_drawn_anew() {
 }
 
 #[test]
-fn the_keyboard_goes_from_line_to_line() {
+fn the_keyboard_moves_to_the_next_grid_line() {
     let steps = Scale::default();
     for (position, forward, expected) in [(100, true, 150), (101, true, 150), (100, false, 50), (101, false, 100)] {
         assert_eq!(next_line(&steps, 40.0, position, forward), expected, "{position}");
@@ -125,7 +125,7 @@ fn the_keyboard_goes_from_line_to_line() {
 }
 
 #[test]
-fn grids_are_round() {
+fn grid_lines_are_at_round_values() {
     for (at_least, expected) in [(0.3, 0.5), (1.0, 1.0), (1.1, 2.0), (2.0, 2.0), (3.0, 5.0), (5.5, 10.0), (73.0, 100.0)]
     {
         assert!((rounded(at_least) - expected).abs() < 1e-12, "{at_least}");
@@ -169,7 +169,7 @@ fn a_view_stays_within_the_range() {
 }
 
 #[test]
-fn edges_are_drawn_to_what_is_near() {
+fn edges_snap_to_nearby_positions() {
     let chart = chart(&[(0, 100, 199), (1, 403, 555)]);
     let (first, steps) = (edges(100, 199), Scale::default());
     let pull = |edge, by, with: &Snap| snap(&chart, &steps, Hold::Edge(cam(0), edge), first, by, with);
@@ -194,7 +194,7 @@ fn edges_are_drawn_to_what_is_near() {
 }
 
 #[test]
-fn a_cam_that_does_not_work_is_free() {
+fn a_switched_off_cam_is_free() {
     let mut own = staged(&[(0, 1, 2), (1, 1, 2)]);
     assert_eq!(Chart::of(&own, program()).unwrap().free(), Some(cam(2)));
     own.edit(&Edit::Switch { program: program(), cam: cam(0), on: false }).unwrap();
@@ -205,7 +205,7 @@ fn a_cam_that_does_not_work_is_free() {
 }
 
 #[test]
-fn a_lane_says_where_its_cam_is_and_what_is_wrong() {
+fn a_lane_describes_its_cam_and_its_problems() {
     let mut own = staged(&[(3, 900, 20), (4, 10, 30)]);
     for number in [3, 4] {
         own.edit(&Edit::Name { program: program(), cam: cam(number), name: "glue".to_owned() }).unwrap();

@@ -10,7 +10,7 @@ use crate::profile::{Document, Formats, Profile};
 const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
-fn a_wrong_profile_is_told_in_both_languages() {
+fn profile_errors_are_explained_in_both_languages() {
     let good = r#"(schema: 1, device: "interbus", parameters: (steps: 3600, revolutions: 1, direction: "cw", preset: 0,
         zero_shift: 0), shift: 8, mounting: [(item: "preset")], programs: [(program: 1, mask: 1, cams: [(cam: 0,
         start: 1, stop: 2)])])"#;

@@ -28,7 +28,7 @@ fn program(number: u8) -> StartupMode {
 }
 
 #[track_caller]
-fn says(text: &Text, facts: &[&str]) {
+fn assert_explains(text: &Text, facts: &[&str]) {
     for language in [English, German] {
         let words = text.words(language);
         assert!(facts.iter().all(|fact| words.contains(fact)), "{facts:?}: {words}");
@@ -39,7 +39,7 @@ fn says(text: &Text, facts: &[&str]) {
 }
 
 #[test]
-fn every_error_of_an_encoder_says_what_to_do() {
+fn encoder_errors_name_a_remedy() {
     let requested = RequestedItem::Input { register: 16 };
     let standing = |found, is| LeftState { out: 0x2080_0003, parameterising: true, found, is };
     let set = Command::Set(Parameter::Steps, value(8193));
@@ -87,33 +87,36 @@ fn every_error_of_an_encoder_says_what_to_do() {
         (Error::NotLedBack { cause: Box::new(Error::NeverSilent), standing: standing(None, None) }, vec!["0x20800003"]),
     ];
     for (error, facts) in cases {
-        says(&encoder(&error), &facts);
+        assert_explains(&encoder(&error), &facts);
     }
 }
 
 /// Modbus application protocol 1.1b3, chapter 7.
 #[test]
-fn every_exception_of_a_gateway_is_told_with_its_code() {
+fn gateway_exceptions_are_explained_with_their_code() {
     let requested = RequestedItem::Write { register: 2048, word: 0x4000_0000 };
     for code in [1, 2, 3, 4, 5, 6, 8, 0xA, 0xB, 0x7F] {
         let exception = Exception::new(code);
         let text = encoder(&Error::Exception { requested, exception });
-        says(&text, &[&format!("0x{code:02X}"), "2048", "0x40000000"]);
+        assert_explains(&text, &[&format!("0x{code:02X}"), "2048", "0x40000000"]);
         assert!(text.words(English).contains(exception.name()) && !text.words(German).contains(exception.name()));
     }
 }
 
 /// Reference 2.
 #[test]
-fn every_error_word_is_told() {
+fn error_words_are_explained() {
     for word in [0x8200_0000, 0x8400_0000, 0x8600_0000, 0x9800_0004, 0x9800_0005, 0x8000_0000] {
         let sent = Command::Shift(WindowShift::default());
-        says(&encoder(&Error::Refused { sent, error: error_word(word) }), &[&format!("0x{word:08X}"), "0x20100000"]);
+        assert_explains(
+            &encoder(&Error::Refused { sent, error: error_word(word) }),
+            &[&format!("0x{word:08X}"), "0x20100000"],
+        );
     }
 }
 
 #[test]
-fn every_refusal_of_a_plan_names_both_limits() {
+fn plan_refusals_name_both_limits() {
     let beyond = |edge| {
         let item = Item::Cam(ProgramNumber::new(2).unwrap(), CamNumber::new(5).unwrap());
         PlanError::CamBeyondRange { item, edge, position: 3600, last: 3599 }
@@ -138,17 +141,17 @@ fn every_refusal_of_a_plan_names_both_limits() {
     ];
     for (error, facts, option) in cases {
         let text = plan(&error);
-        says(&text, &facts);
+        assert_explains(&text, &facts);
         assert!(option.is_none_or(|option| text.terminal().contains(option)), "{}", text.terminal());
         assert!(option.is_none_or(|option| !text.words(English).contains(option)), "no options in the window");
     }
     let worn = job(&JobError::NotBegun(NotBegun::Worn { seen: 448, cost: 2, limit: 449 }));
-    says(&worn[0], &["448", "2"]);
+    assert_explains(&worn[0], &["448", "2"]);
     assert!(worn[0].terminal().contains("450") && worn[0].terminal().contains("--force-wear"), "{worn:?}");
 }
 
 #[test]
-fn a_write_that_was_cut_off_says_what_is_left_to_do() {
+fn an_interrupted_write_names_the_remaining_steps() {
     let told = |write_cycles, left, kind| -> Vec<String> {
         let done = Written { ops: 1, write_cycles, written: 1, verified: 1 };
         let shift = Some((WindowShift::default(), WindowShift::default()));
@@ -176,7 +179,7 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
 
 /// Issue 22.5: the remedy comes after returning the encoder to its mode.
 #[test]
-fn what_completes_a_write_comes_after_leading_back() {
+fn completing_a_write_is_advised_after_leading_back() {
     let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
     for kind in [ChangeKind::Restore, ChangeKind::Edits, ChangeKind::Preset, ChangeKind::Default] {
         let done = Written { ops: 1, write_cycles: 1, written: 1, verified: 1 };
@@ -194,14 +197,14 @@ fn what_completes_a_write_comes_after_leading_back() {
 
 /// Issue 22.4: an unknown count is reported with the option that permits the write.
 #[test]
-fn a_write_that_cannot_be_counted_says_what_opens_it() {
+fn a_write_with_unknown_wear_names_the_override() {
     let refused = job(&JobError::NotBegun(NotBegun::WearUnknown { cost: 2 }));
-    says(&refused[0], &["2"]);
+    assert_explains(&refused[0], &["2"]);
     assert!(refused[0].terminal().contains("--force-wear"), "{refused:?}");
 }
 
 #[test]
-fn operations_are_told_one_by_one() {
+fn operations_are_described_one_by_one() {
     use crate::devices::interbus::profile::{CamChange, ParameterChange, ProgramChange};
     let words = |op: &Op| {
         let own = super::op(op);
@@ -229,7 +232,7 @@ fn operations_are_told_one_by_one() {
 }
 
 #[test]
-fn a_wire_that_is_gone_is_a_loss_and_silence_is_none() {
+fn only_a_lost_wire_counts_as_a_lost_connection() {
     let gone = || Error::Link(LinkError::new("plc:502", LinkErrorKind::Lost));
     let standing = LeftState { out: 0, parameterising: false, found: None, is: None };
     for error in [gone(), Error::NotLedBack { cause: Box::new(gone()), standing }] {

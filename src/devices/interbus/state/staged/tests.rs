@@ -51,7 +51,7 @@ fn cam_of(staged: &Staged, own: u8) -> (u32, u32) {
 }
 
 #[test]
-fn an_edit_stands_beside_the_encoder() {
+fn an_edit_is_separate_from_the_encoder() {
     let mut staged = staged();
     assert!(!staged.is_dirty() && staged.differences().is_empty());
     assert_eq!(staged.edit(&edge(1, 3, Edge::Stop, 399)), Ok(true));
@@ -71,7 +71,7 @@ fn an_edit_stands_beside_the_encoder() {
 }
 
 #[test]
-fn what_cannot_be_says_why_with_its_limits_and_changes_nothing() {
+fn refused_edits_name_the_limits_and_change_nothing() {
     let mut staged = Staged::default();
     assert_eq!(staged.edit(&Edit::Preset(1)), Err(EditError::NothingRead));
     staged = self::staged();
@@ -104,7 +104,7 @@ fn what_cannot_be_says_why_with_its_limits_and_changes_nothing() {
 }
 
 #[test]
-fn a_gear_changes_at_once_where_it_would_not_go_one_after_the_other() {
+fn both_parts_of_a_gear_can_change_together() {
     let mut staged = staged();
     assert_eq!(staged.edit(&Edit::Gear { steps: 40_960, revolutions: 10 }), Ok(true));
     let refused = GearError::Steps { steps: 40_960, turns: 4, most: 32_768 };
@@ -132,7 +132,7 @@ fn programs_are_copied_mirrored_and_shifted() {
 }
 
 #[test]
-fn a_cam_beyond_the_range_keeps_its_program_from_being_mirrored_only_while_it_works() {
+fn only_an_enabled_cam_beyond_the_range_blocks_mirroring() {
     let mut staged = staged();
     staged.edit(&Edit::Steps(340)).unwrap();
     let refused = EditError::Beyond { program: number(1), cam: cam(3), last: 339 };
@@ -144,7 +144,7 @@ fn a_cam_beyond_the_range_keeps_its_program_from_being_mirrored_only_while_it_wo
 }
 
 #[test]
-fn a_table_is_one_step_and_says_which_cams_work() {
+fn a_table_is_one_edit_and_enables_its_cams() {
     let mut staged = staged();
     let mut filled = Filled { program: number(1), cams: [None; 8], names: Default::default() };
     filled.cams[1] = Some(edges(900, 20));
@@ -161,7 +161,7 @@ fn a_table_is_one_step_and_says_which_cams_work() {
 }
 
 #[test]
-fn steps_are_undone_and_done_again() {
+fn edits_can_be_undone_and_redone() {
     let mut staged = staged();
     for to in [310, 320, 330] {
         staged.edit(&edge(1, 3, Edge::Start, to)).unwrap();
@@ -187,7 +187,7 @@ fn steps_are_undone_and_done_again() {
 }
 
 #[test]
-fn edits_survive_a_fresh_reading_and_so_does_the_way_back() {
+fn edits_and_undo_survive_a_fresh_reading() {
     let mut staged = staged();
     staged.edit(&edge(1, 3, Edge::Stop, 399)).unwrap();
     staged.edit(&Edit::Switch { program: number(1), cam: cam(7), on: true }).unwrap();
@@ -207,7 +207,7 @@ fn edits_survive_a_fresh_reading_and_so_does_the_way_back() {
 }
 
 #[test]
-fn what_was_not_read_anew_stays_as_it_was_known() {
+fn values_not_read_again_stay_as_known() {
     let mut staged = staged();
     staged.refresh_programs(&[(number(2), Program { mask: 0x93, ..program() })], None);
     staged.refresh_parameters(parameters(500, 1));
@@ -218,7 +218,7 @@ fn what_was_not_read_anew_stays_as_it_was_known() {
 }
 
 #[test]
-fn a_draft_comes_back_and_waits_for_what_was_not_read() {
+fn a_draft_is_restored_and_waits_for_unread_values() {
     let mut staged = staged();
     for edit in [
         edge(1, 3, Edge::Stop, 399),
@@ -260,7 +260,7 @@ fn a_draft_comes_back_and_waits_for_what_was_not_read() {
 }
 
 #[test]
-fn drafts_are_text() {
+fn drafts_round_trip_as_text() {
     let kept = vec![SavedEdit::Gear(360, 1), SavedEdit::NoCam(2, 7), SavedEdit::Name(1, 3, "feed".to_owned())];
     let text = ron::to_string(&kept).unwrap();
     assert_eq!(text, "[Gear(360,1),NoCam(2,7),Name(1,3,\"feed\")]");
@@ -268,7 +268,7 @@ fn drafts_are_text() {
 }
 
 #[test]
-fn a_profile_can_be_made_to_say_what_it_does_not_say() {
+fn missing_values_can_be_added_to_a_profile() {
     let mut staged = Staged::of_profile(Image::of(parameters(1000, 1)), Names::default());
     let switch = Edit::Switch { program: number(2), cam: cam(4), on: true };
     assert_eq!(staged.edit(&switch), Err(EditError::NoCam { program: number(2), cam: cam(4) }));
@@ -306,7 +306,7 @@ fn names_are_saved_and_not_written() {
 }
 
 #[test]
-fn marks_say_what_is_beyond_the_range_and_what_clashes() {
+fn marks_show_values_beyond_the_range_and_conflicts() {
     let mut staged = staged();
     staged.edit(&Edit::Preset(400)).unwrap();
     staged.edit(&Edit::Steps(340)).unwrap();

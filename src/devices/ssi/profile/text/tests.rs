@@ -35,7 +35,7 @@ fn of_family(text: &str) -> SsiProfile {
 }
 
 #[test]
-fn a_profile_written_by_hand_is_read() {
+fn a_handwritten_profile_parses() {
     let short = profile(SHORT);
     assert_eq!(short.descriptor, of_family("ahm36").descriptor, "what is left out is as usual");
     assert_eq!((short.name.as_str(), &short.family), ("", &None));
@@ -120,7 +120,7 @@ const FULL: &str = r#"(
 "#;
 
 #[test]
-fn a_profile_reads_as_a_person_writes_it() {
+fn a_profile_is_emitted_as_if_handwritten() {
     assert_eq!(document(full()).emit(), FULL);
     assert_eq!(profile(FULL), full());
     let cases = [
@@ -143,7 +143,7 @@ fn a_profile_reads_as_a_person_writes_it() {
 }
 
 #[test]
-fn a_whole_number_of_revolutions_is_one() {
+fn a_whole_number_of_revolutions_is_an_integer() {
     let text = document(of_family("ahm36,steps=100,revolutions=25")).emit();
     assert!(text.contains("revolutions: \"25\","), "{text}");
     assert_eq!(profile(&text.replace("\"25\"", "25")), profile(&text));
@@ -151,7 +151,7 @@ fn a_whole_number_of_revolutions_is_one() {
 
 proptest! {
     #[test]
-    fn what_is_written_is_read(
+    fn emitted_profiles_parse_back(
         layout in any_layouts(),
         name in ".{0,12}",
         preset in any::<u64>(),
@@ -178,7 +178,7 @@ proptest! {
 proptest! {
     /// For any entered numbers: a valid frame that is the same when it is read again, or a reason.
     #[test]
-    fn any_numbers_are_read_or_refused(
+    fn any_numbers_are_parsed_or_refused(
         clocks in 0..=70_u8,
         (multiturn, singleturn) in (0..=40_u8, 0..=40_u8),
         (area, lead, between) in (any::<Option<u8>>(), 0..=8_u8, 0..=8_u8),
@@ -210,7 +210,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_not_known_is_kept() {
+fn unknown_fields_are_kept() {
     let text = FULL
         .replace("schema: 1,", "schema: 1, owner: (name: \"CK\", floors: [1, 2]),")
         .replace("clocks: 51,", "clocks: 51, drawn: \"a\",")
@@ -245,7 +245,7 @@ fn what_is_not_known_is_kept() {
 }
 
 #[test]
-fn a_wrong_profile_is_told_where() {
+fn profile_errors_name_their_location() {
     let cases = [
         ("frame:", "fram:", "line 3, column 5: fram is unknown, and frame is missing"),
         ("clocks: 27,", "", "frame.clocks is missing"),
@@ -265,7 +265,7 @@ fn a_wrong_profile_is_told_where() {
         (
             "multiturn: 12, singleturn: 14",
             "steps: 359, code: \"gray-excess\"",
-            "frame: gray excess needs an even number",
+            "frame: Gray excess needs an even number",
         ),
         (
             "multiturn: 12, singleturn: 14",
@@ -316,7 +316,7 @@ fn a_wrong_profile_is_told_where() {
 
 /// Issue 22.26: one changed value changes one place in the text.
 #[test]
-fn a_change_touches_nothing_else() {
+fn a_change_edits_only_its_value() {
     let edit = |own: &mut SsiProfile| {
         own.preset = 9;
         own.reading.clock_hz = 250_000;

@@ -9,7 +9,7 @@ fn layout(text: &str) -> Layout {
 }
 
 #[test]
-fn format_strings_of_linuxcnc() {
+fn format_strings_match_linuxcnc() {
     let table = [
         ("atm60,code=gray", "position%25ge"),
         ("ahs36", "error%1bposition%14e"),
@@ -33,7 +33,7 @@ fn format_strings_of_linuxcnc() {
 
 /// A layout written by hand may give its bits any names; LinuxCNC creates a pin for each.
 #[test]
-fn each_bit_has_a_pin_of_its_own() {
+fn each_bit_has_a_unique_pin() {
     let mut frame = layout("ahs36").descriptor().clone();
     let names = ["LAMP", "lamp", "", "50 % \n load", "position"];
     let [error] = frame.errors.as_slice() else { panic!("{frame:?}") };
@@ -47,7 +47,7 @@ fn each_bit_has_a_pin_of_its_own() {
 }
 
 #[test]
-fn what_linuxcnc_cannot_do_is_said() {
+fn limits_of_linuxcnc_are_reported() {
     let cases = [
         ("atm60,steps=3600,code=gray-excess", "LinuxCNC cannot decode gray excess"),
         ("ahs36,code=gray,st=12,over=padded", "LinuxCNC cannot decode a Gray code that includes zeros or error bits"),
@@ -70,7 +70,7 @@ fn what_linuxcnc_cannot_do_is_said() {
 }
 
 #[test]
-fn a_parity_bit_is_no_error_bit_in_the_sheet() {
+fn a_parity_bit_is_not_an_error_bit_in_the_sheet() {
     let sheet =
         |layout: &Layout| settings_sheet(layout, None, "", &english).lines().map(str::to_owned).collect::<Vec<_>>();
     let power_failure = |lines: &[String]| lines.iter().find(|line| line.contains("power failure bit")).cloned();
@@ -86,14 +86,14 @@ fn a_parity_bit_is_no_error_bit_in_the_sheet() {
 
 /// Two definitions of one name are one flag too few, and a compiler's warning.
 #[test]
-fn flags_have_names_of_their_own() {
+fn flags_have_unique_names() {
     let text = c99(&from_linuxcnc("ones%1berror%1bposition%14eerror%1b").unwrap(), "");
     let names: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("#define ")?.split(' ').next()).collect();
     assert_eq!(names, ["SSI_ERROR", "SSI_ERROR_", "SSI_ONES", "SSI_NO_CODE", "SSI_PADDING", "SSI_ONES_", "SSI_ZEROS"]);
 }
 
 #[test]
-fn a_row_for_each_clock() {
+fn the_sheet_has_a_row_for_each_clock() {
     let table = bit_table(&layout("ahs36,st=12,err=following"), &english);
     let rows: Vec<&str> = table.lines().collect();
     assert_eq!(rows.len(), 16);

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn each_frame_that_a_family_sends_is_found_with_no_more_than_was_set() {
+    fn each_family_frame_is_found_with_minimal_settings() {
         let families = Families::built_in();
         for family in families.iter() {
             let spread = spread(&families, family);
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_as_delivered_is_left_out() {
+    fn default_settings_are_omitted() {
         let cases = [
             ("ahm36,code=binary,mt=12,st=14,clocks=27,align=left,err=fix", "ahm36"),
             ("atm60,mt=12,st=13,align=tree12_13,err=none", "atm60"),
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_family_cannot_send_has_no_settings() {
+    fn frames_a_family_cannot_send_have_no_settings() {
         let families = Families::built_in();
         for family in families.iter() {
             let own = frame(&families, &family.key).unwrap();

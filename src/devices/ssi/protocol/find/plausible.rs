@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn usual_widths_come_first() {
+    fn common_widths_rank_first() {
         assert_eq!(shares(25, 1), [(12, 13)]);
         assert_eq!(shares(24, 1), [(12, 12)]);
         assert_eq!(shares(13, 1), [(0, 13)]);

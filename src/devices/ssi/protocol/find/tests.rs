@@ -36,7 +36,7 @@ fn same_frame(one: &Layout, other: &Layout) -> bool {
 }
 
 #[test]
-fn the_class_of_every_family_comes_first() {
+fn the_class_of_every_family_ranks_first() {
     let families = Families::built_in();
     for (family, speed) in families.iter().zip([0.3, -1.7, 13.2].into_iter().cycle()) {
         for (code, speed) in [("binary", speed), ("gray", -speed)] {
@@ -56,7 +56,7 @@ fn the_class_of_every_family_comes_first() {
 }
 
 #[test]
-fn settings_are_found_too() {
+fn settings_are_found() {
     let families = Families::built_in();
     let settings = [
         "ahs36,st=12,code=gray",
@@ -80,7 +80,7 @@ fn settings_are_found_too() {
 
 /// Contiguous frames do not show the end of the turns, nor distinguish a safety encoder from the other.
 #[test]
-fn what_cannot_be_told_apart_is_one_class() {
+fn indistinguishable_layouts_form_one_class() {
     let families = Families::built_in();
     let atm60 = layout("atm60,code=gray");
     let first = find(&turning(&atm60, 3.1), 25, &families).classes.remove(0);
@@ -98,7 +98,7 @@ fn what_cannot_be_told_apart_is_one_class() {
 }
 
 #[test]
-fn a_standing_shaft_says_nothing() {
+fn a_shaft_at_rest_yields_no_layout() {
     let families = Families::built_in();
     for family in families.iter() {
         let truth = layout(&family.key);
@@ -109,7 +109,7 @@ fn a_standing_shaft_says_nothing() {
 }
 
 #[test]
-fn noise_and_stuck_lines_are_no_layout() {
+fn noise_and_stuck_lines_yield_no_layout() {
     let families = Families::built_in();
     let mut rng = Rng::with_seed(3);
     let noise: Vec<u64> = (0..2000).map(|_| rng.u64(..)).collect();
@@ -121,7 +121,7 @@ fn noise_and_stuck_lines_are_no_layout() {
 
 /// Returns frames of an encoder of no family: gray excess whose end was passed, and a parity bit.
 #[test]
-fn other_encoders() {
+fn encoders_of_no_family_are_found() {
     let families = Families::built_in();
     let excess = Layout::new(Descriptor {
         clocks: 12,
@@ -181,7 +181,7 @@ fn reads(proposal: &Proposal, frames: &[u64], meant: &[Option<u64>]) -> bool {
 /// until the end of the range is passed, so do a falling binary position and exchanged wires, and so do 3600 and 3598 steps
 /// as long as the shaft jumps over the first and the last).
 #[test]
-fn recordings_made_by_other_means_are_found() {
+fn independent_recordings_are_recognized() {
     let vectors = [
         ("AHM36 in Gray", false, include_str!("../../../../../tests/vectors/ssi_find/ahm36_gray.txt")),
         ("8 and 8 bits in a tree", false, include_str!("../../../../../tests/vectors/ssi_find/tree_8_8_gray.txt")),
@@ -223,7 +223,7 @@ fn recordings_made_by_other_means_are_found() {
 /// Issue 22.22: no tick at a layout that reads a frame in another way than intended. All thousand: `cargo bench --bench
 /// ssi`.
 #[test]
-fn no_tick_is_wrong() {
+fn no_confirmed_layout_is_wrong() {
     let families = Families::built_in();
     let mut ticks = 0;
     for seed in 0..40 {
@@ -240,7 +240,7 @@ fn no_tick_is_wrong() {
 
 /// Issue 22.22: the name of the entry can be used unchanged.
 #[test]
-fn every_proposal_can_be_written_down() {
+fn every_proposal_round_trips_as_text() {
     let families = Families::built_in();
     let mut texts = Vec::new();
     for seed in 0..12 {

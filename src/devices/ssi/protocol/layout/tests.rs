@@ -60,7 +60,7 @@ proptest! {
     #![proptest_config(ProptestConfig { max_global_rejects: 100_000, ..ProptestConfig::default() })]
 
     #[test]
-    fn what_is_encoded_is_decoded(layout in layouts(), position in any::<u64>(), raised in 0..4_u32) {
+    fn encoded_frames_decode(layout in layouts(), position in any::<u64>(), raised in 0..4_u32) {
         let last = layout.coding().last();
         let position = last.checked_add(1).map_or(position, |count| position % count);
         let errors = layout.descriptor().errors.len();
@@ -75,7 +75,7 @@ proptest! {
 
     /// A parity bit finds every single flipped bit, a repetition every one in either word.
     #[test]
-    fn a_flipped_bit_is_found_where_it_can_be(layout in layouts(), position in any::<u64>(), at in 0..64_u8) {
+    fn flipped_bits_are_detected_by_parity_and_repetition(layout in layouts(), position in any::<u64>(), at in 0..64_u8) {
         let last = layout.coding().last();
         let position = last.checked_add(1).map_or(position, |count| position % count);
         let clocks = layout.clocks();
@@ -90,7 +90,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bits_are_read(layout in layouts(), frame in any::<u64>()) {
+    fn any_bits_decode_without_panic(layout in layouts(), frame in any::<u64>()) {
         let reading = layout.decode(frame);
         prop_assert!(reading.position <= layout.coding().last());
         prop_assert_eq!(layout.cells(frame).len(), usize::from(layout.clocks()));
@@ -107,7 +107,7 @@ fn bit(name: &str, clock: u8) -> ErrorBit {
 }
 
 #[test]
-fn what_cannot_work_is_refused_with_the_reason() {
+fn impossible_layouts_are_refused_with_a_reason() {
     let parity = |clock| Some(Parity { clock, even: true });
     let cases: [(&str, Descriptor, &str); 11] = [
         ("no clocks", Descriptor { clocks: 0, area: 0, ..plain() }, "a frame has 1 to 64 clocks, not 0"),
@@ -166,7 +166,7 @@ fn what_cannot_work_is_refused_with_the_reason() {
 
 /// Reference section 8: the position ABCDEF in Gray followed by an error bit 1, both ways.
 #[test]
-fn gray_with_and_without_the_error_bit() {
+fn gray_decodes_with_and_without_the_error_bit() {
     let descriptor = |coded| Descriptor {
         clocks: 25,
         code: Code::Gray,
@@ -185,7 +185,7 @@ fn gray_with_and_without_the_error_bit() {
 
 /// Zeros around the word belong to the Gray code or not: the frames differ whenever the lowest bit is 1 (section 2).
 #[test]
-fn gray_over_the_position_and_over_the_zeros() {
+fn gray_may_cover_the_position_or_also_the_zeros() {
     let descriptor = |coded| Descriptor { clocks: 14, area: 14, code: Code::Gray, coded, ..Descriptor::plain(0, 12) };
     let position = Layout::new(descriptor(Coded::Position)).unwrap();
     let area = Layout::new(descriptor(Coded::Area)).unwrap();
@@ -198,6 +198,6 @@ fn gray_over_the_position_and_over_the_zeros() {
 }
 
 #[test]
-fn the_least_frame_is_checked_like_any_other() {
+fn the_smallest_frame_passes_the_checks() {
     assert_eq!(Ok(Layout::default()), Layout::new(Descriptor::plain(0, 1)));
 }

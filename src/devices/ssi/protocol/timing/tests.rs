@@ -39,7 +39,7 @@ fn any_encoder_has_the_general_times() {
 
 /// Reference section 1: "Duration (bits/f)".
 #[test]
-fn bursts_of_the_reference() {
+fn bursts_match_the_reference() {
     let table = [(25, 400e3, 62_500), (25, 1e6, 25_000), (25, 1.5e6, 16_667), (33, 400e3, 82_500)];
     for (clocks, clock_hz, nanoseconds) in table {
         let timing = times("afm60").reckon(&reads(clocks, clock_hz, 100));
@@ -53,7 +53,7 @@ fn bursts_of_the_reference() {
 }
 
 #[test]
-fn cables_of_the_manual() {
+fn cable_lengths_match_the_manual() {
     let table =
         [(49.9, Some(400_000)), (50.0, Some(300_000)), (150.0, Some(200_000)), (399.0, Some(100_000)), (400.0, None)];
     for (metres, most_hz) in table {
@@ -66,7 +66,7 @@ fn cables_of_the_manual() {
 
 /// Reference section 5.
 #[test]
-fn what_the_families_bear() {
+fn family_timing_limits_cause_warnings() {
     let warnings = |key: &str, reads: &Reads| times(key).reckon(reads).warnings;
     let micros = Duration::from_micros;
     let ahm = reads(27, 400e3, 200);
@@ -87,7 +87,7 @@ fn what_the_families_bear() {
 }
 
 #[test]
-fn ages() {
+fn position_ages_are_computed() {
     let micros = |all: f64| Duration::from_secs_f64(all * 1e-6);
     // 25 clocks at 500 kHz: 50 µs.
     let burst = reads(25, 500e3, 300);

@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn zeros_behind_the_position_take_up_what_it_gives() {
+    fn trailing_zeros_absorb_changes_of_the_position() {
         // AHS36: 14 clocks for the position, the error bit on 15.
         let before = Descriptor { clocks: 15, area: 14, errors: vec![error(15)], ..Descriptor::plain(0, 12) };
         let now = with_positions(&before, bits(0, 13), Code::Binary).unwrap();
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn a_repeated_frame_grows_twice() {
+    fn a_repeated_frame_grows_in_both_copies() {
         let before = Descriptor {
             clocks: 27,
             parity: Some(Parity { clock: 13, even: true }),
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_says_so() {
+    fn impossible_frames_are_refused() {
         let plain = Descriptor::plain(0, 12);
         assert!(with_positions(&plain, bits(0, 0), Code::Binary).is_err());
         let odd = Range::Steps { per_turn: 361, turns: 1 };

@@ -39,7 +39,7 @@ mod tests {
     use crate::devices::ssi::protocol::Families;
 
     #[test]
-    fn what_the_families_say_is_said_in_german_too() {
+    fn family_notes_are_translated_to_german() {
         for family in Families::built_in().iter() {
             for words in family.notes.iter().chain([&family.source]) {
                 let text = note(family, words);

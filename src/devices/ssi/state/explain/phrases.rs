@@ -16,7 +16,7 @@ use crate::profile::{Document, Formats, Profile};
 const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
 
 #[test]
-fn a_wrong_link_is_told_in_both_languages() {
+fn link_errors_are_explained_in_both_languages() {
     for text in ["margin=x", "clock=1", "pause=0", "voltage=48"] {
         let query: Query = text.parse().unwrap();
         let error = Station::from_query(&query, Duration::ZERO).unwrap_err();
@@ -25,7 +25,7 @@ fn a_wrong_link_is_told_in_both_languages() {
 }
 
 #[test]
-fn a_wrong_profile_is_told_in_both_languages() {
+fn profile_errors_are_explained_in_both_languages() {
     let good = r#"(schema: 1, device: "ssi", direction: "cw", preset: 0, reading: (clock_hz: 1000), frame: (clocks: 15,
         singleturn: 14, errors: [(name: "ERROR", clock: 15, meaning: "invalid")], patterns: [(name: "fault",
         word: "ones", meaning: "invalid")]))"#;
@@ -69,7 +69,7 @@ fn a_wrong_profile_is_told_in_both_languages() {
 }
 
 #[test]
-fn phrases_within_a_phrase_are_told_in_german_too() {
+fn nested_phrases_are_translated_to_german() {
     let cases = [
         (
             LayoutError::Overlap { clock: 14, first: ClockUse::Position, second: ClockUse::Error("ERROR".to_owned()) },

@@ -33,7 +33,7 @@ fn names(record: &Record) -> Vec<(String, u64)> {
 }
 
 #[test]
-fn words_between_which_some_were_dropped_do_not_follow_each_other() {
+fn words_around_a_gap_are_not_consecutive() {
     let mut record = Record::new(layout("afs60"));
     record.add(vec![run(0, &[1, 2, 3]), run(3, &[4, 5])], 0);
     assert_eq!((record.words(21), record.count(21)), (vec![1, 2, 3, 4, 5], 5));
@@ -44,7 +44,7 @@ fn words_between_which_some_were_dropped_do_not_follow_each_other() {
 }
 
 #[test]
-fn another_name_of_an_error_bit_takes_nothing_away() {
+fn renaming_an_error_bit_keeps_its_count() {
     let mut record = Record::new(layout("afs60"));
     record.add(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
     // This number of words is not stored, but recorded.
@@ -60,7 +60,7 @@ fn another_name_of_an_error_bit_takes_nothing_away() {
 }
 
 #[test]
-fn what_was_forgotten_stays_so_with_another_layout() {
+fn a_cleared_count_stays_cleared_with_another_layout() {
     let mut record = Record::new(layout("afs60"));
     record.add(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
     record.forget_tally();
@@ -70,7 +70,7 @@ fn what_was_forgotten_stays_so_with_another_layout() {
 }
 
 #[test]
-fn the_last_word_is_of_this_session() {
+fn the_last_word_belongs_to_this_session() {
     let mut record = Record::new(layout("afs60"));
     record.add(vec![run(0, &[GOOD])], 0);
     assert!(record.last().is_some());

@@ -11,7 +11,7 @@ fn of(text: &str, clocks: u8) -> Result<Frames, Text> {
 }
 
 #[test]
-fn frames_stand_in_a_file_one_a_line() {
+fn frames_are_read_one_per_line() {
     assert_eq!(parse_frames("1010\n\n# comment\n0b1111\n", 25), Ok((4, vec![0b1010, 0b1111])));
     assert_eq!(parse_frames("0B10_10\n1 1 1 1\n", 25), Ok((4, vec![0b1010, 0b1111])));
     assert_eq!(parse_frames("time;frame\n0.1;0x1F\n0.2;0x2\n", 25), Ok((25, vec![0x1F, 2])));
@@ -24,7 +24,7 @@ fn frames_stand_in_a_file_one_a_line() {
 }
 
 #[test]
-fn clocks_are_read_or_refused_in_words() {
+fn clock_counts_parse_or_are_refused() {
     assert_eq!(read_clocks(" 25 "), Ok(25));
     assert_eq!(read_clocks("0x40"), Ok(64));
     for (text, id) in [("0", "ssi_find.clocks_range"), ("65", "ssi_find.clocks_range"), ("many", "ssi_form.whole")] {
@@ -33,7 +33,7 @@ fn clocks_are_read_or_refused_in_words() {
 }
 
 #[test]
-fn a_line_that_is_no_frame_is_named() {
+fn a_line_that_is_no_frame_is_reported() {
     let said = |text: &str| parse_frames(text, 8).unwrap_err();
     let line = said("1010\n10\n");
     assert_eq!(line.id(), "ssi_find.line");

@@ -86,7 +86,7 @@ proptest! {
     #![proptest_config(ProptestConfig { max_global_rejects: 200_000, ..ProptestConfig::default() })]
 
     #[test]
-    fn what_is_moved_comes_back(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8, following: bool) {
+    fn moves_can_be_reversed(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8, following: bool) {
         let strip = Strip::of(&layout);
         let handle = strip.handles()[which.index(strip.handles().len())];
         let at = strip.clock(handle).unwrap();
@@ -116,7 +116,7 @@ proptest! {
     }
 
     #[test]
-    fn every_clock_is_in_a_field_and_has_words(layout in layouts()) {
+    fn every_clock_is_in_a_field_and_has_a_label(layout in layouts()) {
         let strip = Strip::of(&layout);
         let mut next = 1;
         for field in strip.fields() {
@@ -139,7 +139,7 @@ proptest! {
 }
 
 #[test]
-fn fields_of_a_frame() {
+fn frames_are_divided_into_fields() {
     let tree = family("atm60", &Settings { multiturn: Some(8), singleturn: Some(8), ..Settings::default() });
     let position = [(Kind::Before, 1, 4), (Kind::Turns, 5, 12), (Kind::Steps, 13, 20), (Kind::Behind, 21, 25)];
     assert_eq!(kinds(&tree), position);
@@ -167,7 +167,7 @@ fn fields_of_a_frame() {
 
 /// AHS36 with 14 bits, its error bit on clock 15; then with 12.
 #[test]
-fn steps_end_earlier_and_error_bits_follow_or_do_not() {
+fn error_bits_optionally_follow_the_end_of_the_steps() {
     let strip = family("ahs36", &Settings::default());
     assert!(follows(strip.layout()));
     let fixed = strip.moved(Handle::StepsEnd, 12, false);
@@ -183,7 +183,7 @@ fn steps_end_earlier_and_error_bits_follow_or_do_not() {
 
 /// ATM60 of 25 bits: 8 bits of turns and 8 of steps, as trees of either kind and right-aligned.
 #[test]
-fn boundaries_make_the_formats_of_the_manual() {
+fn moving_boundaries_yields_the_formats_of_the_manual() {
     let position = 0xA5 << 8 | 0x3C;
     let whole = Strip::of(&Layout::new(Descriptor::plain(12, 13)).unwrap());
     let tree = whole.moved(Handle::LeadEnd, 4, true).moved(Handle::StepsEnd, 20, true);
@@ -201,7 +201,7 @@ fn boundaries_make_the_formats_of_the_manual() {
 
 /// TTK70 with 31 clocks; KH53, whose pattern is bits of the whole frame.
 #[test]
-fn the_end_of_the_frame_brings_zeros() {
+fn extending_the_frame_adds_zeros() {
     let ttk = family("ttk70", &Settings::default());
     let longer = ttk.moved(Handle::FrameEnd, 31, true);
     assert_eq!(frame(&longer, 0x12_3456, &[0]), 0x091A_2B40);
@@ -214,7 +214,7 @@ fn the_end_of_the_frame_brings_zeros() {
 }
 
 #[test]
-fn error_bits_exchange_places() {
+fn error_bits_swap_positions() {
     let strip = family("afs60", &Settings::default());
     let names = |strip: &Strip| [19, 20, 21].map(|clock| strip.layout().role_name(strip.cells()[clock - 1].role));
     assert_eq!(names(&strip), ["ERRDIG", "ERRSI", "ERRSYNC"]);
@@ -226,7 +226,7 @@ fn error_bits_exchange_places() {
 }
 
 #[test]
-fn positions_of_steps_move_as_a_whole() {
+fn step_positions_move_as_one_field() {
     let settings = Settings { steps: Some(3600), ..Settings::default() };
     let strip = family("ahs36", &settings);
     let inside = [Handle::LeadEnd, Handle::Split, Handle::TurnsEnd, Handle::BetweenEnd, Handle::StepsEnd];
@@ -237,7 +237,7 @@ fn positions_of_steps_move_as_a_whole() {
 }
 
 #[test]
-fn cells_tell_what_they_say() {
+fn cells_show_their_decoded_values() {
     let strip = family("afs60", &Settings { singleturn: Some(13), clocks: Some(18), ..Settings::default() });
     // 1234h, ERRSI, and a 1 on clock 18, which is always 0.
     let shown = strip.cells_of(0x91A2 << 2 | 1);

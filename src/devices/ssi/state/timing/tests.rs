@@ -22,17 +22,17 @@ fn micros(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e3
 }
 
-fn said(diagram: &Diagram) -> Vec<String> {
+fn span_texts(diagram: &Diagram) -> Vec<String> {
     diagram.spans().iter().map(|span| diagram.words(span).words(Language::English)).collect()
 }
 
 /// Reference section 1: 33 bits at 400 kHz take 82.5 µs, tm is 15 to 25 µs.
 #[test]
-fn a_burst_without_a_break() {
+fn a_short_pause_is_drawn_without_a_break() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let times =
         ["T = 2.5 µs", "Burst of 33 clocks: 82.5 µs", "Pause: 40 µs", "tm = 15 µs to 25 µs", "Minimum pause: 25 µs"];
-    assert_eq!(said(&diagram), times);
+    assert_eq!(span_texts(&diagram), times);
     // 122.5 µs from burst to burst, and two and a half clocks of the next.
     assert_eq!(diagram.pieces().len(), 1);
     assert_eq!(micros(diagram.end()), 128.75);
@@ -51,7 +51,7 @@ fn a_burst_without_a_break() {
 
 /// AHM36, synchronous: a position is started 20 µs after the last clock and ready 125 µs later.
 #[test]
-fn when_a_position_is_made() {
+fn the_sampling_moment_is_shown() {
     let synchronous = diagram("ahm36", 400e3, 200.0, true);
     let marks: Vec<_> = synchronous.marks().iter().map(|mark| (mark.event, micros(mark.at))).collect();
     // 27 clocks take 67.5 µs.
@@ -62,15 +62,15 @@ fn when_a_position_is_made() {
         (TimingEvent::Next, 267.5),
     ];
     assert_eq!(marks, expected);
-    assert_eq!(said(&synchronous)[4..], ["Minimum pause: 150 µs", "Next position in preparation: 125 µs"]);
+    assert_eq!(span_texts(&synchronous)[4..], ["Minimum pause: 150 µs", "Next position in preparation: 125 µs"]);
     let first_edge = diagram("atm60", 500e3, 300.0, true);
     assert_eq!(first_edge.marks()[0], TimingMark { event: TimingEvent::Taken, at: 0.0 });
-    assert_eq!(said(&first_edge)[3], "tm = 150 µs");
+    assert_eq!(span_texts(&first_edge)[3], "tm = 150 µs");
     assert_eq!(diagram("ahm36", 400e3, 200.0, false).marks().len(), 2);
 }
 
 #[test]
-fn a_long_pause_is_broken_and_says_so() {
+fn a_long_pause_is_drawn_with_a_marked_break() {
     let diagram = diagram("afm60", 400e3, 82_500.0, false);
     // The burst, the events after it up to 25 µs and two fifths of a burst; the same before the next burst.
     let pieces: Vec<_> = diagram.pieces().iter().map(|piece| (micros(piece.from), micros(piece.to))).collect();
@@ -80,7 +80,7 @@ fn a_long_pause_is_broken_and_says_so() {
 }
 
 #[test]
-fn a_moment_is_told() {
+fn a_point_in_time_is_described() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let told =
         |at: f64| diagram.state_at(at * 1e-6).iter().map(|text| text.words(Language::English)).collect::<Vec<_>>();
@@ -90,7 +90,7 @@ fn a_moment_is_told() {
 }
 
 #[test]
-fn times_are_said_with_four_figures() {
+fn times_have_four_significant_figures() {
     for (seconds, words) in [
         (0.0, "0 µs"),
         (62.5e-6, "62.5 µs"),
@@ -142,7 +142,7 @@ fn frequencies_are_said_and_read_in_their_unit() {
 proptest! {
     /// Every event is on the axis, which is in order and never longer than its content.
     #[test]
-    fn nothing_that_happens_is_left_out(hz in 1e3..2e6_f64, pause in 0.0..1e6_f64, synchronous: bool, key in 0..3_usize) {
+    fn every_event_is_on_the_axis(hz in 1e3..2e6_f64, pause in 0.0..1e6_f64, synchronous: bool, key in 0..3_usize) {
         let diagram = diagram(["ahm36", "atm60", "ttk70"][key], hz, pause, synchronous);
         let pieces = diagram.pieces();
         prop_assert!(pieces.iter().all(|piece| piece.from < piece.to));

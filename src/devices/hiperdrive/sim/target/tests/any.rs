@@ -34,7 +34,7 @@ fn damaged() -> impl Strategy<Value = Vec<u8>> {
 
 proptest! {
     #[test]
-    fn no_stream_ends_it(stream: Vec<Vec<u8>>) {
+    fn the_target_survives_any_stream(stream: Vec<Vec<u8>>) {
         let mut host = Host::new("");
         for bytes in &stream {
             host.bytes(bytes);
@@ -43,7 +43,7 @@ proptest! {
     }
 
     #[test]
-    fn no_frame_ends_it(frames in proptest::collection::vec(damaged(), 1..20), topology in 0..3_u8) {
+    fn the_target_survives_any_frame(frames in proptest::collection::vec(damaged(), 1..20), topology in 0..3_u8) {
         let mut host = Host::new(["", "hub=4", "hub=8"][usize::from(topology)]);
         for mut frame in frames {
             frame[4..8].copy_from_slice(&host.session.to_le_bytes());
@@ -55,7 +55,7 @@ proptest! {
 
     /// Every one is counted once.
     #[test]
-    fn no_datagram_ends_it(
+    fn the_target_survives_any_datagram(
         packets in proptest::collection::vec(
             prop_oneof![
                 any::<Vec<u8>>().prop_map(|bytes| (None, bytes)),

@@ -4,7 +4,7 @@ use super::*;
 
 /// Reference 9: ForwardOpen, packets both ways, ForwardClose.
 #[test]
-fn the_published_connection() {
+fn published_connection_matches() {
     let mut host = Host::new("position=163840");
     // The socket: family 2, port 2222, no address.
     host.asks(OPEN, &format!("{OPENED} 00 80 10 00 00 02 08 AE 00 00 00 00 00 00 00 00 00 00 00 00"));
@@ -50,7 +50,7 @@ fn open_with(changes: &[(&str, &str)]) -> String {
 }
 
 #[test]
-fn what_is_no_connection_of_this_device_is_refused_by_its_status() {
+fn unsupported_connections_are_refused_with_a_status() {
     let refused = |extended: &str| format!("D4 00 01 01 {extended} 01 00 34 12 CD AB 00 00 00 00");
     let assemblies = "04 20 04 24 68 2C 64 2C 65";
     for (label, changes, extended) in [
@@ -84,7 +84,7 @@ fn what_is_no_connection_of_this_device_is_refused_by_its_status() {
 }
 
 #[test]
-fn what_fits_is_taken() {
+fn supported_connections_are_accepted() {
     for (label, query, changes) in [
         ("5 ms", "", &[("10 27 00 00 16 48", "88 13 00 00 16 48")][..]),
         ("100 ms", "", &[("10 27 00 00 16 48", "A0 86 01 00 16 48"), ("10 27 00 00 12 48", "A0 86 01 00 12 48")]),
@@ -119,7 +119,7 @@ fn a_second_master_is_refused() {
 
 /// Packets are sent to the address given by the originator.
 #[test]
-fn cyclic_data_go_where_they_are_wanted() {
+fn cyclic_data_go_to_the_requested_address() {
     for (socket, expected) in [
         ("01 80 10 00 00 02 9C 41 00 00 00 00 00 00 00 00 00 00 00 00", SocketAddrV4::new(PEER, 40001)),
         ("01 80 10 00 00 02 9C 41 0A 00 00 63 00 00 00 00 00 00 00 00", "10.0.0.99:40001".parse().unwrap()),
@@ -136,7 +136,7 @@ fn cyclic_data_go_where_they_are_wanted() {
 }
 
 #[test]
-fn only_packets_that_are_in_their_turn_count() {
+fn only_packets_in_sequence_count() {
     let mut host = Host::opened("");
     let next = host.words(1, &[0x0400]);
     assert_eq!(host.status(), Some(0x2A31));
@@ -166,7 +166,7 @@ fn only_packets_that_are_in_their_turn_count() {
 
 /// An idle header has the effect of control words of 0.
 #[test]
-fn idle_data_do_not_count() {
+fn idle_data_act_as_zero_control_words() {
     let mut host = Host::opened("");
     let next = host.words(1, &[0x0400, 0x0401]);
     assert_eq!(host.status(), Some(0x2A33));
@@ -177,7 +177,7 @@ fn idle_data_do_not_count() {
 
 /// Reference 7: four intervals times two. The drive fails and stops; another connection finds it in this state.
 #[test]
-fn a_silent_master_is_lost_at_its_time_out() {
+fn a_silent_master_is_lost_after_its_timeout() {
     let mut host = Host::opened("");
     host.words(1, &[0x0400, 0x0401, 0x0409, 0x0439, 0x0479]);
     host.wait(60);
@@ -214,7 +214,7 @@ fn a_cyclic_connection_outlives_its_tcp_connection() {
 
 /// Reference 2: 2.5 turns, the high byte of every number first.
 #[test]
-fn the_order_of_bytes_is_the_one_asked_for() {
+fn the_byte_order_is_the_requested_one() {
     let mut host = Host::opened("order=big&position=163840");
     host.packet(1, 1, &bytes("04 00 64 64 00 02 80 00 00 00 00 00 00 00 00 00"));
     host.wait(10);

@@ -4,7 +4,7 @@ use super::*;
 
 /// Reference 9: RegisterSession and its reply, get 107 in that session.
 #[test]
-fn the_published_frames() {
+fn published_frames_match() {
     let mut host = Host::bare("position=163840");
     let mut reply = host.bytes(&bytes(REGISTER));
     let session: [u8; 4] = reply[4..8].try_into().unwrap();
@@ -28,7 +28,7 @@ fn the_published_frames() {
 
 /// Reference 9, CIP.
 #[test]
-fn the_published_requests() {
+fn published_requests_match() {
     let mut host = Host::new("position=163840");
     host.asks("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 80 02 00");
     host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
@@ -52,7 +52,7 @@ fn the_published_requests() {
 /// Issue 21.8: a reset of drives is answered after it, as in the manual; other requests meanwhile are answered without
 /// delay.
 #[test]
-fn a_reset_is_answered_when_it_is_done() {
+fn a_reset_is_answered_on_completion() {
     for (query, ms) in [("", 1000), ("reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
         let mut host = Host::new(query);
         let reset = frame(0x6F, host.session, &unconnected(&bytes("10 03 20 64 24 01 30 2F FC FF")));
@@ -77,7 +77,7 @@ fn a_reset_is_answered_when_it_is_done() {
 }
 
 #[test]
-fn what_cannot_be_done_is_refused_by_its_status() {
+fn impossible_requests_are_refused_with_a_status() {
     let mut host = Host::new("");
     for (label, request, reply) in [
         ("166 = 200", "10 03 20 65 24 01 30 A6 C8 00", "90 00 00 00"),
@@ -107,7 +107,7 @@ fn what_cannot_be_done_is_refused_by_its_status() {
 
 /// The class of drive n is n above the device's (reference 7).
 #[test]
-fn the_drives_of_a_hub() {
+fn drives_of_a_hub_have_consecutive_classes() {
     let mut host = Host::new("hub=8&drives=1,0,1,1,1,1,1,1&position=65536&variant=HDA70&requested=1");
     host.asks("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 00 01 00");
     host.asks("0E 03 20 66 24 01 30 6B", "8E 00 0C 00");
@@ -132,7 +132,7 @@ const IDENTITY: &str =
     "F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 11 48 49 50 45 52 44 52 49 56 45 20 53 49 4E 47 4C 45";
 
 #[test]
-fn who_is_there_is_told_over_tcp_udp_and_cip() {
+fn identity_is_reported_over_tcp_udp_and_cip() {
     let mut host = Host::new("");
     host.target.listen(SocketAddrV4::new(Ipv4Addr::new(192, 168, 1, 17), 44818));
     host.asks("01 02 20 01 24 01", &format!("81 00 00 00 {IDENTITY}"));
@@ -154,7 +154,7 @@ fn who_is_there_is_told_over_tcp_udp_and_cip() {
 }
 
 #[test]
-fn other_commands_have_a_status_or_no_reply() {
+fn other_commands_get_a_status_or_no_reply() {
     let mut host = Host::new("");
     // ListServices: 0100h, version 1, capability 0120h.
     let services = "01 00 00 01 14 00 01 00 20 01 43 6F 6D 6D 75 6E 69 63 61 74 69 6F 6E 73 00 00";
@@ -187,7 +187,7 @@ fn other_commands_have_a_status_or_no_reply() {
 
 /// By ODVA: attribute 5 can be set only after attribute 3 is stored addresses.
 #[test]
-fn the_network_is_set() {
+fn network_settings_can_be_written() {
     let mut host = Host::new("switch=17");
     host.asks("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
     // 192.168.1.17, 255.255.255.0 and nothing else, low byte first; an empty name.

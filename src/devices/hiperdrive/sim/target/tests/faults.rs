@@ -10,7 +10,7 @@ fn get(host: &mut Host) -> Option<(u32, Vec<u8>)> {
 }
 
 #[test]
-fn saving_keeps_and_what_was_not_saved_is_forgotten() {
+fn saved_values_are_kept_and_unsaved_ones_lost() {
     let mut host = Host::new("");
     let (get, set) = ("0E 03 20 65 24 01 30 A6", "10 03 20 65 24 01 30 A6 C8 00");
     host.asks(set, "90 00 00 00");
@@ -41,7 +41,7 @@ fn saving_keeps_and_what_was_not_saved_is_forgotten() {
 
 /// Half of the values are saved when the supply returns: by number, 152 but not 186.
 #[test]
-fn the_supply_is_lost_in_a_save() {
+fn power_can_fail_during_a_save() {
     let mut host = Host::new("fault=die-in-store:2");
     host.asks(SAVE, "90 00 00 00");
     host.wait(200);
@@ -70,7 +70,7 @@ fn the_supply_is_lost_in_a_save() {
 
 /// After this number of frames and packets it neither answers nor receives: its drives lose their master.
 #[test]
-fn a_silent_target_does_not_act_either() {
+fn a_silent_target_also_ignores_requests() {
     // RegisterSession, ForwardOpen and the fifteen packets that start the motion.
     let mut host = Host::opened("fault=silent-after:17");
     host.words(1, &[0x0400, 0x0401, 0x0409, 0x0439, 0x0479]);
@@ -89,7 +89,7 @@ fn a_silent_target_does_not_act_either() {
 }
 
 #[test]
-fn replies_and_packets_get_lost_or_damaged() {
+fn replies_and_packets_can_be_lost_or_damaged() {
     let mut late = Host::bare("fault=delay:7");
     assert_eq!(late.bytes(&bytes(REGISTER)), [0; 0]);
     late.wait(3);
@@ -113,7 +113,7 @@ fn replies_and_packets_get_lost_or_damaged() {
 
 /// A fifth of the packets is lost in both directions: the connection survives, since eight in a row would have to be lost.
 #[test]
-fn a_lossy_line_is_no_lost_master() {
+fn a_lossy_line_does_not_lose_the_master() {
     let mut host = Host::opened("seed=3");
     host.target.set_faults(&"drop:0.2".parse().unwrap());
     host.words(1, &[0x0400; 100]);

@@ -17,7 +17,7 @@ fn back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
 }
 
 #[test]
-fn limits_are_confirmed_under_the_scale_that_the_drive_has() {
+fn limits_are_confirmed_with_the_scale_of_the_drive() {
     let (mut axis, mut seen) = until_jog();
     press(&mut axis, &mut seen, Button::Take);
     assert_eq!(axis.may_move(&seen), Ok(()));
@@ -37,7 +37,7 @@ fn limits_are_confirmed_under_the_scale_that_the_drive_has() {
 
 /// Issue 21.6 (i): an earlier fact becomes void, and the page stays until the user goes back.
 #[test]
-fn a_drive_that_lost_what_was_not_saved_is_set_up_from_there() {
+fn setup_restarts_at_the_first_step_with_lost_values() {
     let (mut axis, mut seen) = until_test();
     // Everything is discarded.
     seen = DriveFacts { controlled: true, pitch: seen.pitch, ..fresh() };
@@ -53,7 +53,7 @@ fn a_drive_that_lost_what_was_not_saved_is_set_up_from_there() {
 
 /// Issue 21.6 (c): any change of pitch, reference or a limit makes all later results void, including taught limits.
 #[test]
-fn what_rests_on_a_changed_fact_falls_with_it() {
+fn steps_after_a_changed_value_are_undone() {
     let tested = || {
         let (mut axis, mut seen) = until_test();
         go(&mut axis, &mut seen, TestTarget::Middle, 500);
@@ -110,7 +110,7 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
 
 /// Issue 21.6 (b): a jump of the position, and motion without a held button, are not a jog.
 #[test]
-fn only_motion_under_a_held_pad_is_a_jog() {
+fn only_motion_while_the_pad_is_held_is_a_jog() {
     let (mut axis, mut seen) = until_jog();
     press(&mut axis, &mut seen, Button::Take);
     for position in [0, 5000, -5000, 0] {
@@ -139,7 +139,7 @@ fn only_motion_under_a_held_pad_is_a_jog() {
 
 /// Issue 21.6 (e): a connection that was lost and restored is no proof that the supply was off.
 #[test]
-fn a_restart_is_read_or_said() {
+fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     let found = |axis: &Axis, seen: &DriveFacts| {
         words::found(axis, AxisStep::PowerCycle, seen).unwrap().words(Language::English)
     };
@@ -183,7 +183,7 @@ fn a_restart_is_read_or_said() {
 
 /// Issue 21.6 (g): a fault is shown with its code, blocks all motion, and can be acknowledged here.
 #[test]
-fn a_fault_is_told_and_acknowledged_in_the_run() {
+fn a_fault_is_shown_and_can_be_acknowledged() {
     let (axis, mut seen) = until_test();
     assert_eq!(axis.ask(Button::Acknowledge, &seen).unwrap_err().id(), "hd_axis.no_fault");
     // Reference 9: 2AB8 is a fault, 2A70 the lock; 8300 is a block in reverse.
@@ -202,7 +202,7 @@ fn a_fault_is_told_and_acknowledged_in_the_run() {
 /// Issue 21.6 (d, h): differences from the saved values are reported, written back and compared; a position is set at its
 /// place.
 #[test]
-fn what_is_other_than_saved_is_told_and_written_back() {
+fn differences_from_saved_values_are_shown_and_restored() {
     let (mut axis, mut seen) = (run(), fresh());
     assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
     seen.values.extend([(154, 400), (156, 256), (158, -1000), (198, 128)]);
@@ -233,7 +233,7 @@ fn what_is_other_than_saved_is_told_and_written_back() {
 
 /// Issue 21.6 (f): an unconfirmed pitch is no spindle: 65536 steps per turn stay steps until there is one.
 #[test]
-fn millimetres_come_with_a_spindle() {
+fn millimetres_need_a_confirmed_pitch() {
     let (mut axis, mut seen) = (run(), fresh());
     let position = |seen: &DriveFacts| words::millimetres(seen.ruler(), 400).words(Language::English);
     press(&mut axis, &mut seen, Button::Do);
@@ -253,7 +253,7 @@ fn millimetres_come_with_a_spindle() {
 
 /// Issue 21.6 (j): the report of the end, in millimetres, in lines that fit a page.
 #[test]
-fn the_end_of_a_run_is_a_report() {
+fn a_run_ends_with_a_report() {
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
     let (mut axis, mut seen) = until_power();
     assert_eq!(report(&axis, &seen, &device, Language::English), None, "it goes on");

@@ -17,7 +17,7 @@ fn read(seen: &mut DriveFacts, ms: u64, position: i32, word: u16) {
 }
 
 /// In the test step, read at 10 s: the axis stands still at 2000, with 400 steps per turn.
-fn standing() -> (Axis, DriveFacts) {
+fn at_standstill() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = until_test();
     read(&mut seen, 10_000, 2000, STANDS);
     axis.look(&seen);
@@ -27,9 +27,9 @@ fn standing() -> (Axis, DriveFacts) {
 /// Issue 21.6 (c): 198 keeps its number if the reference is set again elsewhere; a shaft turns at most 35 rpm (166), which
 /// is 210° per second, readjusts by up to 5°, and reports up to 0.1 s late.
 #[test]
-fn a_position_that_jumps_at_a_standstill_is_another_reference() {
+fn a_position_jump_at_standstill_means_a_changed_reference() {
     let case = |ms: u64, position: i32, word: u16| {
-        let (mut axis, mut seen) = standing();
+        let (mut axis, mut seen) = at_standstill();
         read(&mut seen, 10_000 + ms, position, word);
         axis.look(&seen);
         (axis.fallen(), words::unexplained(&axis, &seen).is_some())
@@ -51,7 +51,7 @@ fn a_position_that_jumps_at_a_standstill_is_another_reference() {
         assert_eq!(case(ms, 2000 + steps, STANDS), expected, "{label}: {steps} steps in {ms} ms");
         assert_eq!(case(ms, 2000 + steps, MOVES), (None, false), "{label}: it moves");
     }
-    let (mut axis, mut seen) = standing();
+    let (mut axis, mut seen) = at_standstill();
     read(&mut seen, 10_020, 128, STANDS);
     axis.look(&seen);
     let why = words::fallen(axis.fallen().unwrap()).words(Language::English);
@@ -61,7 +61,7 @@ fn a_position_that_jumps_at_a_standstill_is_another_reference() {
 
 /// Issue 21.6 (c): a known change of the position is no jump.
 #[test]
-fn a_position_that_is_changed_from_here_is_no_jump() {
+fn a_known_position_change_is_not_a_jump() {
     type Case<'c> = (&'c str, fn(&mut DriveFacts));
     let cases: [Case<'_>; 3] = [
         ("moved by a person, between two looks", |seen| seen.ended = Some((9, Ended::Arrived))),
@@ -69,14 +69,14 @@ fn a_position_that_is_changed_from_here_is_no_jump() {
         ("nothing is concluded while it is busy", |seen| seen.busy = true),
     ];
     for (label, change) in cases {
-        let (mut axis, mut seen) = standing();
+        let (mut axis, mut seen) = at_standstill();
         change(&mut seen);
         read(&mut seen, 10_020, -900, STANDS);
         axis.look(&seen);
         assert_eq!((axis.fallen(), words::unexplained(&axis, &seen)), (None, None), "{label}");
     }
     // Set by this program: the run is at the step after it, and counts by the new numbers.
-    let (mut axis, mut seen) = standing();
+    let (mut axis, mut seen) = at_standstill();
     (0..3).for_each(|_| axis.back(&seen));
     axis.edit(Entries { reference: "1".to_owned(), ..axis.entries().clone() });
     press(&mut axis, &mut seen, Button::Do);
@@ -91,9 +91,9 @@ fn a_position_that_is_changed_from_here_is_no_jump() {
 /// Issue 21.6 (c): after a lost connection a motion cannot be distinguished from a new reference; this is reported, also in
 /// the report, until the user has been at the reference again.
 #[test]
-fn a_position_that_changed_unseen_is_told_and_not_guessed() {
+fn an_unobserved_position_change_is_reported_as_unexplained() {
     let again = |position: i32| {
-        let (mut axis, mut seen) = standing();
+        let (mut axis, mut seen) = at_standstill();
         axis.lose();
         // The clock of the next session starts again.
         read(&mut seen, 0, position, STANDS);

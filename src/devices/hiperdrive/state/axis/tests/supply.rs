@@ -4,7 +4,7 @@ use super::*;
 
 /// Issue 21.6 (e): the mark is never saved, so a failed write of it leaves everything else as saved.
 #[test]
-fn a_mark_that_was_not_written_takes_nothing_back() {
+fn a_failed_mark_keeps_saved_values() {
     for begun in [false, true] {
         let (mut axis, seen) = until_power();
         let ask = axis.ask(Button::Do, &seen).unwrap();
@@ -17,7 +17,7 @@ fn a_mark_that_was_not_written_takes_nothing_back() {
 
 /// Issue 21.6 (e): the connection is lost during the write of the mark. The mark has arrived, or it has not.
 #[test]
-fn a_mark_that_was_cut_off_is_read() {
+fn an_interrupted_write_of_the_mark_is_read_back() {
     let cut_off = |value: i64| {
         let (mut axis, mut seen) = until_power();
         let ask = axis.ask(Button::Do, &seen).unwrap();

@@ -162,7 +162,7 @@ fn edges_and_cams_are_dragged() {
 }
 
 #[test]
-fn a_drag_is_given_up_with_escape() {
+fn escape_cancels_a_drag() {
     let mut harness = lanes();
     let from = harness.get_by_label("Cam 0: stop").rect().center();
     harness.drag_at(from);
@@ -179,7 +179,7 @@ fn a_drag_is_given_up_with_escape() {
 }
 
 #[test]
-fn a_cam_is_drawn_in_the_lane_of_one_that_does_not_work() {
+fn a_cam_is_drawn_in_the_lane_of_a_switched_off_cam() {
     let mut harness = lanes();
     let lane = harness.get_by_label("Cam 4").rect();
     let first = harness.get_by_label("Cam 0: start").rect().center().x;
@@ -219,7 +219,7 @@ fn a_screen_reader_sets_edges() {
 }
 
 #[test]
-fn lanes_say_where_cams_are_and_what_the_outputs_are() {
+fn lanes_describe_cams_and_outputs() {
     let mut own = page();
     own.scale = Scale::degrees(1000.0, 0).unwrap();
     (own.position, own.own) = (Some(150), Some(0b1000));
@@ -231,17 +231,17 @@ fn lanes_say_where_cams_are_and_what_the_outputs_are() {
     let is_on = |harness: &Harness<'_, Page>, label| {
         harness.get_by_label(label).accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
     };
-    assert!(is_on(&harness, "Cam 0 works") && !is_on(&harness, "Cam 4 works"));
-    harness.get_by_label("Cam 4 works").click();
+    assert!(is_on(&harness, "Cam 0 active") && !is_on(&harness, "Cam 4 active"));
+    harness.get_by_label("Cam 4 active").click();
     harness.run();
     assert_eq!(changes(&harness), [CamEvent::Switched(cam(4), true)]);
-    harness.get_by_label("Cam 1 works").click();
+    harness.get_by_label("Cam 1 active").click();
     harness.run();
     assert_eq!(changes(&harness).len(), 1, "the profile does not say where it is");
 }
 
 #[test]
-fn the_wheel_looks_nearer_and_keys_bring_what_is_out_of_sight() {
+fn the_wheel_zooms_and_keys_scroll_into_view() {
     let mut harness = lanes();
     let lane = harness.get_by_label("Cam 0 · feed").rect();
     harness.hover_at(lane.center());
@@ -259,7 +259,7 @@ fn the_wheel_looks_nearer_and_keys_bring_what_is_out_of_sight() {
 }
 
 #[test]
-fn everything_lies_within_its_width() {
+fn the_chart_stays_within_its_width() {
     for width in [420.0, 600.0, 860.0] {
         let harness = window(page(), move |ui, page: &mut Page| {
             ui.set_max_width(width);
@@ -277,7 +277,7 @@ fn everything_lies_within_its_width() {
             cam_lanes(ui, &theme(), &model, page.view);
         });
         let left = harness.get_by_label("before").rect().left();
-        for label in ["Cam 0 · feed", "Cam 0: stop", "Cam 3: start", "Cam 3: stop", "Output 7", "Cam 7 works"] {
+        for label in ["Cam 0 · feed", "Cam 0: stop", "Cam 3: start", "Cam 3: stop", "Output 7", "Cam 7 active"] {
             let rect = harness.get_by_label(label).rect();
             assert!(rect.left() >= left - 1.0 && rect.right() <= left + width, "{label} at {width}: {rect}");
         }

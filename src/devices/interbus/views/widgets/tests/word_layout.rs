@@ -15,7 +15,7 @@ fn draw(shift: u8, word: Option<u32>, width: f32) -> egui_kittest::Harness<'stat
 }
 
 #[test]
-fn groups_say_what_the_bits_are() {
+fn groups_describe_their_bits() {
     // Reference 7: 00BCDE20 is 1ABCDEF under a shift of 4, with cam 5 on. The window has bits 20 to 4.
     let harness = draw(4, Some(0x00BC_DE20), 860.0);
     harness.get_by_label("Invalid, bit 31: 0");
@@ -32,7 +32,7 @@ fn groups_say_what_the_bits_are() {
 }
 
 #[test]
-fn bits_go_to_a_second_line_where_there_is_no_room() {
+fn bits_wrap_to_a_second_line_if_narrow() {
     for (width, lines) in [(860.0, 1.0), (544.0, 1.0), (543.0, 2.0), (280.0, 2.0)] {
         let harness = draw(8, None, width);
         let (word, high) = (harness.get_by_label("Word").rect(), harness.get_by_label("Invalid, bit 31").rect());

@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_shrink_to_a_least_width_and_wrap_then() {
+    fn cells_shrink_to_a_minimum_width_and_then_wrap() {
         // 25 · 28 + 20 = 720; 25 · 17 + 20 = 445; 32 · 17 + 20 = 564.
         for (room, clocks, cell, lines) in [
             (1000.0, 25, 28.0, 1),
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn pointer_and_places_agree() {
+    fn pointer_positions_map_to_cells() {
         let rows = Rows::new(600.0, 64).at(pos2(30.0, 40.0), &[1, 3]);
         for clock in 1..=64 {
             let cell = rows.cell(clock);

@@ -80,7 +80,7 @@ fn boundaries_are_moved_by_keys() {
 }
 
 #[test]
-fn zeros_between_take_the_keyboard_along() {
+fn focus_follows_the_zeros_between() {
     let mut harness = tree();
     focus(&mut harness, "Start of the steps");
     press(&mut harness, &[(NONE, Key::ArrowRight)]);
@@ -124,7 +124,7 @@ fn boundaries_are_dragged() {
 }
 
 #[test]
-fn what_a_frame_would_be_is_shown_and_can_be_given_up() {
+fn a_drag_previews_the_frame_and_can_be_cancelled() {
     let mut harness = tree();
     let from = harness.get_by_label("End of the position").rect().center();
     harness.drag_at(from);
@@ -155,7 +155,7 @@ fn error_bits_are_dragged_to_another_clock() {
 }
 
 #[test]
-fn cells_are_selected_and_their_bits_turned_over() {
+fn cells_can_be_selected_and_bits_toggled() {
     let mut harness = tree();
     let cells = harness.get_by_label("Frame").rect();
     // The middle of clock 7's cell, and the number above it.
@@ -174,7 +174,7 @@ fn cells_are_selected_and_their_bits_turned_over() {
 }
 
 #[test]
-fn every_frame_lies_within_its_width() {
+fn every_frame_stays_within_its_width() {
     for (bits, width) in [((1, 1), 200.0), ((32, 32), 300.0), ((32, 32), 600.0), ((32, 32), 880.0), ((12, 13), 470.0)] {
         let plain = crate::devices::ssi::protocol::Descriptor::plain(bits.0, bits.1);
         let harness = strip(&Layout::new(plain).unwrap(), width);
@@ -188,7 +188,7 @@ fn every_frame_lies_within_its_width() {
 }
 
 #[test]
-fn a_handle_says_what_it_does_and_how_far_it_goes() {
+fn a_handle_describes_its_purpose_and_range() {
     let mut harness = tree();
     // Turns and steps keep a bit each of clocks 5 to 20; the position has four zeros before it and five after it.
     for (label, reach) in [("Boundary between turns and steps", "Range: 5 to 19"), ("Whole position", "Range: 1 to 10")]
@@ -207,7 +207,7 @@ fn a_handle_says_what_it_does_and_how_far_it_goes() {
 
 /// Eight error bits with long names, at the beginning of a line and at its end: none overlaps another.
 #[test]
-fn names_stay_off_each_other() {
+fn names_do_not_overlap() {
     for (first, width) in [(1_u8, 860.0), (20, 860.0), (40, 600.0), (56, 300.0)] {
         let mut descriptor = crate::devices::ssi::protocol::Descriptor::plain(0, 4);
         descriptor.clocks = 64;

@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_have_places_and_places_times() {
+    fn times_and_positions_convert_both_ways() {
         let pieces = [Piece { from: 0.0, to: 60.0 }, Piece { from: 1000.0, to: 1040.0 }];
         // 224 points minus a break of 24 are two per second.
         let axis = Axis::new(&pieces, Rangef::new(10.0, 234.0));

@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn words_of_moments_stand_beside_their_lines() {
+    fn labels_of_moments_are_next_to_their_lines() {
         let two = [flag((10.0, 80.0)), flag((300.0, 60.0))];
         assert_eq!(flags(&two, (0.0, 400.0)), [Put { level: 0, left: 16.0 }, Put { level: 0, left: 306.0 }]);
         // At the end there is only space before the line.
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn times_lie_in_lanes() {
+    fn durations_are_placed_in_lanes() {
         let bar = |begin, end, width| Bar { ends: (begin, end), width };
         let put = bars(&[bar(0.0, 200.0, 100.0), bar(200.0, 210.0, 50.0), bar(0.0, 5.0, 40.0)], (0.0, 300.0));
         let expected = [(0, 50.0), (0, 216.0), (1, 11.0)].map(|(level, left)| Put { level, left });
@@ -128,7 +128,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn words_of_moments_never_lie_over_each_other(places in prop::collection::vec((0.0..500_f32, 20.0..150_f32), 1..5)) {
+        fn labels_of_moments_never_overlap(places in prop::collection::vec((0.0..500_f32, 20.0..150_f32), 1..5)) {
             let all: Vec<Flag> = places.into_iter().map(flag).collect();
             let put = flags(&all, (0.0, 520.0));
             for (one, (a, at)) in all.iter().zip(&put).enumerate() {
@@ -141,7 +141,7 @@ mod tests {
         }
 
         #[test]
-        fn words_of_times_never_lie_over_other_lines(ends in prop::collection::vec((0.0..500_f32, 0.0..500_f32, 20.0..150_f32), 1..7)) {
+        fn labels_of_durations_never_cover_other_lines(ends in prop::collection::vec((0.0..500_f32, 0.0..500_f32, 20.0..150_f32), 1..7)) {
             let bar = |(a, b, width): &(f32, f32, f32)| Bar { ends: (a.min(*b), a.max(*b)), width: *width };
             let all: Vec<Bar> = ends.iter().map(bar).collect();
             let put = bars(&all, (0.0, 500.0));
