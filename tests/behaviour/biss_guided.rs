@@ -60,7 +60,7 @@ fn a_wiegand_test_runs_both_ways_and_is_saved_on_request() {
 fn an_unsuitable_motor_is_reported_with_the_measured_values() {
     let bench = Bench::new();
     let cases: [(&[&str], &str, &[&str]); 5] = [
-        (&["--rpm", "0"], "calibrate", &["stands", "counterclockwise"]),
+        (&["--rpm", "0"], "calibrate", &["not turning", "counterclockwise"]),
         (&["--rpm", "500"], "calibrate", &["clockwise"]),
         (&["--rpm", "-100"], "calibrate", &["100", "300", "700"]),
         (&["--rpm", "-500", "--temperature", "60"], "calibrate", &["60", "25", "40"]),
@@ -150,7 +150,7 @@ fn the_virtual_encoder_passes_the_guided_procedures() {
     let link = "sim:?rpm=2000&motor=reverse&pulses=6.1,5.2&bridge=on";
     let command = ["do", "biss", "mounting", "wiegand-test", "save", "--yes", "--json", "--link", link];
     let ran = bench.run(&command);
-    assert!(ran.err.contains("mounting was not passed"), "{ran:?}");
+    assert!(ran.err.contains("mounting failed"), "{ran:?}");
     let tested = ran.json_with(1);
     let result = &tested["results"][0];
     assert_eq!((&result["ok"], &result["lowest_cw_v"], &result["saved"]), (&json!(false), &json!(5.2), &json!(true)));

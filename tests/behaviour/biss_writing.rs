@@ -213,7 +213,7 @@ fn unwritable_values_are_refused() {
 fn data_is_not_written_while_the_shaft_turns() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&["--rpm", "30"]) else { return };
-    ask(&bench, &encoder, &["write", "biss", "0x24:0x00", "1", "--yes"]).fails(1, &["rest"]);
+    ask(&bench, &encoder, &["write", "biss", "0x24:0x00", "1", "--yes"]).fails(1, &["Stop it"]);
     assert_eq!(written(&encoder), [""; 0]);
 }
 
@@ -273,7 +273,7 @@ fn a_worn_flash_is_reported_and_written_only_if_forced() {
         logbook.conclude(id, Timestamp::now(), Outcome::Done, spent).unwrap();
     };
     wear_to(798);
-    write(&[]).assert_stderr(&["At least 800 of the 1000"]);
+    write(&[]).assert_stderr(&["at least 800 of the 1000"]);
     wear_to(999);
     write(&[]).fails(1, &["999", "(2)", "1000", "--force-wear"]);
     assert_eq!(write(&["--force-wear"]).json()["write_cycles"], json!(2));

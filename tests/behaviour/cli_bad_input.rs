@@ -161,7 +161,7 @@ fn a_profile_of_another_biss_encoder_needs_a_separate_permission() {
     let restore = ["restore", &file, "--dry-run", "--allow-other-device", "--link", "sim:", "--json"];
     bench.run(&restore).fails(1, &["--allow-other-type", "nothing was written"]);
     let allowed = bench.run(&[&restore[..], &["--allow-other-type"]].concat());
-    assert!(allowed.status == Some(0) && allowed.err.contains("may have another meaning"), "{allowed:?}");
+    assert!(allowed.status == Some(0) && allowed.err.contains("may have a different meaning"), "{allowed:?}");
 }
 
 /// Issue 22.9: another type is named, and refused without explicit permission.

@@ -117,7 +117,7 @@ fn on_a_terminal_save_asks_before_replacing_a_file() {
     std::fs::write(&file, "dear").unwrap();
     let ran = bench.run(&save);
     assert_eq!(ran.status, Some(0));
-    assert!(ran.err.contains("layout.ron existed and was replaced"), "{ran:?}");
+    assert!(ran.err.contains("layout.ron already existed and was replaced"), "{ran:?}");
     assert_eq!(bench.read("layout.ron"), written);
 
     std::fs::write(&file, "dear").unwrap();

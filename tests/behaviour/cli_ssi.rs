@@ -135,7 +135,7 @@ fn layouts_of_recorded_frames_are_found() {
     let found = bench.run(&["ssi", "find", &hex, "--clocks", "9"]);
     assert!(found.out.contains("steps=360") && found.out.contains("explains every bit"), "{found:?}");
     let guessed = bench.run(&["ssi", "find", &hex]);
-    assert!(guessed.err.contains("taken as 9"), "{guessed:?}");
+    assert!(guessed.err.contains("9 was assumed"), "{guessed:?}");
     // Recordings without information.
     let standing = bench.write("standing.txt", "101010101\n".repeat(300));
     bench.run(&["ssi", "find", &standing]).fails(1, &["the shaft stands"]);
@@ -168,7 +168,7 @@ fn invalid_arguments_are_reported() {
     let fails = |status: i32, words: &[&str], said: &[&str]| {
         bench.run(&[&["ssi"], words].concat()).fails(status, said);
     };
-    fails(2, &["decode", "--layout", "bce", "0"], &["no family \"bce\"", "ahs36 ahm36", "kh53"]);
+    fails(2, &["decode", "--layout", "bce", "0"], &["\"bce\" is neither a file nor a family", "ahs36 ahm36", "kh53"]);
     fails(2, &["decode", "--layout", "ahs36,code=grey", "0"], &["binary, gray, gray-excess or bcd", "grey"]);
     fails(2, &["decode", "--layout", "ahs36", "12"], &["\"12\" is not a frame", "0b1010"]);
     fails(2, &["decode", "--layout", "ahs36", "0x+54B6"], &["\"0x+54B6\" is not a frame"]);

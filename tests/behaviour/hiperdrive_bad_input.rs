@@ -113,7 +113,7 @@ fn options_and_actions_of_other_devices_are_refused() {
     bench.run(&["identify", "hiperdrive"]).fails(2, &["--link"]);
     bench.run(&["identify", "hiperdrive", "--link", "serial:/dev/null"]).fails(2, &["enip:"]);
     bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1?rpi=1"]).fails(2, &["5 to 100"]);
-    bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1:99999"]).fails(2, &["99999 is no port"]);
+    bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1:99999"]).fails(2, &["99999 is not a port"]);
     bench.run(&["identify", "hiperdrive", "--link", "sim:?hub=3"]).fails(2, &["hub"]);
 }
 

@@ -65,7 +65,7 @@ fn golden_words_and_process_data_are_explained() {
             &["A6 20 00 00 02 00 00 00", "--direction", "in"],
             &["parameter 166 (maximum speed of drive 1) is no value (4 bytes where its type has 2: 0x2)"],
         ),
-        (&["10 03 20 65 24 01 30 BA 0A"], &["parameter 186", "a value of 1 bytes where 2 were expected: 0A"]),
+        (&["10 03 20 65 24 01 30 BA 0A"], &["parameter 186", "a value of 1 bytes instead of 2: 0A"]),
     ];
     for (arguments, words) in cases {
         let ran = bench.run(&[&["decode", "hiperdrive"], arguments].concat());

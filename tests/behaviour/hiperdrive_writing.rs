@@ -174,7 +174,7 @@ fn a_profile_is_restored_to_its_own_device_and_skips_empty_ports() {
     let ran = other.ask(&bench, &["restore", &file, "--yes", "--allow-other-device"]);
     let told = ran.json();
     assert_eq!((&told["written"], &told["missing"].as_array().unwrap().len()), (&json!(1), &13), "{told}");
-    ran.assert_stderr(&["place 3"]);
+    ran.assert_stderr(&["port 3"]);
     assert_eq!(other.sets(), ["10 03 20 65 24 01 30 A6 C8 00", SAVE]);
 }
 

@@ -60,7 +60,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     }
     let source = bench.run(&["ssi", "export", "--layout", &file, "--format", "c"]).out;
     assert!(source.starts_with("/* SSI decoder: feeder\n"), "{source}");
-    // The profile defines how it is read, and its family the family's; without one those of SSI as such.
+    // The profile defines how it is read; without a family, the general times of SSI apply.
     let general = bench.run(&["ssi", "export", "--layout", &file, "--format", "timing"]);
     assert!(general.out.contains("13 clocks, 130.00 µs"), "{general:?}");
     assert!(general.err.starts_with("General times of SSI"), "{general:?}");

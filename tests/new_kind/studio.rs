@@ -139,8 +139,7 @@ fn edits_are_undone_reviewed_written_and_restored() {
     assert!(!desk.shown().is_dirty() && !desk.shown().can_undo());
     // The shaft is at 0, which is 100 steps below the zero of 65536.
     desk.command(DeviceCommand::ReadPosition);
-    desk.until("a position", |desk| desk.encoder().last.is_some());
-    assert_eq!(desk.encoder().last.unwrap().1, 65436);
+    desk.until("the position from the new zero", |desk| desk.encoder().last.is_some_and(|own| own.1 == 65436));
 
     desk.review(ReviewAction::Close);
     desk.until("the backup is listed", |desk| matches!(desk.shown().backups(), Some(Ok(all)) if all.len() == 1));

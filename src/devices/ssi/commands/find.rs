@@ -24,8 +24,7 @@ pub(super) fn find(output: &Output, SsiFind { file, clocks }: &SsiFind) -> Resul
             let any = frames.iter().fold(1, |any, frame| any | frame);
             let clocks = (u64::BITS - any.leading_zeros()) as u8;
             output.remark(&format!(
-                "Frames in hex and decimal do number of clocks cannot be determined from hexadecimal frames; {clocks} was assumed. Use \
-                 --clocks N to set it."
+                "Frames in hex and decimal do not show their number of clocks; {clocks} was assumed. Use --clocks N to set it."
             ));
             clocks
         }

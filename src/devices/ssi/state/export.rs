@@ -92,7 +92,7 @@ impl Designer {
     /// Returns the layout as text, in this language where people read it. Programs are in English.
     ///
     /// # Errors
-    /// What the format cannot place for.
+    /// What the format has no place for.
     pub fn export(&self, format: Format, language: Language) -> Result<String, Text> {
         if let Some(picture) = self.picture(format, language) {
             return Ok(picture.svg());

@@ -1,4 +1,4 @@
-//! The layout for other programs: text as text, pictures as pictures, to be copied and save.
+//! The layout for other programs: text as text, pictures as pictures, to copy and save.
 
 use egui::{ScrollArea, Ui};
 

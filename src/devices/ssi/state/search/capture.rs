@@ -186,7 +186,7 @@ fn time_unit(name: &str, rate_hz: Option<f64>) -> Option<f64> {
         ("ns", "nanoseconds", 1e-9),
         ("ps", "picoseconds", 1e-12),
     ];
-    let name = name.to_lowercase().replace('µ', "u").replace('μ', "u");
+    let name = name.to_lowercase().replace(['µ', 'μ'], "u");
     let inside = name
         .split_once(['[', '('])
         .and_then(|(time, unit)| (time.trim() == "time").then(|| unit.trim_end_matches([']', ')']).trim().to_owned()));
