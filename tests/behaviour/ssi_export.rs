@@ -152,8 +152,8 @@ const REFERENCE: [(&str, u64, &str); 12] = [
     ("ahm36,code=gray", 0x0D9_3EEC, "4778587 291 10843 1"),
     ("afs60,st=13", 0x91A2, "4660 0 4660 0"),
     // More than 32 clocks: 5A5h turns, 2ABCDh steps, twice; then a fault.
-    ("afm60", 0xB_4B55_E68, "378973133 1445 175053 1"),
-    ("afm60s", 0xB_4B55_E68, "378973133 1445 175053 1"),
+    ("afm60", 0xB4B5_5E68, "378973133 1445 175053 1"),
+    ("afm60s", 0xB4B5_5E68, "378973133 1445 175053 1"),
     ("afm60s", 0x1_FFFF_FFFF, "1073741823 4095 262143 0"),
     ("atm60,mt=8,st=8,code=gray", 0x1EF440, "42300 165 60 1"),
     // The shift loses the lowest bit, which is 0 here.

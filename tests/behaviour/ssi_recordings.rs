@@ -34,7 +34,7 @@ fn positions(ran: &Ran) -> Vec<Option<u64>> {
 
 /// Runs the program with this on its standard input.
 fn fed(bench: &Bench, arguments: &[&str], text: &str) -> Ran {
-    let path = bench.write("input", text.to_owned());
+    let path = bench.write("input", text);
     let mut program = bench.program(arguments);
     program.stdin(std::fs::File::open(path).unwrap());
     finish(program)
@@ -98,7 +98,7 @@ fn the_table_of_positions_is_read_again() {
 fn what_is_no_recording_is_refused_with_the_line_and_a_way_out() {
     let bench = Bench::new();
     let refused = |text: &str, told: &[&str]| {
-        let path = bench.write("bad.csv", text.to_owned());
+        let path = bench.write("bad.csv", text);
         bench.run(&["ssi", "find", &path]).fails(1, told);
         bench.run(&[&LAYOUT[..], &[&format!("@{path}")]].concat()).fails(1, told);
     };
@@ -108,7 +108,7 @@ fn what_is_no_recording_is_refused_with_the_line_and_a_way_out() {
     refused("Time [s],Channel 0,Channel 1\n0.0,3.31,0.02\n", &["Line 2", "3.31", "digital channels"]);
     refused("t_s,raw,turns,steps,degrees,millimetres,valid\n0.0,17\n", &["Line 2", "cut off"]);
     refused("date,price\nmonday,17\n", &["no frames", "time, clock and data"]);
-    let other = bench.write("other.txt", "101010101\n".to_owned());
+    let other = bench.write("other.txt", "101010101\n");
     bench.run(&[&LAYOUT[..], &[&format!("@{other}")]].concat()).fails(1, &["other.txt", "9 bits", "27 clocks"]);
     bench.run(&[&LAYOUT[..], &["@nowhere.csv"]].concat()).fails(1, &["nowhere.csv"]);
     let huge = bench.file("huge.csv");
