@@ -158,7 +158,9 @@ fn user_families_are_loaded_and_broken_ones_reported() {
     for said in ["broken.ron", "line 3, column ", "grey", "the other families can be used"] {
         assert!(told.err.contains(said), "{said}: {}", told.err);
     }
-    bench.run(&["ssi", "decode", "--layout", "feder", "0"]).fails(2, &["no family \"feder\"", "feeder ahs36"]);
+    bench
+        .run(&["ssi", "decode", "--layout", "feder", "0"])
+        .fails(2, &["\"feder\" is neither a file nor a family", "feeder ahs36"]);
 }
 
 #[test]
@@ -201,7 +203,7 @@ fn invalid_layouts_are_refused_with_entry_and_reason() {
     bench.run(&["ssi", "decode", "--layout", &biss, "0"]).fails(1, &["biss", "ssi"]);
     bench.run(&["diff", &file, &biss]).fails(1, &["kit.ron", "biss", "ssi"]);
     bench.run(&["ssi", "decode", "--layout", &bench.file("none.ron"), "0"]).fails(1, &["none.ron"]);
-    bench.run(&["ssi", "decode", "--layout", "none", "0"]).fails(2, &["no file and no family \"none\""]);
+    bench.run(&["ssi", "decode", "--layout", "none", "0"]).fails(2, &["\"none\" is neither a file nor a family"]);
     bench.write("unknown.ron", LAYOUT.replace("frame:", "family: \"feeder\", frame:"));
     let unknown = bench.run(&["ssi", "decode", "--layout", &bench.file("unknown.ron"), "0x0"]);
     assert!(
@@ -226,7 +228,7 @@ fn unsupported_ssi_commands_name_the_alternative() {
         (&["diff", &file, sim], "diff FILE FILE"),
         (&["decode", "ssi", "00"], "ssi decode --layout"),
         (&["save", "ssi", "-o", &out], "--layout FILE|SPEC"),
-        (&["save", "ssi", "--layout", "ahs36", "-o", &out, sim], "no --link"),
+        (&["save", "ssi", "--layout", "ahs36", "-o", &out, sim], "remove --link"),
         (&["save", "biss", "--layout", "ahs36", "-o", &out, sim], "--layout is for ssi devices"),
     ];
     for (words, said) in cases {
