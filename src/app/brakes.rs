@@ -34,7 +34,7 @@ type Session = (Box<dyn Brake>, Stopper);
 #[derive(Default)]
 struct Shared {
     sessions: Mutex<Vec<Session>>,
-    /// Set when nothing may move any more.
+    /// Set once nothing is allowed to move.
     released: AtomicBool,
     /// The window closes.
     closing: AtomicBool,

@@ -22,7 +22,7 @@ impl Studio {
         self.closing
     }
 
-    /// Returns whether the window may close now: no drive is under control, nothing runs any more, not even in released
+    /// Returns whether the window may close now: no drive is under control, nothing is running, not even in released
     /// sessions, and all data are on disk; or the grace period is over.
     pub fn may_close(&self) -> bool {
         let services = &self.services;

@@ -35,9 +35,9 @@ impl ProfileComparison {
 }
 
 impl Studio {
-    /// Returns the comparison on display.
+    /// Returns the comparison on display; `None` once its session was closed.
     pub fn comparison(&self) -> Option<&ProfileComparison> {
-        self.comparison.as_ref()
+        self.comparison.as_ref().filter(|shown| self.device(shown.session).is_some())
     }
 
     /// Closes the comparison. Returns whether one was open.

@@ -77,7 +77,7 @@ pub trait RemembersDrives {
     /// Returns the name under which the settings store its drives; `None` before it was read.
     fn remembered_as(&self) -> Option<String>;
 
-    /// Takes the stored data of its drives, and returns the data to store from now on, if they differ. All data are taken
+    /// Takes the stored data of its drives, and returns the data to store next, if they differ. All data are taken
     /// once per device; later only limits that were marked elsewhere.
     fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
 

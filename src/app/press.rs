@@ -43,7 +43,7 @@ impl FreshKeys {
     /// The keys are up: the keyboard focus was never lost.
     pub const UP: FreshKeys = FreshKeys { space: KeyState::Up, enter: KeyState::Up };
 
-    /// Forgets everything: the keyboard focus was lost or gained, or has another meaning from now on.
+    /// Forgets everything: the keyboard focus was lost or gained, or means something else.
     pub fn forget(&mut self) {
         *self = FreshKeys::default();
     }

@@ -53,6 +53,10 @@ fn a_comparison_lists_what_differs_and_writes_nothing() {
     assert_eq!(desk.wire().count(0x4A), requests, "nothing is read for it");
     desk.act(Action::Escape);
     assert!(!compared(&desk.studio));
+    desk.command(DeviceCommand::Compare(path));
+    desk.until("it is compared again", compared);
+    desk.act(Action::CloseSession(session));
+    assert!(!compared(&desk.studio), "it ends with its session");
 }
 
 #[test]

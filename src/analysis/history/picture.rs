@@ -105,7 +105,7 @@ pub struct Reduced {
 pub struct Picture {
     /// The pixel columns; see `raw`.
     pub pixels: Vec<Pixel>,
-    /// There are so few samples that each is a pixel of its own, with its own time.
+    /// There are so few samples that each has its own pixel and its own time.
     pub raw: bool,
 }
 
@@ -184,7 +184,7 @@ impl<T: Number> Painter<'_, T> {
         }
     }
 
-    /// Adds one sample as a pixel of its own.
+    /// Adds one sample as a separate pixel.
     fn sample(&mut self, index: u64) {
         let (Some((value, flags)), Some(time)) = (self.series.get(index), self.history.time(index)) else { return };
         let good = !flags.contains(Flags::BAD);

@@ -1,5 +1,5 @@
 //! Errors as texts for the user: what happened, and what to do. This is the only place for them; those of one kind of
-//! device are in a module of its own.
+//! device are in a separate module.
 
 mod detail;
 mod expected;
