@@ -82,7 +82,7 @@ impl CommandId {
 }
 
 /// A kind of device on the command line. A command that the kind does not have is refused as wrong usage.
-pub trait DeviceCommands: Sync {
+pub trait DeviceCommands: ProfileCommands {
     /// Returns the kind as written on the command line and in profiles.
     fn name(&self) -> &'static str;
 
@@ -152,11 +152,14 @@ pub trait DeviceCommands: Sync {
     /// if the kind does not have the command.
     fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result>;
 
-    /// Writes a profile into the device, after a review and consent.
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result;
-
     /// Builds the virtual device that is to be served.
     fn simulated(&self, output: &Output, simulate: &Simulate) -> Result<Box<dyn Simulated>>;
+}
+
+/// Restores profiles of a kind of device and reads the device for a comparison; part of its commands.
+pub trait ProfileCommands: Sync {
+    /// Writes a profile into the device, after a review and consent.
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result;
 
     /// Reads the device for a comparison: all of it, or at least the items that the profile contains.
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body>;

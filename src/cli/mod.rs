@@ -21,7 +21,7 @@ use std::path::PathBuf;
 use args::{Arguments, Called};
 
 pub use args::{Command, Common, Consenting, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
-pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProtocolDecoder};
+pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProfileCommands, ProtocolDecoder};
 pub use consent::{agreed, check_wear, require_consent};
 pub use output::{Lines, Output};
 pub use positions::{readings, try_readings};

@@ -39,8 +39,8 @@ pub trait Runs: Kind {
     /// Prepares a session, with the options of every command.
     fn begin(session: &mut Session<Self>, given: &Given) -> Self::Context;
 
-    /// Prints a message of the device at once.
-    fn print_message(remark: &Self::DeviceMessage);
+    /// Prints a message of the device at once; by default none is printed.
+    fn print_message(_remark: &Self::DeviceMessage) {}
 
     /// Returns the text of a step, for the progress bar on a terminal.
     fn step(doing: &Self::JobStep) -> String;

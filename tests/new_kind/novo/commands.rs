@@ -1,11 +1,10 @@
 //! The kind's part of the command line.
 
-use std::convert::Infallible;
-
 use encoder_studio::app::Given;
 use encoder_studio::cli::{
-    Command, Common, DeviceCommands, Done, Failure, Output, Position, Restore, Result, Runs, Save, Simulate, Simulated,
-    Unrestored, agreed, check_wear, plan, readings, restore_options, save_profile, settings, to_restore, write_restore,
+    Command, Common, DeviceCommands, Done, Failure, Output, Position, ProfileCommands, Restore, Result, Runs, Save,
+    Simulate, Simulated, Unrestored, agreed, check_wear, plan, readings, restore_options, save_profile, settings,
+    to_restore, write_restore,
 };
 use encoder_studio::profile::{Body, Operation};
 use encoder_studio::result_of;
@@ -25,9 +24,6 @@ impl Runs for Novo {
 
     fn begin(_: &mut Session<Self>, _: &Given) {}
 
-    fn print_message(remark: &Infallible) {
-        match *remark {}
-    }
     fn step(item: &usize) -> String {
         name_of(*item).to_owned()
     }
@@ -50,6 +46,13 @@ impl DeviceCommands for NovoCommands {
             _ => return None,
         })
     }
+    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
+        let device = Virtual::from_pairs(&settings(output, arguments)?);
+        device.map(|own| Box::new(own) as Box<dyn Simulated>).map_err(|error| Failure::Usage(error.to_string()))
+    }
+}
+
+impl ProfileCommands for NovoCommands {
     fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
         let options = restore_options(restore)?;
         let NovoProfile { serial, values } = to_restore(restore, profile)?;
@@ -65,10 +68,6 @@ impl DeviceCommands for NovoCommands {
             let written = result_of!(runner.run(Job::Commit(Box::new(agreed)))?, Came::Committed(written) => *written);
             Ok(plan::WriteSummary::of(output, written))
         })
-    }
-    fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
-        let device = Virtual::from_pairs(&settings(output, arguments)?);
-        device.map(|own| Box::new(own) as Box<dyn Simulated>).map_err(|error| Failure::Usage(error.to_string()))
     }
     fn present(&self, common: &Common, _: &Output, _: Option<&Body>) -> Result<Body> {
         survey(&mut Runner::open(common)?).map(Body::new)

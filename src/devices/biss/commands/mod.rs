@@ -16,10 +16,9 @@ use clap::builder::PossibleValue;
 use clap::{Arg, ValueEnum};
 
 use self::args::{BissAction, DoOptions};
-use crate::app::Text;
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol as ubicom;
-use crate::cli::args::{Command, Common, Restore, Simulate};
+use crate::cli::args::{Command, Common, Simulate};
 use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
@@ -28,7 +27,6 @@ use crate::devices::biss::profile::{ItemError, RegisterRange};
 use crate::devices::biss::protocol::KIND;
 use crate::devices::biss::sim;
 use crate::kinds::at_adapter;
-use crate::profile::Body;
 use crate::sim::ConfigError;
 use crate::units::{CharacterFormat, Moment};
 
@@ -100,24 +98,8 @@ impl DeviceCommands for BissCommands {
         })
     }
 
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-        profiles::restore(common, output, restore, profile)
-    }
-
     fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
         simulated(output, arguments)
-    }
-
-    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
-        profiles::present(common, output, profile)
-    }
-
-    fn remark(&self, profile: &Body) -> Option<Text> {
-        profiles::remark(profile)
-    }
-
-    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
-        profiles::other_device(profile, device)
     }
 }
 

@@ -2,10 +2,12 @@
 
 use serde_json::json;
 
+use super::BissCommands;
 use super::plan::{commit, prepare, shown};
 use super::run::Runner;
 use crate::app::Text;
 use crate::cli::args::{Common, Restore, Save};
+use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{Unrestored, restore_options, save_profile, say_mounting_left, to_restore, write_restore};
 use crate::cli::{Done, Result};
@@ -29,46 +31,47 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     Ok(Done::Well)
 }
 
-/// Reads the encoder for a comparison; refused if it shows values that were never saved.
-pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
-    Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
-}
+impl ProfileCommands for BissCommands {
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        let options = restore_options(restore)?;
+        let profile = to_restore::<BissProfile>(restore, profile)?;
+        let mut runner = Runner::open(common)?;
+        let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
+        if let Some(types) = &prepared.other_type {
+            output.remark(&words::other_type(types).terminal());
+        }
+        for item in &prepared.missing {
+            output.remark(&format!("{item} is not restored: the encoder does not have it"));
+        }
+        say_mounting_left(output, &prepared.mounting_left);
+        let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
+        let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+        let plan = shown(&prepared);
+        write_restore(output, restore, &plan, &left, || {
+            commit(&mut runner, output, prepared, &restore.consent, super::PATIENCE).map(|(spent, _)| spent)
+        })
+    }
 
-/// Returns the remark that a profile was read in a device mode.
-pub(super) fn remark(profile: &Body) -> Option<Text> {
-    words::profile_unsaved(profile.get()?)
-}
+    /// Reads the encoder for a comparison; refused if it shows values that were never saved.
+    fn present(&self, common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
+        Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
+    }
 
-/// Returns a message if two profiles are not of the same encoder.
-pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
-    let (profile, device) = (&profile.get::<BissProfile>()?.identity, &device.get::<BissProfile>()?.identity);
-    let who = |one: &ProfileIdentity| (one.serial_number.clone(), one.kind());
-    (who(profile) != who(device)).then(|| {
-        let [profile, device] = [profile, device].map(|one| format!("{} ({})", one.serial_number, one.kind()));
-        format!("The profile is of {profile}, the encoder is {device}.")
-    })
+    /// Returns the remark that a profile was read in a device mode.
+    fn remark(&self, profile: &Body) -> Option<Text> {
+        words::profile_unsaved(profile.get()?)
+    }
+
+    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+        let (profile, device) = (&profile.get::<BissProfile>()?.identity, &device.get::<BissProfile>()?.identity);
+        let who = |one: &ProfileIdentity| (one.serial_number.clone(), one.kind());
+        (who(profile) != who(device)).then(|| {
+            let [profile, device] = [profile, device].map(|one| format!("{} ({})", one.serial_number, one.kind()));
+            format!("The profile is of {profile}, the encoder is {device}.")
+        })
+    }
 }
 
 fn saved(common: &Common, job: BissJob) -> Result<BissProfile> {
     Ok(result_of!(Runner::open(common)?.run(job)?, BissOutput::Saved(profile) => *profile))
-}
-
-pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let options = restore_options(restore)?;
-    let profile = to_restore::<BissProfile>(restore, profile)?;
-    let mut runner = Runner::open(common)?;
-    let prepared = prepare(&mut runner, Change::Restore { profile: Box::new(profile), options })?;
-    if let Some(types) = &prepared.other_type {
-        output.remark(&words::other_type(types).terminal());
-    }
-    for item in &prepared.missing {
-        output.remark(&format!("{item} is not restored: the encoder does not have it"));
-    }
-    say_mounting_left(output, &prepared.mounting_left);
-    let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
-    let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
-    let plan = shown(&prepared);
-    write_restore(output, restore, &plan, &left, || {
-        commit(&mut runner, output, prepared, &restore.consent, super::PATIENCE).map(|(spent, _)| spent)
-    })
 }

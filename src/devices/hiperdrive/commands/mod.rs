@@ -19,7 +19,7 @@ use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, Args};
 
 use self::args::{DoOptions, HiperdriveAction, HubOption, Move, OfDrive, WordOptions};
-use crate::cli::args::{Command, Common, Restore, Simulate};
+use crate::cli::args::{Command, Common, Simulate};
 use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, options_of, parse, values_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::Simulated;
@@ -27,7 +27,6 @@ use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::profile::{Item, ItemError};
 use crate::devices::hiperdrive::protocol::{KIND, PARAMETERS};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::profile::Body;
 
 /// The commands for drives.
 pub(crate) struct HiperdriveCommands;
@@ -107,20 +106,8 @@ impl DeviceCommands for HiperdriveCommands {
         })
     }
 
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-        profiles::restore(common, output, restore, profile)
-    }
-
     fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
         simulate::simulated(output, arguments)
-    }
-
-    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
-        profiles::present(common, output, profile)
-    }
-
-    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
-        profiles::other_device(profile, device)
     }
 }
 

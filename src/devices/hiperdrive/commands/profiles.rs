@@ -2,9 +2,11 @@
 
 use serde_json::json;
 
+use super::HiperdriveCommands;
 use super::plan::{commit, prepare, shown};
 use super::run::Runner;
 use crate::cli::args::{Common, Restore, Save};
+use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{Unrestored, restore_options, save_profile, to_restore, write_restore};
 use crate::cli::{Done, Result};
@@ -25,27 +27,53 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     Ok(Done::Well)
 }
 
-/// Reads the whole device for a comparison.
-pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
-    Ok(Body::new(saved(common)?))
+impl ProfileCommands for HiperdriveCommands {
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        let options = restore_options(restore)?;
+        let profile = to_restore::<HiperdriveProfile>(restore, profile)?;
+        let mut runner = Runner::open(common)?;
+        let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
+        for types in &prepared.other_types {
+            output.remark(&words::other_type(types).terminal());
+        }
+        for words in absent(&prepared) {
+            output.remark(&words);
+        }
+        for item in &prepared.mounting_left {
+            let how = match item.0.base() {
+                REFERENCE => "a reference is never restored; set it with \"do hiperdrive set-position\"",
+                _ => "use --with-mounting to restore it",
+            };
+            output.remark(&format!("{item} belongs to the mounting and is not restored: {how}"));
+        }
+        let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
+        let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+        let plan = shown(&prepared);
+        write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
+    }
+
+    /// Reads the whole device for a comparison.
+    fn present(&self, common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
+        Ok(Body::new(saved(common)?))
+    }
+
+    /// Returns a message if two profiles are not of the same device or the same drives. A profile without a serial number
+    /// matches none.
+    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+        let error =
+            profile::check_device(profile.get::<HiperdriveProfile>()?, &device.get::<HiperdriveProfile>()?.identity)
+                .err()?;
+        Some(match error {
+            profile::PlanError::OtherDevice { profile, device } => {
+                format!("The profile is of serial number {profile}, the device has {device}.")
+            }
+            other => format!("{other}."),
+        })
+    }
 }
 
 fn saved(common: &Common) -> Result<HiperdriveProfile> {
     Ok(result_of!(Runner::open(common)?.run(HiperdriveJob::Save)?, HiperdriveOutput::Saved(profile) => *profile))
-}
-
-/// Returns a message if two profiles are not of the same device or the same drives. A profile without a serial number
-/// matches none.
-pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
-    let error =
-        profile::check_device(profile.get::<HiperdriveProfile>()?, &device.get::<HiperdriveProfile>()?.identity)
-            .err()?;
-    Some(match error {
-        profile::PlanError::OtherDevice { profile, device } => {
-            format!("The profile is of serial number {profile}, the device has {device}.")
-        }
-        other => format!("{other}."),
-    })
 }
 
 /// Returns the items of the profile that the device lacks. A place without a drive is one item, whatever its parameters.
@@ -58,28 +86,4 @@ fn absent(prepared: &Prepared) -> Vec<String> {
     let mut words: Vec<String> = words.collect();
     words.dedup();
     words
-}
-
-pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let options = restore_options(restore)?;
-    let profile = to_restore::<HiperdriveProfile>(restore, profile)?;
-    let mut runner = Runner::open(common)?;
-    let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
-    for types in &prepared.other_types {
-        output.remark(&words::other_type(types).terminal());
-    }
-    for words in absent(&prepared) {
-        output.remark(&words);
-    }
-    for item in &prepared.mounting_left {
-        let how = match item.0.base() {
-            REFERENCE => "a reference is never restored; set it with \"do hiperdrive set-position\"",
-            _ => "use --with-mounting to restore it",
-        };
-        output.remark(&format!("{item} belongs to the mounting and is not restored: {how}"));
-    }
-    let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
-    let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
-    let plan = shown(&prepared);
-    write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
 }

@@ -16,7 +16,7 @@ use clap::builder::PossibleValue;
 use self::args::{DoOptions, FindOptions, HiperfaceAction};
 use self::codes::CodeOption;
 use crate::app::Given;
-use crate::cli::args::{Command, Common, Restore, Simulate};
+use crate::cli::args::{Command, Common, Simulate};
 use crate::cli::commands::{CommandId, DeviceCommands, OwnOptions, options_of, values_of};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
@@ -24,7 +24,6 @@ use crate::cli::{Failure, Result};
 use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::{KIND, LineSettings};
 use crate::devices::hiperface::sim::{Bus, Config};
-use crate::profile::Body;
 use crate::units::{CharacterFormat, Moment};
 
 /// The commands for HIPERFACE encoders.
@@ -105,20 +104,8 @@ impl DeviceCommands for HiperfaceCommands {
         })
     }
 
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-        profiles::restore(common, output, restore, profile)
-    }
-
     fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
         simulated(output, arguments)
-    }
-
-    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
-        profiles::present(common, output, profile)
-    }
-
-    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
-        profiles::other_device(profile, device)
     }
 }
 

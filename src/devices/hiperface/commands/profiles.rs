@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use serde_json::json;
 
+use super::HiperfaceCommands;
 use super::write::{commit, operations, plan_text};
 use crate::cli::args::{Common, Restore, Save};
+use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::plan::PlanReport;
 use crate::cli::profiles::{Unrestored, save_profile, say_mounting_left, to_restore, write_restore};
@@ -30,6 +32,60 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     Ok(Done::Well)
 }
 
+impl ProfileCommands for HiperfaceCommands {
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        let profile = to_restore::<HiperfaceProfile>(restore, profile)?;
+        let options = RestoreOptions {
+            allow_other_device: restore.allow_other_device,
+            allow_other_type: restore.allow_other_type,
+            with_mounting: restore.with_mounting,
+            recreate: restore.recreate,
+            copy: answers(restore)?,
+        };
+        let mut runner = Runner::open(common)?;
+        let change = Change::Restore { profile: Box::new(profile), options };
+        let prepared =
+            result_of!(runner.run(HiperfaceJob::Prepare(change))?, HiperfaceOutput::Prepared(prepared) => *prepared);
+        if let Some(types) = prepared.other_type {
+            output.remark(&words::other_type(types).terminal());
+        }
+        check_answers(output, &prepared, restore.dry_run)?;
+        if let Some(text) = words::created_left(&prepared.created_left) {
+            output.remark(&text.terminal());
+        }
+        for item in &prepared.missing {
+            output.remark(&format!(
+                "{item} is not restored: it is missing in the profile or the encoder, or cannot be read"
+            ));
+        }
+        say_mounting_left(output, &prepared.mounting_left);
+        let redo = prepared.redo().iter().map(ToString::to_string).collect();
+        let missing = prepared.missing.iter().map(ToString::to_string).collect();
+        let left = Unrestored { unchanged: prepared.unchanged, missing, redo };
+        let plan = shown(&prepared);
+        write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
+    }
+
+    /// Reads the encoder for a comparison.
+    fn present(&self, common: &Common, output: &Output, _profile: Option<&Body>) -> Result<Body> {
+        let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
+        name_locked(output, &saved, "compared without its bytes");
+        Ok(Body::new(saved.profile))
+    }
+
+    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+        let (profile, device) =
+            (&profile.get::<HiperfaceProfile>()?.identity, &device.get::<HiperfaceProfile>()?.identity);
+        let same = (&profile.serial_number, profile.encoder_type) == (&device.serial_number, device.encoder_type);
+        (!same).then(|| {
+            format!(
+                "The profile is of {} (type {:02X}h), the encoder is {} (type {:02X}h).",
+                profile.serial_number, profile.encoder_type, device.serial_number, device.encoder_type
+            )
+        })
+    }
+}
+
 fn saved(runner: &mut Runner, options: SaveOptions) -> Result<Box<SavedProfile>> {
     Ok(result_of!(runner.run(HiperfaceJob::Save(options))?, HiperfaceOutput::Saved(saved) => saved))
 }
@@ -40,57 +96,6 @@ fn name_locked(output: &Output, saved: &SavedProfile, what: &str) {
             "Data field {field} is {what}: access code {code} is different. Specify it with --code {code}=HEX."
         ));
     }
-}
-
-/// Reads the encoder for a comparison.
-pub(super) fn present(common: &Common, output: &Output, _profile: Option<&Body>) -> Result<Body> {
-    let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
-    name_locked(output, &saved, "compared without its bytes");
-    Ok(Body::new(saved.profile))
-}
-
-/// Returns a message if two profiles are not of the same encoder.
-pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
-    let (profile, device) = (&profile.get::<HiperfaceProfile>()?.identity, &device.get::<HiperfaceProfile>()?.identity);
-    let same = (&profile.serial_number, profile.encoder_type) == (&device.serial_number, device.encoder_type);
-    (!same).then(|| {
-        format!(
-            "The profile is of {} (type {:02X}h), the encoder is {} (type {:02X}h).",
-            profile.serial_number, profile.encoder_type, device.serial_number, device.encoder_type
-        )
-    })
-}
-
-pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let profile = to_restore::<HiperfaceProfile>(restore, profile)?;
-    let options = RestoreOptions {
-        allow_other_device: restore.allow_other_device,
-        allow_other_type: restore.allow_other_type,
-        with_mounting: restore.with_mounting,
-        recreate: restore.recreate,
-        copy: answers(restore)?,
-    };
-    let mut runner = Runner::open(common)?;
-    let change = Change::Restore { profile: Box::new(profile), options };
-    let prepared =
-        result_of!(runner.run(HiperfaceJob::Prepare(change))?, HiperfaceOutput::Prepared(prepared) => *prepared);
-    if let Some(types) = prepared.other_type {
-        output.remark(&words::other_type(types).terminal());
-    }
-    check_answers(output, &prepared, restore.dry_run)?;
-    if let Some(text) = words::created_left(&prepared.created_left) {
-        output.remark(&text.terminal());
-    }
-    for item in &prepared.missing {
-        output
-            .remark(&format!("{item} is not restored: it is missing in the profile or the encoder, or cannot be read"));
-    }
-    say_mounting_left(output, &prepared.mounting_left);
-    let redo = prepared.redo().iter().map(ToString::to_string).collect();
-    let missing = prepared.missing.iter().map(ToString::to_string).collect();
-    let left = Unrestored { unchanged: prepared.unchanged, missing, redo };
-    let plan = shown(&prepared);
-    write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
 }
 
 /// Returns the answers of the command line about data fields whose bytes have no known meaning.

@@ -17,7 +17,7 @@ use clap::Arg;
 use clap::builder::PossibleValue;
 
 use self::args::{InterbusAction, WordOptions};
-use crate::cli::args::{Command, Common, Consenting, Restore, Simulate};
+use crate::cli::args::{Command, Common, Consenting, Simulate};
 use crate::cli::commands::{CommandId, DeviceCommands, options_of, values_of};
 use crate::cli::consent::{ask, can_ask};
 use crate::cli::output::Output;
@@ -27,7 +27,6 @@ use crate::devices::interbus::profile::{Item, ItemError};
 use crate::devices::interbus::protocol::KIND;
 use crate::devices::interbus::state::TEXTS;
 use crate::link::Scheme;
-use crate::profile::Body;
 
 /// The commands for INTERBUS encoders.
 pub(crate) struct InterbusCommands;
@@ -99,20 +98,8 @@ impl DeviceCommands for InterbusCommands {
         })
     }
 
-    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-        profiles::restore(common, output, restore, profile)
-    }
-
     fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
         simulate::simulated(output, arguments)
-    }
-
-    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
-        profiles::present(common, output, profile)
-    }
-
-    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
-        profiles::other_device(profile, device)
     }
 }
 

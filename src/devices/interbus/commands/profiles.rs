@@ -3,9 +3,11 @@
 use serde_json::json;
 
 use super::Disturbs;
+use super::InterbusCommands;
 use super::plan::{commit, prepare, shown};
 use super::run::{Runner, programs, survey};
 use crate::cli::args::{Common, Restore, Save};
+use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{Unrestored, restore_options, save_profile, say_mounting_left, to_restore, write_restore};
 use crate::cli::runner::unexpected;
@@ -24,14 +26,50 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     Ok(Done::Well)
 }
 
-/// Reads the encoder for a comparison: all of it, or as much as the profile contains. Reading a program switches the
-/// encoder's outputs.
-pub(super) fn present(common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
-    let profile = match profile.and_then(Body::get::<InterbusProfile>) {
-        None => saved(common, output)?,
-        Some(profile) => as_far_as(common, output, profile)?,
-    };
-    Ok(Body::new(profile))
+impl ProfileCommands for InterbusCommands {
+    fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
+        let options = restore_options(restore)?;
+        let profile = to_restore::<InterbusProfile>(restore, profile)?;
+        let mut runner = Runner::open(common)?;
+        let disturbs = if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs };
+        disturbs.begin(common, output, Some(&restore.consent))?;
+        let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
+        if let Some(types) = prepared.other_type {
+            output.remark(&words::other_type(types).terminal());
+        }
+        for item in &prepared.missing {
+            output.remark(&format!("{item} is not restored: the encoder does not have it"));
+        }
+        say_mounting_left(output, &prepared.mounting_left);
+        let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
+        let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+        let plan = shown(&prepared);
+        write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
+    }
+
+    /// Reads the encoder for a comparison: all of it, or as much as the profile contains. Reading a program switches the
+    /// encoder's outputs.
+    fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
+        let profile = match profile.and_then(Body::get::<InterbusProfile>) {
+            None => saved(common, output)?,
+            Some(profile) => as_far_as(common, output, profile)?,
+        };
+        Ok(Body::new(profile))
+    }
+
+    /// Returns a message if two profiles are not of the same encoder. One without a serial number matches none.
+    fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
+        let error =
+            profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity)
+                .err()?;
+        Some(match error {
+            PlanError::OtherType(types) => words::other_type(types).terminal(),
+            PlanError::OtherDevice { profile, device } => {
+                format!("The profile is of serial number {profile}, the encoder has {device}.")
+            }
+            other => format!("{other}."),
+        })
+    }
 }
 
 fn saved(common: &Common, output: &Output) -> Result<InterbusProfile> {
@@ -60,37 +98,4 @@ fn as_far_as(common: &Common, output: &Output, profile: &InterbusProfile) -> Res
         }
     }
     Ok(InterbusProfile::of(survey.identity.profile(), image, Recorded::default()))
-}
-
-/// Returns a message if two profiles are not of the same encoder. One without a serial number matches none.
-pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
-    let error =
-        profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity).err()?;
-    Some(match error {
-        PlanError::OtherType(types) => words::other_type(types).terminal(),
-        PlanError::OtherDevice { profile, device } => {
-            format!("The profile is of serial number {profile}, the encoder has {device}.")
-        }
-        other => format!("{other}."),
-    })
-}
-
-pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {
-    let options = restore_options(restore)?;
-    let profile = to_restore::<InterbusProfile>(restore, profile)?;
-    let mut runner = Runner::open(common)?;
-    let disturbs = if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs };
-    disturbs.begin(common, output, Some(&restore.consent))?;
-    let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
-    if let Some(types) = prepared.other_type {
-        output.remark(&words::other_type(types).terminal());
-    }
-    for item in &prepared.missing {
-        output.remark(&format!("{item} is not restored: the encoder does not have it"));
-    }
-    say_mounting_left(output, &prepared.mounting_left);
-    let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
-    let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
-    let plan = shown(&prepared);
-    write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
 }

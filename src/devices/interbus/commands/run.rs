@@ -5,7 +5,7 @@ use crate::app::Given;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::runner::{self, Runs, failed};
-use crate::devices::interbus::jobs::{DeviceMessage, Interbus, InterbusJob, InterbusOutput, JobStep};
+use crate::devices::interbus::jobs::{Interbus, InterbusJob, InterbusOutput, JobStep};
 use crate::devices::interbus::procedures::{Identity, Survey};
 use crate::devices::interbus::protocol::{Program, ProgramNumber, WindowShift};
 use crate::devices::interbus::state::explain as words;
@@ -15,14 +15,12 @@ use crate::worker::Session;
 /// A session with an INTERBUS encoder on its thread.
 pub(super) type Runner = runner::Runner<Interbus>;
 
+// Steps of the handshake are shown in the window only; a recording has their bytes.
 impl Runs for Interbus {
     type Context = ();
     const COMMANDS: &'static dyn DeviceCommands = &InterbusCommands;
 
     fn begin(_session: &mut Session<Self>, _given: &Given) {}
-
-    /// Steps of the handshake are shown in the window only; a recording has their bytes.
-    fn print_message(_remark: &DeviceMessage) {}
 
     fn step(doing: &JobStep) -> String {
         doing.to_string()

@@ -15,7 +15,7 @@ use clap::{Arg, ArgMatches, Subcommand};
 use self::args::{LayoutOption, Ssi, SsiLayout};
 use crate::buses::bridge::sim::{Adapter, Attachable};
 use crate::cli::args::{Command, Common, Restore, Simulate};
-use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, options_of, parse};
+use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, ProfileCommands, options_of, parse};
 use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
@@ -76,12 +76,14 @@ impl DeviceCommands for SsiCommands {
         })
     }
 
-    fn restore(&self, _: &Common, _: &Output, _: &Restore, _: Body) -> Result {
-        refuse("restore", SET)
-    }
-
     fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
         simulated(output, arguments)
+    }
+}
+
+impl ProfileCommands for SsiCommands {
+    fn restore(&self, _: &Common, _: &Output, _: &Restore, _: Body) -> Result {
+        refuse("restore", SET)
     }
 
     fn present(&self, _: &Common, _: &Output, _: Option<&Body>) -> Result<Body> {

@@ -1,7 +1,5 @@
 //! Running jobs on an SSI encoder behind an adapter.
 
-use std::convert::Infallible;
-
 use super::SsiCommands;
 use super::layout::Chosen;
 use crate::app::Given;
@@ -27,10 +25,6 @@ impl Runs for Ssi {
 
     fn begin(session: &mut Session<Self>, _given: &Given) -> Asking {
         session.station().asking
-    }
-
-    fn print_message(remark: &Infallible) {
-        match *remark {}
     }
 
     fn step(_: &JobStep) -> String {
