@@ -224,9 +224,16 @@ fn show_restored(output: &Output, spent: &WriteSummary, left: &Unrestored) -> Re
     Ok(Done::Well)
 }
 
-/// Prints the result of writing an item; `operations` are those that were carried out.
-pub(crate) fn show_changed(output: &Output, item: &str, operations: &[Json], spent: &WriteSummary) -> Result {
-    show_done(output, item, operations, spent, &[], "")
+/// Prints the result of writing an item: `operations` are those that were carried out, `changes` their old and new values as
+/// text.
+pub(crate) fn show_changed(
+    output: &Output,
+    item: &str,
+    operations: &[Json],
+    changes: &str,
+    spent: &WriteSummary,
+) -> Result {
+    show_done(output, item, operations, spent, &[], changes)
 }
 
 /// Prints the result of an action.

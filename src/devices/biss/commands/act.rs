@@ -9,7 +9,7 @@ use crate::devices::biss::state::TEXTS;
 use serde_json::json;
 
 use super::args::{BissAction, DoOptions};
-use super::plan::{CALIBRATION, commit, operations, prepare, results, results_text};
+use super::plan::{CALIBRATION, change_lines, commit, operations, prepare, results, results_text};
 use super::run::{Runner, registers};
 use crate::app::{Kinds, explain};
 use crate::cli::args::{Common, Do};
@@ -118,13 +118,14 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     let mut runner = Runner::open(common)?;
     let change = change(&mut runner)?;
     let prepared = prepare(&mut runner, change)?;
-    let operations = operations(&prepared.plan);
+    let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let usual = if can_ask() { PERSON } else { super::PATIENCE };
     let DoOptions { timeout } = act.own.read()?;
     let patience = timeout.map_or(usual, |seconds| Duration::from_secs(seconds.into()));
     let (spent, outcomes) = commit(&mut runner, output, prepared, &act.consent, patience)?;
     let name = act.action.clone();
-    let done = show_done(output, &name, &operations, &spent, &results(&outcomes), &results_text(&outcomes))?;
+    let text = format!("{changes}{}", results_text(&outcomes));
+    let done = show_done(output, &name, &operations, &spent, &results(&outcomes), &text)?;
     if outcomes.iter().all(passes) {
         Ok(done)
     } else {

@@ -11,7 +11,7 @@ use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
-use crate::cli::plan::{PlanReport, PlanStep, WriteSummary, warn};
+use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary, warn};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Change, Commit, OperatorPresence, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::procedure::{Motion, Outcome, Unattended};
 use crate::devices::biss::procedures::write::Written;
@@ -65,6 +65,11 @@ pub(super) fn shown(prepared: &Prepared) -> PlanReport {
 /// Returns the operations as JSON; registers that are saved together have no cost of their own.
 pub(super) fn operations(plan: &BissPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
+}
+
+/// Returns the operations with old and new values, a line each.
+pub(super) fn change_lines(plan: &BissPlan) -> String {
+    plan::lines(plan.ops.iter().flat_map(steps)).text()
 }
 
 fn steps(op: &Op) -> Vec<PlanStep> {

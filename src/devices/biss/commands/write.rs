@@ -1,6 +1,6 @@
 //! `write`: writes registers by name.
 
-use super::plan::{commit, operations, prepare};
+use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;
 use crate::bits::parse_hex;
 use crate::cli::args::{Common, Write};
@@ -18,9 +18,9 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     require_consent(&write.consent)?;
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, Change::Write(vec![(range, bytes)]))?;
-    let operations = operations(&prepared.plan);
+    let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let (spent, _) = commit(&mut runner, output, prepared, &write.consent, super::PATIENCE)?;
-    show_changed(output, &range.to_string(), &operations, &spent)
+    show_changed(output, &range.to_string(), &operations, &changes, &spent)
 }
 
 /// Returns a number for one register, hex bytes for a run.

@@ -35,13 +35,13 @@ pub(super) fn change_and_show(
     let mut runner = Runner::open(common)?;
     let prepared =
         result_of!(runner.run(HiperfaceJob::Prepare(change))?, HiperfaceOutput::Prepared(prepared) => *prepared);
-    let operations = operations(&prepared.plan);
+    let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan).text());
     let changes_code = prepared.plan.ops.iter().any(|op| matches!(op, Op::ChangeCode { .. }));
     let spent = commit(&mut runner, output, prepared, consent)?;
     if changes_code {
         output.remark("An access code cannot be read back; the encoder acknowledged it.");
     }
-    show_changed(output, item, &operations, &spent)
+    show_changed(output, item, &operations, &changes, &spent)
 }
 
 fn change_of(item: Item, value: &str) -> Result<Change> {
@@ -122,11 +122,7 @@ pub(super) fn commit(
 /// Returns the plan as text: each operation old → new, and the cost.
 pub(super) fn plan_text(prepared: &Prepared) -> String {
     let plan = &prepared.plan;
-    let mut lines = Lines::default();
-    for op in &plan.ops {
-        let (old, new) = change_words(op);
-        lines.add(op.item().to_string(), format!("{old}  →  {new}"));
-    }
+    let mut lines = change_lines(plan);
     if let Some(wanted) = prepared.wanted_position {
         lines.add(
             "wanted",
@@ -134,6 +130,16 @@ pub(super) fn plan_text(prepared: &Prepared) -> String {
         );
     }
     plan::text(plan, lines, prepared.cycles_seen, None)
+}
+
+/// Returns the operations with old and new values, a line each.
+fn change_lines(plan: &HiperfacePlan) -> Lines {
+    let mut lines = Lines::default();
+    for op in &plan.ops {
+        let (old, new) = change_words(op);
+        lines.add(op.item().to_string(), format!("{old}  →  {new}"));
+    }
+    lines
 }
 
 pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {

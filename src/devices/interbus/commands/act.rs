@@ -5,13 +5,13 @@ use serde_json::json;
 use super::Disturbs;
 use super::args::InterbusAction;
 use super::inspect::mode;
-use super::plan::{commit, operations, prepare};
+use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;
 use super::value::value;
 use crate::cli::args::{Common, Do};
 use crate::cli::consent::require_consent;
 use crate::cli::output::Output;
-use crate::cli::profiles::show_done;
+use crate::cli::profiles::show_changed;
 use crate::cli::{Done, Failure, Result, check};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{Item, ItemValue};
@@ -79,7 +79,7 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     Disturbs::Reading.announce(output);
     let change = change(&mut runner)?;
     let prepared = prepare(&mut runner, output, change)?;
-    let operations = operations(&prepared.plan);
+    let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
-    show_done(output, &act.action, &operations, &spent, &[], "")
+    show_changed(output, &act.action, &operations, &changes, &spent)
 }

@@ -7,7 +7,7 @@ use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
-use crate::cli::plan::{PlanReport, PlanStep, WriteSummary};
+use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear};
 use crate::devices::interbus::profile::{InterbusPlan, Op, programs_needed};
 use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
@@ -75,6 +75,11 @@ pub(super) fn shown(prepared: &Prepared) -> PlanReport {
 /// Returns the operations as JSON; items that are stored together have no cost of their own.
 pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
+}
+
+/// Returns the operations with old and new values, a line each.
+pub(super) fn change_lines(plan: &InterbusPlan) -> String {
+    plan::lines(plan.ops.iter().flat_map(steps)).text()
 }
 
 fn steps(op: &Op) -> Vec<PlanStep> {

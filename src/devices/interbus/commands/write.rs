@@ -1,6 +1,6 @@
 //! `write`: one item.
 
-use super::plan::{commit, operations, prepare};
+use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;
 use super::value::value;
 use super::{Disturbs, item};
@@ -19,7 +19,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let disturbs = if item.parameter().is_some() { Disturbs::Reading } else { Disturbs::Programs };
     disturbs.begin(common, output, Some(&write.consent))?;
     let prepared = prepare(&mut runner, output, Change::Item(item, value))?;
-    let operations = operations(&prepared.plan);
+    let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
-    show_changed(output, &item.to_string(), &operations, &spent)
+    show_changed(output, &item.to_string(), &operations, &changes, &spent)
 }
