@@ -9,13 +9,16 @@ use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
 use encoder_studio::devices::hiperdrive::jobs::{
     Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, open,
 };
-use encoder_studio::devices::hiperdrive::procedures::{DiscoveredDevice, Error, RequestedItem, Sample, discover};
+use encoder_studio::devices::hiperdrive::procedures::cyclic::ParameterResult;
+use encoder_studio::devices::hiperdrive::procedures::{
+    DiscoveredDevice, Error, RequestedItem, Sample, Temperature, discover,
+};
 use encoder_studio::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Value, Variant};
 use encoder_studio::link::{Cancel, RealClock, UdpBroadcast};
 use encoder_studio::profile::Consent;
 use encoder_studio::store::Store;
-use encoder_studio::worker::Session;
+use encoder_studio::worker::{Session, Watched};
 
 use super::support::{Bench, Foreign, Ran};
 
@@ -321,6 +324,49 @@ fn the_cyclic_connection_is_opened_as_accepted_and_closed() {
         assert!(!motion.is_open(), "{options:?}");
         // No motion is requested, so that no word but 0 is sent, and it is already 0.
         assert_eq!(foreign.requests(), [opened, "CLOSE"], "{options:?}");
+    }
+}
+
+/// Reference 6. The values are the target's own: 29 °C in parameter 11, 33 °C in 119.
+#[test]
+fn temperatures_are_read_through_the_parameter_words() {
+    let bench = Bench::new();
+    let (device, drive) = (ParameterNumber::new(11).unwrap(), ParameterNumber::new(119).unwrap());
+    let cases: [(&[&str], Option<ParameterResult>); 5] = [
+        (&["--words=0"], Some(ParameterResult::Number(29))),
+        (&["--words=300"], Some(ParameterResult::Number(29))),
+        (&["--words=0", "--topology=hub4"], Some(ParameterResult::Number(29))),
+        (&[], Some(ParameterResult::NoReply)),
+        (&["--no-words"], None),
+    ];
+    for (options, expected) in cases {
+        let Some(foreign) = bench.target(options) else { return };
+        let mut session = session(&bench, &foreign, "");
+        let motion = session.motion();
+        session.run_inline(HiperdriveJob::Take).unwrap();
+        comes("what the drive says", || motion.view().link.received > 3);
+        let mut watch = |what, celsius| {
+            let Watched::Sample(Sample::Temperature(reading)) = session.watch_value(&what).unwrap() else { panic!() };
+            assert_eq!(reading.celsius, Some(celsius), "{options:?}");
+        };
+        let readings = || motion.view().parameters;
+        comes("both readings", || {
+            watch(Temperature::Device, 29);
+            watch(Temperature::Drive(DriveNumber::FIRST), 33);
+            expected.is_none() || readings().is_some_and(|readings| readings.len() == 2)
+        });
+        let result = |number| readings().and_then(|own| own.get(&number).map(|reading| reading.result));
+        assert_eq!(result(device), expected, "{options:?}");
+        let of_drive = expected.map(|result| match result {
+            ParameterResult::Number(_) => ParameterResult::Number(33),
+            other => other,
+        });
+        assert_eq!(result(drive), of_drive, "{options:?}");
+        watch(Temperature::Device, 29);
+        session.run_inline(HiperdriveJob::Give).unwrap();
+        let mut requests = foreign.requests();
+        requests.retain(|line| line.starts_with("WORDS") && !["WORDS 1 11", "WORDS 1 119"].contains(&line.as_str()));
+        assert!(requests.is_empty(), "only these are read, and nothing is written: {requests:?}");
     }
 }
 

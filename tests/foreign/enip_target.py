@@ -64,6 +64,7 @@ class Station:
         self.busy_until = 0.0
         self.network = {3: struct.pack("<I", 2), 5: struct.pack("<IIIIIH", 0xC0A80107, 0xFFFFFF00, 0, 0, 0, 0)}
         self.acknowledged = {}
+        self.requested, self.answered, self.answers = bytes(8), bytes(8), []
         self.answers_after = 0.0
 
     def note(self, line):
@@ -178,7 +179,33 @@ class Station:
                 image += struct.pack(self.options.struct + "Hhi", *actual)
             else:
                 image += bytes(8)
-        return image + bytes(8 if with_words else 0)
+        return image + (self.words() if with_words else b"")
+
+    def request_words(self, request):
+        """Section 6: the words of a packet; a request counts once, however often it is repeated."""
+        if request != self.requested and self.options.words is not None:
+            self.requested = request
+            self.answers.append((time.monotonic() + self.options.words / 1e3, self.answer(request)))
+
+    def words(self):
+        while self.answers and self.answers[0][0] <= time.monotonic():
+            self.answered = self.answers.pop(0)[1]
+        return self.answered
+
+    def answer(self, request):
+        key, index, _value = struct.unpack(self.options.struct + "HHI", request)
+        task, number = key >> 12, key & 0x07FF
+        if task == 0:
+            return bytes(8)
+        self.note(f"WORDS {task} {number}")
+        code, value = 7, 0
+        with contextlib.suppress(cip.Refused):
+            kind = self.kind(number, self.row(number)[2])
+            if task == 1 and kind != TEXT:
+                wide = struct.calcsize("<" + kind) == 4
+                code, value = (2, 0xFFFFFFFF) if wide else (1, 0xFFFF)
+                value &= self.values[number]
+        return struct.pack(self.options.struct + "HHI", code << 12 | number, index, value)
 
 
 class Target:
@@ -305,6 +332,8 @@ class Target:
         for drive in self.station.plugged:
             word, _speed, _torque, target = struct.unpack_from(self.options.struct + "HBBi", data, 8 * (drive - 1))
             self.station.obey(drive, word, target)
+        if self.connection["words"]:
+            self.station.request_words(data[8 * self.station.places:][:8])
 
     def tick(self):
         connection, now = self.connection, time.monotonic()
@@ -409,6 +438,7 @@ def arguments():
     add("--owned", action="store_true", help="another master has the cyclic connection")
     add("--multicast-only", action="store_true")
     add("--no-words", action="store_true", help="process data without parameter words")
+    add("--words", type=int, help="milliseconds until a request in the parameter words is answered; not answered without it")
     add("--silent-after", type=int, help="requests after which nothing is answered")
     add("--vanish-after", type=int, help="requests after which the target is gone")
     add("--forget", type=int, help="the session is forgotten with every Nth request")

@@ -7,9 +7,11 @@ use super::commit::commit as carry_through;
 use super::rules_refresh::RulesRefresh;
 use super::{Commit, Committed, Cyclic, DeviceMessage, Hiperdrive, JobError, Motion, ProgressSink};
 use crate::buses::ethernet_ip::protocol::ForwardClose;
-use crate::devices::hiperdrive::procedures::cyclic::CyclicLost;
-use crate::devices::hiperdrive::procedures::{DriveLimits, Error, GROUPS, Identity, Rules, Survey, identify};
-use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, ParameterNumber, Value};
+use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, ParameterReading, ParameterResult};
+use crate::devices::hiperdrive::procedures::{
+    DriveLimits, Error, GROUPS, Identity, Rules, Survey, Temperature, TemperatureReading, identify,
+};
+use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, ParameterNumber, PkwError, Value};
 use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
 use crate::units::Moment;
 use crate::worker::SessionContext;
@@ -52,6 +54,17 @@ impl Control {
         let view = self.motion.view();
         let speaks = view.open && view.link.received > 0;
         view.drives.iter().find(|own| speaks && own.number == drive).map(|own| own.actual)
+    }
+
+    /// Returns a temperature that was read through the parameter words of the cyclic connection, if it has them and the
+    /// device replied; the next is requested.
+    pub(super) fn temperature(&self, what: Temperature) -> Result<Option<TemperatureReading>, Error> {
+        let reading = self.motion.watch_parameter(what.parameter()?);
+        Ok(reading.and_then(|ParameterReading { at, result }| match result {
+            ParameterResult::Number(celsius) => Some(TemperatureReading { at, what, celsius: Some(celsius) }),
+            ParameterResult::Refused(PkwError::NO_PARAMETER) => Some(TemperatureReading { at, what, celsius: None }),
+            ParameterResult::Refused(_) | ParameterResult::NoReply => None,
+        }))
     }
 
     /// Returns the device and its drives while drives may be moved.

@@ -144,6 +144,7 @@ impl Pump {
             }
         }
         self.apply_commands();
+        self.drives.watch_parameters(&self.motion.watched_parameters());
         let now = self.clock.now();
         let packet = self.motion.with_wanted(|intent, permit| self.drives.poll(now, intent, permit));
         let sent = packet.map_or(Ok(()), |packet| self.port.send(&packet));

@@ -174,7 +174,10 @@ impl Device for Hiperdrive {
 
     fn watch(&mut self, desk: &mut SessionContext, what: &Temperature) -> Result<Watched<Sample>, JobError> {
         self.let_go_of_lost(desk);
-        let reading = temperature(&mut self.master(desk), *what)?;
+        let reading = match self.control.temperature(*what)? {
+            Some(reading) => reading,
+            None => temperature(&mut self.master(desk), *what)?,
+        };
         let sample = Sample::Temperature(reading);
         Ok(if reading.celsius.is_some() { Watched::Sample(sample) } else { Watched::Refused(sample) })
     }

@@ -4,12 +4,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use super::session_watch::SessionWatch;
-use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, Drives, LinkFigures};
+use crate::devices::hiperdrive::procedures::cyclic::{
+    CyclicLost, Drives, LinkFigures, ParameterReading, ParameterReadings,
+};
 use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, Intent, Lock, MotionRequest, Permit, Phase};
 use crate::devices::hiperdrive::procedures::{DriveLimits, LimitsSeen};
-use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, Setpoint};
+use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, ParameterNumber, Setpoint};
 use crate::link::Clock;
 use crate::units::Moment;
 
@@ -28,6 +31,8 @@ struct Cell {
     limits: BTreeMap<DriveNumber, DriveLimits>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
+    /// Parameters to be read through the parameter words, with the time of the latest request for each.
+    watched: BTreeMap<ParameterNumber, Moment>,
     /// The watch over explicit messages.
     session: SessionWatch,
     punctual: bool,
@@ -56,6 +61,8 @@ pub struct MotionSnapshot {
     pub drives: Vec<DriveView>,
     /// The connection.
     pub link: LinkFigures,
+    /// Parameters read through the parameter words; `None` if the connection has none.
+    pub parameters: Option<ParameterReadings>,
     /// If set, the system gives the connection's thread priority over all ordinary ones.
     pub punctual: bool,
     /// Why it was lost without being closed.
@@ -80,6 +87,9 @@ pub struct DriveView {
     pub ended: Option<(u64, Ended)>,
 }
 
+/// How long a parameter is read after the latest request, and a reading is recent.
+const WATCHED: Duration = Duration::from_secs(5);
+
 impl Motion {
     /// Creates it without a request and without a permit.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
@@ -88,6 +98,7 @@ impl Motion {
             intent,
             limits: BTreeMap::new(),
             experts: BTreeSet::new(),
+            watched: BTreeMap::new(),
             session: SessionWatch::default(),
             punctual: false,
             view: MotionSnapshot::default(),
@@ -192,6 +203,24 @@ impl Motion {
         }
     }
 
+    /// Requests that a parameter is read through the parameter words of the cyclic connection for some time. Returns its
+    /// latest reading, unless it is old; `None` also without such a connection.
+    pub fn watch_parameter(&self, number: ParameterNumber) -> Option<ParameterReading> {
+        let now = self.0.clock.now();
+        let mut cell = self.lock();
+        cell.watched.insert(number, now);
+        let readings = cell.view.parameters.as_ref().filter(|_| cell.view.open)?;
+        readings.get(&number).filter(|reading| now.since(reading.at) < WATCHED).copied()
+    }
+
+    /// Returns the parameters to be read through the parameter words.
+    pub(super) fn watched_parameters(&self) -> Vec<ParameterNumber> {
+        let now = self.0.clock.now();
+        let mut cell = self.lock();
+        cell.watched.retain(|_, requested| now.since(*requested) < WATCHED);
+        cell.watched.keys().copied().collect()
+    }
+
     /// Returns the present permit of a drive, with everything considered.
     pub fn permitted(&self, drive: DriveNumber) -> Permit {
         let now = self.0.clock.now();
@@ -243,6 +272,7 @@ impl Motion {
             open: !drives.is_ending(),
             drives: views,
             link: drives.figures().clone(),
+            parameters: drives.parameters().cloned(),
             punctual: false,
             lost: drives.lost().cloned(),
         };
@@ -322,8 +352,6 @@ impl fmt::Debug for Motion {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use super::*;
     use crate::devices::hiperdrive::procedures::dead_man::Effort;
     use crate::link::VirtualClock;

@@ -11,9 +11,11 @@
 mod connection;
 mod drives;
 mod figures;
+mod parameter_words;
 #[cfg(test)]
 mod tests;
 
 pub use connection::Connection;
 pub use drives::Drives;
 pub use figures::{Bucket, CyclicLost, Histogram, LinkFigures};
+pub use parameter_words::{ParameterReading, ParameterReadings, ParameterResult, ParameterWords};

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use super::{Connection, CyclicLost, LinkFigures};
+use super::{Connection, CyclicLost, LinkFigures, ParameterReadings, ParameterWords};
 use crate::devices::hiperdrive::procedures::Opened;
 use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, Intent, Permit};
-use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, OutData, OutImage};
+use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, OutData, OutImage, ParameterNumber};
 use crate::units::Moment;
 
 /// Drives behind a cyclic connection.
@@ -13,6 +13,8 @@ use crate::units::Moment;
 pub struct Drives {
     connection: Connection,
     controlled: Vec<ControlledDrive>,
+    /// If the connection has parameter words.
+    words: Option<ParameterWords>,
     /// Further places of the image.
     places: usize,
     lost: Option<CyclicLost>,
@@ -49,6 +51,7 @@ impl Drives {
         Drives {
             connection: Connection::new(opened, now),
             controlled: men,
+            words: opened.layout.pkw.then(ParameterWords::default),
             places: places.into(),
             lost: None,
             ending: None,
@@ -63,6 +66,18 @@ impl Drives {
     /// Returns the measured figures.
     pub const fn figures(&self) -> &LinkFigures {
         self.connection.figures()
+    }
+
+    /// Sets the parameters that are read through the parameter words, if the connection has them.
+    pub fn watch_parameters(&mut self, watched: &[ParameterNumber]) {
+        if let Some(words) = &mut self.words {
+            words.watch(watched);
+        }
+    }
+
+    /// Returns the latest readings of the watched parameters; `None` without parameter words.
+    pub fn parameters(&self) -> Option<&ParameterReadings> {
+        self.words.as_ref().map(ParameterWords::readings)
     }
 
     /// Returns why it has ended without being closed.
@@ -103,6 +118,9 @@ impl Drives {
         for man in &mut self.controlled {
             man.received = image.drives.get(place(man.dead_man.drive())).copied();
         }
+        if let (Some(own), Some(received)) = (&mut self.words, image.pkw) {
+            own.receive(now, received);
+        }
         true
     }
 
@@ -139,7 +157,9 @@ impl Drives {
             self.lost.get_or_insert(CyclicLost::DoesNotStand(number));
             self.close(now);
         }
-        Some(self.connection.packet(now, &OutImage { drives, pkw: None }))
+        let ending = self.is_ending();
+        let pkw = self.words.as_mut().filter(|_| !ending).map(|words| words.request(now));
+        Some(self.connection.packet(now, &OutImage { drives, pkw }))
     }
 
     fn look_whether_it_ends(&mut self, now: Moment, drives: &mut [OutData]) {

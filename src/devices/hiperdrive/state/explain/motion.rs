@@ -1,11 +1,12 @@
 //! Motion as text: why a drive may not move, why an act was refused, how one ended.
 
-use super::names::state;
+use super::names::{parameter, state};
 use crate::app::explain::link;
 use crate::app::{Severity, Text};
-use crate::devices::hiperdrive::procedures::cyclic::CyclicLost;
+use crate::devices::hiperdrive::jobs::MotionSnapshot;
+use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, ParameterReading, ParameterResult};
 use crate::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, Phase, Refusal};
-use crate::devices::hiperdrive::protocol::State;
+use crate::devices::hiperdrive::protocol::{ParameterNumber, State};
 use crate::devices::hiperdrive::state::TEXTS;
 
 /// Returns why motion is locked, and what to do.
@@ -122,5 +123,34 @@ pub fn lost(lost: Option<&CyclicLost>) -> Text {
         Some(CyclicLost::Session) => TEXTS.text("hd_lost.session"),
         Some(CyclicLost::Failed) => TEXTS.text("hd_lost.failed"),
         None => TEXTS.text("hd_end.lost"),
+    }
+}
+
+/// Returns what is read through the parameter words of the cyclic connection.
+pub fn parameter_words(view: &MotionSnapshot) -> Text {
+    let Some(readings) = &view.parameters else { return TEXTS.text("hd_link.words_absent") };
+    if readings.is_empty() {
+        return TEXTS.text("hd_link.words_idle");
+    }
+    let texts: Vec<Text> =
+        readings.iter().filter_map(|(number, reading)| parameter_reading(*number, reading)).collect();
+    if texts.is_empty() {
+        return TEXTS.text("hd_link.words_silent");
+    }
+    TEXTS.text("hd_link.words_read").with_list("readings", texts)
+}
+
+fn parameter_reading(number: ParameterNumber, reading: &ParameterReading) -> Option<Text> {
+    let unit = number.row().map_or("", |row| row.unit);
+    match reading.result {
+        ParameterResult::Number(value) => {
+            let text = TEXTS.text("hd_link.words_value").with_text("parameter", parameter(number));
+            Some(text.with("value", value).with("unit", unit))
+        }
+        ParameterResult::Refused(why) => {
+            let text = TEXTS.text("hd_link.words_refused").with_text("parameter", parameter(number));
+            Some(text.with("code", why.code()))
+        }
+        ParameterResult::NoReply => None,
     }
 }

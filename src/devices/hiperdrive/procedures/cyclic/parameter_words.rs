@@ -1,0 +1,242 @@
+//! Parameters read through the parameter words of a cyclic connection, one at a time and again and again (reference 6). They
+//! are only read: values are written by explicit messages, through a plan.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use crate::devices::hiperdrive::protocol::{Answer, ParameterNumber, Pkw, PkwError, Task, Value};
+use crate::units::Moment;
+
+/// Reads the watched parameters in turn.
+///
+/// A request is repeated in every packet until its reply has arrived. Before the next request the words are cleared in both
+/// directions, so that a late reply is never taken for the reply to a later request of the same parameter.
+#[derive(Clone, Debug, Default)]
+pub struct ParameterWords {
+    watched: Vec<ParameterNumber>,
+    readings: ParameterReadings,
+    phase: Phase,
+    /// Index of the parameter that is requested next.
+    next: usize,
+}
+
+/// The latest reading of each watched parameter.
+pub type ParameterReadings = BTreeMap<ParameterNumber, ParameterReading>;
+
+/// Result of reading a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ParameterReading {
+    /// When the reply arrived, or the time limit ended.
+    pub at: Moment,
+    pub result: ParameterResult,
+}
+
+/// Result of a request in the parameter words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterResult {
+    /// The value, in the unit of the parameter.
+    Number(i64),
+    /// The device refused the request.
+    Refused(PkwError),
+    /// The device did not reply within the time limit.
+    NoReply,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+enum Phase {
+    /// Nothing is requested, and the device has not shown this yet.
+    #[default]
+    Clear,
+    /// The same since that moment, with a parameter to read.
+    Clearing { since: Moment },
+    /// Nothing is requested, and the device shows this.
+    Ready,
+    /// A parameter is requested.
+    Reading { number: ParameterNumber, since: Moment },
+}
+
+/// Time limit for a reply; the manual states none (`U`).
+const LIMIT: Duration = Duration::from_secs(1);
+
+impl ParameterWords {
+    /// Sets the parameters that are read. The readings of others are dropped.
+    pub fn watch(&mut self, watched: &[ParameterNumber]) {
+        if self.watched != watched {
+            self.watched = watched.to_vec();
+            self.readings.retain(|number, _| watched.contains(number));
+        }
+    }
+
+    /// Returns the latest readings.
+    pub const fn readings(&self) -> &ParameterReadings {
+        &self.readings
+    }
+
+    /// Returns the words of the next packet.
+    pub fn request(&mut self, now: Moment) -> Pkw {
+        match self.phase {
+            Phase::Clear if !self.watched.is_empty() => self.phase = Phase::Clearing { since: now },
+            Phase::Clearing { since } if now.since(since) > LIMIT => {
+                let silent = ParameterReading { at: now, result: ParameterResult::NoReply };
+                self.readings.extend(self.watched.iter().map(|number| (*number, silent)));
+                self.phase = Phase::Clear;
+            }
+            Phase::Reading { number, since } if now.since(since) > LIMIT => {
+                self.finish(number, ParameterReading { at: now, result: ParameterResult::NoReply });
+            }
+            Phase::Ready => {
+                let after = self.next + 1;
+                if let Some(number) = self.watched.get(self.next).or(self.watched.first()) {
+                    self.phase = Phase::Reading { number: *number, since: now };
+                    self.next = if after < self.watched.len() { after } else { 0 };
+                }
+            }
+            _ => {}
+        }
+        match self.phase {
+            Phase::Reading { number, .. } => read(number),
+            _ => Pkw::default(),
+        }
+    }
+
+    /// Handles the words of a received packet.
+    pub fn receive(&mut self, now: Moment, words: Pkw) {
+        match self.phase {
+            Phase::Clearing { .. } if words.answer_to(Pkw::default()).is_some() => self.phase = Phase::Ready,
+            Phase::Reading { number, .. } => {
+                if let Some(result) = words.answer_to(read(number)).and_then(|answer| result(number, words, answer)) {
+                    self.finish(number, ParameterReading { at: now, result });
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn finish(&mut self, number: ParameterNumber, reading: ParameterReading) {
+        if self.watched.contains(&number) {
+            self.readings.insert(number, reading);
+        }
+        self.phase = Phase::Clear;
+    }
+}
+
+fn read(number: ParameterNumber) -> Pkw {
+    Pkw::request(Task::Read, number.get(), 0, 0)
+}
+
+/// Returns the result of an answer; `None` if it is not one of a number. The lower bytes contain a shorter number.
+fn result(number: ParameterNumber, words: Pkw, answer: Answer) -> Option<ParameterResult> {
+    if let Answer::Refused(why) = answer {
+        return Some(ParameterResult::Refused(why));
+    }
+    let kind = number.row()?.kind;
+    let bytes = words.pwe.to_le_bytes();
+    match kind.parse(bytes.get(..kind.length()?)?).ok()? {
+        Value::Number(value) => Some(ParameterResult::Number(value)),
+        Value::Text(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::hiperdrive::protocol::ByteOrder;
+
+    fn at(ms: u64) -> Moment {
+        Moment::START + Duration::from_millis(ms)
+    }
+
+    fn words(text: &str) -> Pkw {
+        let bytes: Vec<u8> = text.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect();
+        Pkw::parse(bytes.try_into().unwrap(), ByteOrder::Little)
+    }
+
+    fn number(number: u16) -> ParameterNumber {
+        ParameterNumber::new(number).unwrap()
+    }
+
+    const CLEAR: &str = "00 00 00 00 00 00 00 00";
+    /// Reference 9: reading parameter 166, and its value 350.
+    const READ_166: &str = "A6 10 00 00 00 00 00 00";
+    const IS_350: &str = "A6 10 00 00 5E 01 00 00";
+
+    #[test]
+    fn a_parameter_is_requested_until_its_reply_and_again_after_clearing() {
+        let mut own = ParameterWords::default();
+        assert_eq!(own.request(at(0)), words(CLEAR), "nothing is watched");
+        own.watch(&[number(166)]);
+        assert_eq!(own.request(at(10)), words(CLEAR));
+        own.receive(at(15), words(CLEAR));
+        for ms in [20, 30, 40] {
+            assert_eq!(own.request(at(ms)), words(READ_166));
+            own.receive(at(ms + 5), words(CLEAR));
+        }
+        own.receive(at(48), words(IS_350));
+        let reading = ParameterReading { at: at(48), result: ParameterResult::Number(350) };
+        assert_eq!(own.readings().get(&number(166)), Some(&reading));
+        // The old reply stands until the device shows that nothing is requested.
+        for ms in [50, 60] {
+            assert_eq!(own.request(at(ms)), words(CLEAR));
+            own.receive(at(ms + 5), words(IS_350));
+        }
+        own.receive(at(68), words(CLEAR));
+        assert_eq!(own.request(at(70)), words(READ_166));
+        assert_eq!(own.readings().get(&number(166)), Some(&reading), "not read again yet");
+    }
+
+    #[test]
+    fn replies_to_other_requests_do_not_count() {
+        let mut own = ParameterWords::default();
+        own.watch(&[number(166)]);
+        own.request(at(0));
+        own.receive(at(1), words(CLEAR));
+        own.request(at(10));
+        // Another parameter, an answer of writing an array, nothing.
+        for other in ["A5 10 00 00 5E 01 00 00", "A6 40 00 00 5E 01 00 00", CLEAR] {
+            own.receive(at(11), words(other));
+        }
+        assert!(own.readings().is_empty());
+        own.receive(at(12), words("A6 70 00 00 11 00 00 00"));
+        let refused = ParameterResult::Refused(PkwError::STATE);
+        assert_eq!(own.readings().get(&number(166)).map(|reading| reading.result), Some(refused));
+    }
+
+    #[test]
+    fn numbers_have_the_size_and_sign_of_their_parameter() {
+        // 11 is I16, 119 I8, 107 I32: −5 each, with other bits set where the number has none.
+        let cases =
+            [(11, "0B 10 00 00 FB FF 00 00"), (119, "77 10 00 00 FB 00 00 00"), (107, "6B 20 00 00 FB FF FF FF")];
+        for (parameter, reply) in cases {
+            let mut own = ParameterWords::default();
+            own.watch(&[number(parameter)]);
+            own.request(at(0));
+            own.receive(at(1), words(CLEAR));
+            own.request(at(10));
+            own.receive(at(11), words(reply));
+            let result = own.readings().get(&number(parameter)).map(|reading| reading.result);
+            assert_eq!(result, Some(ParameterResult::Number(-5)), "{parameter}");
+        }
+    }
+
+    #[test]
+    fn a_device_that_does_not_reply_is_reported_and_asked_again() {
+        let mut own = ParameterWords::default();
+        own.watch(&[number(11), number(119)]);
+        let mut ms = 0;
+        while ms < 1200 {
+            assert_eq!(own.request(at(ms)), words(CLEAR), "it never shows that nothing is requested");
+            own.receive(at(ms + 5), words(IS_350));
+            ms += 10;
+        }
+        let silent: Vec<ParameterResult> = own.readings().values().map(|reading| reading.result).collect();
+        assert_eq!(silent, [ParameterResult::NoReply; 2]);
+        own.receive(at(ms), words(CLEAR));
+        assert_eq!(own.request(at(ms)), words("0B 10 00 00 00 00 00 00"));
+        own.receive(at(ms + 5), words("0B 10 00 00 22 00 00 00"));
+        own.request(at(ms + 10));
+        own.receive(at(ms + 15), words(CLEAR));
+        assert_eq!(own.request(at(ms + 20)), words("77 10 00 00 00 00 00 00"), "the other one in turn");
+        own.watch(&[number(119)]);
+        assert!(!own.readings().contains_key(&number(11)), "nobody watches it any more");
+    }
+}
