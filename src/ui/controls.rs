@@ -2,7 +2,7 @@
 //! same text for a screen reader as on the screen, without its icon.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui::{Button, Id, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 pub(crate) use super::entries::{forget_secret, labelled_entry, mono_entry, secret_entry};
 pub use super::entries::{settled_entry, text_entry};
@@ -12,8 +12,33 @@ use crate::app::Text;
 
 /// The least width of a dialog.
 const MODAL: f32 = 240.0;
-/// Width of the column of labels.
-pub(crate) const LABELS: f32 = 132.0;
+/// Width of the column of labels, unless a label of the card needs more.
+const LABELS: f32 = 132.0;
+/// Largest shares of the width that a column of labels takes without need, and for long labels.
+const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
+
+/// The column of labels of the card that is being drawn.
+#[derive(Clone, Copy, Default)]
+struct LabelColumn {
+    /// Width of the longest label when the card was drawn last.
+    longest: f32,
+    /// Width of the longest label until now.
+    drawn: f32,
+}
+
+impl LabelColumn {
+    fn id() -> Id {
+        Id::unique("column of labels")
+    }
+
+    fn of(ui: &Ui) -> Self {
+        ui.data(|data| data.get_temp(Self::id())).unwrap_or_default()
+    }
+
+    fn set(self, ui: &Ui) {
+        ui.data_mut(|data| data.insert_temp(Self::id(), self));
+    }
+}
 
 /// Takes the whole width; in a very small window it may be negative.
 pub(crate) fn fill(ui: &mut Ui) {
@@ -43,9 +68,31 @@ pub(crate) fn card_with<R>(
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
             });
             ui.add_space(theme.space.inside);
-            content(ui)
+            with_label_column(ui, content)
         })
         .inner
+}
+
+/// Draws content whose labels have a column that is wide enough for the longest of them.
+fn with_label_column<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
+    let (outer, id) = (LabelColumn::of(ui), ui.scope_id().with(LabelColumn::id()));
+    let longest = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    LabelColumn { longest, drawn: 0.0 }.set(ui);
+    let result = content(ui);
+    let LabelColumn { drawn, .. } = LabelColumn::of(ui);
+    if drawn != longest {
+        ui.data_mut(|data| data.insert_temp(id, drawn));
+        ui.ctx().request_discard("another column of labels");
+    }
+    outer.set(ui);
+    result
+}
+
+/// Returns the width of the column of labels.
+pub(crate) fn label_width(ui: &Ui) -> f32 {
+    let (usual, most) = LABEL_SHARES;
+    let room = ui.available_width().max(0.0);
+    LABELS.min(room * usual).max(LabelColumn::of(ui).longest.min(room * most))
 }
 
 /// Draws a label and a value that can be selected, on one line.
@@ -71,10 +118,14 @@ pub fn entry<R>(ui: &mut Ui, theme: &Theme, label: &str, content: impl FnOnce(&m
 }
 
 fn label_ui(ui: &mut Ui, theme: &Theme, label: &str) {
-    let width = LABELS.min(ui.available_width() * 0.4).max(0.0);
+    let width = label_width(ui);
+    let text = egui::WidgetText::from(theme.label(label));
+    let galley = text.clone().into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Body);
+    let column = LabelColumn::of(ui);
+    LabelColumn { drawn: column.drawn.max(galley.size().x.ceil()), ..column }.set(ui);
     ui.allocate_ui_with_layout(vec2(width, 18.0), egui::Layout::left_to_right(egui::Align::Min), |ui| {
         ui.set_min_width(width);
-        ui.add(egui::Label::new(theme.label(label)).truncate());
+        ui.add(egui::Label::new(text).truncate());
     });
 }
 

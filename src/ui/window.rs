@@ -89,7 +89,7 @@ impl Window {
         self.status_line(ui, theme, actions);
         let Window { studio, views, docks, .. } = self;
         Panel::left("navigation")
-            .exact_size(if ui.available_width() < 1000.0 { 140.0 } else { 148.0 })
+            .exact_size(if ui.available_width() < 1000.0 { 148.0 } else { 158.0 })
             .frame(flat(palette.surface).inner_margin(8))
             .show(ui, |ui| {
                 apart(ui, "entries", |ui| navigation_ui(ui, theme, studio, views, docks, actions));

@@ -12,7 +12,7 @@ use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, icons};
 
 /// Width of an entry.
-const ENTRY: f32 = 112.0;
+const ENTRY: f32 = 80.0;
 /// Rows of the table, and points of the curves.
 const ROWS: u32 = 10;
 const POINTS: u32 = 100;
@@ -103,7 +103,7 @@ fn table(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
         // Values are only read.
         ui.spacing_mut().interact_size.y = theme.space.groups;
         egui::ScrollArea::horizontal().id_salt("input.table").show(ui, |ui| {
-            let grid = egui::Grid::new("input.table").spacing([theme.space.groups, theme.space.inside]);
+            let grid = egui::Grid::new("input.table").spacing([theme.space.between, theme.space.inside]);
             grid.show(ui, |ui| {
                 for id in ["input.rpm", "input.khz", "input.column_lag", "input.column_steps", "input.gain"] {
                     ui.label(theme.caption(say(theme, id)));

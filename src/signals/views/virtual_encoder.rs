@@ -7,7 +7,7 @@ use crate::app::{Action, explain, number};
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS};
 use crate::signals::views::say;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
-use crate::ui::controls::{LABELS, button, card_with, choice, entry, paragraph, problem, two_columns};
+use crate::ui::controls::{button, card_with, choice, entry, label_width, paragraph, problem, two_columns};
 use crate::ui::{Theme, icons};
 
 /// Setting with a slider: the end of its slider (more can be entered), and its decimals.
@@ -83,7 +83,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
 fn sliders(ui: &mut Ui, theme: &Theme, settings: &Settings, list: &[SliderSpec], ask: &mut impl FnMut(SourceAction)) {
     /// Width of the number beside a slider.
     const NUMBER: f32 = 96.0;
-    let label = LABELS.min(ui.available_width() * 0.4);
+    let label = label_width(ui);
     let rail = (ui.available_width() - label - NUMBER - 3.0 * theme.space.between).clamp(40.0, 220.0);
     ui.spacing_mut().slider_width = rail;
     for own in list {

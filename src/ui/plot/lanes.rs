@@ -17,6 +17,9 @@ const LEAST: f32 = 44.0;
 const MOST: f32 = 110.0;
 /// Room for the labels of the time at the foot, in points.
 const FOOT: f32 = 18.0;
+/// Least distance of two ticks in points, and of those in a low lane.
+const APART: f32 = 28.0;
+const CLOSE: f32 = 13.0;
 /// Width of a character of an axis label in points: the font is monospaced.
 const LETTER: f32 = 6.7;
 
@@ -162,10 +165,17 @@ fn lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced: &Reduce
         let rect = Rect::from_min_max(pos2(chart.left(), top), pos2(chart.right(), top + height));
         let shown = range(lines, time, chart, reduced);
         let range = shown.unwrap_or((0.0, 1.0));
-        let step = axes::step(range.1 - range.0, f64::from((height / 28.0).max(1.0)));
+        let step = value_step(range, height);
         Lane { rect, lines: lines.iter().map(|line| line.id).collect(), range, step, empty: shown.is_none() }
     };
     groups.iter().enumerate().map(lane).collect()
+}
+
+/// Returns the step between two ticks of a lane; a low lane has closer ticks, so that a range can be read from at least two.
+fn value_step((low, high): (f64, f64), height: f32) -> f64 {
+    let of_distance = |distance: f32| axes::step(high - low, f64::from((height / distance).max(2.0)));
+    let step = of_distance(APART);
+    if axes::ticks(low, high, step).count() < 2 { of_distance(CLOSE) } else { step }
 }
 
 /// Returns the range of values of a lane: as chosen by the user, or fitted; `None` if there are none.
@@ -204,6 +214,20 @@ mod tests {
     }
 
     const RECT: Rect = Rect { min: egui::Pos2::ZERO, max: pos2(400.0, 200.0) };
+
+    #[test]
+    fn every_lane_has_two_ticks_that_do_not_touch() {
+        for value in [0.0, 4660.75, -33_488_896.0, 0.58472] {
+            for height in [27.0, 40.0, 60.0, 90.0, 200.0] {
+                let (low, high) = axes::round_range(value, value, 8e-5);
+                let step = value_step((low, high), height);
+                let count = axes::ticks(low, high, step).count();
+                assert!(count >= 2, "{count} for {value} at a height of {height}");
+                let distance = step / (high - low) * f64::from(height);
+                assert!(distance >= 11.0, "{distance} for {value} at a height of {height}");
+            }
+        }
+    }
 
     #[test]
     fn samples_of_another_recorder_are_not_confused() {

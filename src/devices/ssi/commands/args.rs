@@ -155,3 +155,24 @@ pub(crate) enum SsiFormat {
     /// A function block as a source file of TIA Portal, for S7-1200 and S7-1500.
     Scl,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::ssi::protocol::Families;
+
+    #[test]
+    fn every_built_in_family_is_in_the_help_and_has_a_profile() {
+        let command = SsiLayout::augment_args(clap::Command::new("test"));
+        let option = command.get_arguments().find(|option| option.get_id() == "spec").unwrap();
+        let help = option.get_long_help().unwrap().to_string();
+        let (_, families) = help.split_once("Families: ").unwrap();
+        let (listed, _) = families.split_once('.').unwrap();
+        let listed: Vec<&str> = listed.split_whitespace().collect();
+        for family in Families::built_in().iter() {
+            assert!(listed.contains(&family.key.as_str()), "{} is not in the help", family.key);
+            let profile = format!("{}/profiles/ssi/{}.ron", env!("CARGO_MANIFEST_DIR"), family.key);
+            assert!(std::path::Path::new(&profile).exists(), "{profile} does not exist");
+        }
+    }
+}

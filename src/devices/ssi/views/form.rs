@@ -10,7 +10,7 @@ use crate::app::{Action, Text};
 use crate::devices::ssi::state::timing::{frequency, read_frequency};
 use crate::devices::ssi::state::{Encoder, Entry, Field, Input, Row, SsiAction as Ssi, whole};
 use crate::ui::Theme;
-use crate::ui::controls::{LABELS, choice, entry, problem, settled_entry};
+use crate::ui::controls::{choice, entry, label_width, problem, settled_entry};
 
 /// Entered text that does not take effect yet.
 #[derive(Default)]
@@ -37,7 +37,7 @@ pub(super) fn rows_ui(
             Entry::Switch(is_on) => {
                 let mut is_on = *is_on;
                 ui.horizontal(|ui| {
-                    ui.add_space(LABELS.min(ui.available_width() * 0.4) + ui.spacing().item_spacing.x);
+                    ui.add_space(label_width(ui) + ui.spacing().item_spacing.x);
                     let response = ui.checkbox(&mut is_on, &word);
                     if response.changed() {
                         put(Input::Switch(is_on));

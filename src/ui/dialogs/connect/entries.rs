@@ -6,7 +6,7 @@ use crate::app::connect::{Connect as Dialog, ConnectAction as Connect, Typed};
 use crate::app::{Action, explain};
 use crate::link::Echo;
 use crate::parameter::Entry;
-use crate::ui::controls::{LABELS, choice, entry, icon_button, name, paragraph, text_entry};
+use crate::ui::controls::{choice, entry, icon_button, label_width, name, paragraph, text_entry};
 use crate::ui::{Theme, icons};
 use crate::units::Parity;
 
@@ -30,7 +30,7 @@ pub(crate) fn serial(ui: &mut Ui, theme: &Theme, dialog: &Dialog, port: &mut Str
         Some(Ok(offers)) => {
             for offer in offers {
                 ui.horizontal(|ui| {
-                    ui.add_space(LABELS);
+                    ui.add_space(label_width(ui));
                     let button = egui::Button::selectable(*port == offer.path, theme.mono(&offer.path));
                     if ui.add(button).clicked() {
                         port.clone_from(&offer.path);

@@ -17,26 +17,29 @@ pub(super) enum Column {
     Default,
 }
 
-/// Columns of bytes with their minimum widths, in order; that of the value follows from its kind.
-const BYTES: [(Column, f32); 8] = [
-    (Column::Marks, 38.0),
-    (Column::Address, 80.0),
-    (Column::Name, 118.0),
-    (Column::Value, 60.0),
-    (Column::Decimal, 96.0),
-    (Column::Meaning, 130.0),
-    (Column::Access, 48.0),
-    (Column::Default, 84.0),
+/// A column with its usual and its minimum width.
+type Widths = (Column, f32, f32);
+
+/// Columns of bytes, in order; the width of the value follows from its kind.
+const BYTES: [Widths; 8] = [
+    (Column::Marks, 38.0, 34.0),
+    (Column::Address, 80.0, 76.0),
+    (Column::Name, 118.0, 92.0),
+    (Column::Value, 60.0, 60.0),
+    (Column::Decimal, 96.0, 72.0),
+    (Column::Meaning, 130.0, 84.0),
+    (Column::Access, 48.0, 40.0),
+    (Column::Default, 84.0, 52.0),
 ];
 /// Those of numbers.
-const NUMBERS: [(Column, f32); 7] = [
-    (Column::Marks, 42.0),
-    (Column::Address, 36.0),
-    (Column::Name, 180.0),
-    (Column::Value, 60.0),
-    (Column::Meaning, 110.0),
-    (Column::Range, 130.0),
-    (Column::Default, 96.0),
+const NUMBERS: [Widths; 7] = [
+    (Column::Marks, 42.0, 34.0),
+    (Column::Address, 36.0, 34.0),
+    (Column::Name, 180.0, 124.0),
+    (Column::Value, 60.0, 60.0),
+    (Column::Meaning, 110.0, 76.0),
+    (Column::Range, 130.0, 96.0),
+    (Column::Default, 96.0, 72.0),
 ];
 /// The columns that are hidden, in this order. Their values move to the tooltip.
 const LEAST: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
@@ -51,23 +54,27 @@ impl Columns {
     /// Lays out the columns in this width, with this width for the value.
     pub(super) fn new(kind: RegisterKind, width: f32, value: f32) -> Self {
         let mut shown = all(kind).to_vec();
-        for (column, own) in &mut shown {
+        for (column, usual, least) in &mut shown {
             if *column == Column::Value {
-                *own = own.max(value);
+                (*usual, *least) = (usual.max(value), least.max(value));
             }
         }
         for least in LEAST {
-            if total(&shown) > width {
-                shown.retain(|(column, _)| *column != least);
+            if total(&shown).1 > width {
+                shown.retain(|(column, ..)| *column != least);
             }
         }
-        let spare = (width - total(&shown)).max(0.0);
+        let (usual, least) = total(&shown);
+        // In between, all are narrower by the same share of what they can spare.
+        let share = if usual > least { ((width - least) / (usual - least)).clamp(0.0, 1.0) } else { 1.0 };
+        let spare = (width - usual).max(0.0);
         let mut left = 0.0;
-        let place = |(column, least): (Column, f32)| {
+        let place = |(column, usual, least): Widths| {
+            let own = least + ((usual - least) * share).floor();
             let own = match column {
-                Column::Name => least + (spare * NAME).floor(),
-                Column::Meaning => least + spare - (spare * NAME).floor(),
-                _ => least,
+                Column::Name => own + (spare * NAME).floor(),
+                Column::Meaning => own + spare - (spare * NAME).floor(),
+                _ => own,
             };
             let range = Rangef::new(left, left + own);
             left = range.max;
@@ -95,15 +102,16 @@ impl Columns {
     }
 }
 
-const fn all(kind: RegisterKind) -> &'static [(Column, f32)] {
+const fn all(kind: RegisterKind) -> &'static [Widths] {
     match kind {
         RegisterKind::Bytes { .. } => &BYTES,
         RegisterKind::Numbers => &NUMBERS,
     }
 }
 
-fn total(columns: &[(Column, f32)]) -> f32 {
-    columns.iter().map(|(_, width)| width).sum()
+/// Returns the usual and the minimum width of columns together.
+fn total(columns: &[Widths]) -> (f32, f32) {
+    columns.iter().fold((0.0, 0.0), |sum, (_, usual, least)| (sum.0 + usual, sum.1 + least))
 }
 
 #[cfg(test)]
@@ -119,18 +127,30 @@ mod tests {
     #[test]
     fn the_least_important_columns_are_hidden_first() {
         use Column::*;
-        // 38 + 80 + 118 + 100 + 96 + 130 + 48 + 84 = 694.
-        assert_eq!(shown(BYTES, 694.0).len(), 8);
-        assert_eq!(shown(BYTES, 693.0), [Marks, Address, Name, Value, Meaning, Access, Default]);
-        assert_eq!(shown(BYTES, 597.0), [Marks, Address, Name, Value, Meaning, Access]);
-        assert_eq!(shown(BYTES, 513.0), [Marks, Address, Name, Value, Meaning]);
+        // 34 + 76 + 92 + 100 + 72 + 84 + 40 + 52 = 550.
+        assert_eq!(shown(BYTES, 550.0).len(), 8);
+        assert_eq!(shown(BYTES, 549.0), [Marks, Address, Name, Value, Meaning, Access, Default]);
+        assert_eq!(shown(BYTES, 477.0), [Marks, Address, Name, Value, Meaning, Access]);
+        assert_eq!(shown(BYTES, 425.0), [Marks, Address, Name, Value, Meaning]);
         assert_eq!(shown(BYTES, -1.0), [Marks, Address, Name, Value, Meaning]);
-        // 42 + 36 + 180 + 100 + 110 + 130 + 96 = 694.
-        assert_eq!(shown(RegisterKind::Numbers, 694.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
-        assert_eq!(shown(RegisterKind::Numbers, 693.0), [Marks, Address, Name, Value, Meaning, Range]);
-        assert_eq!(shown(RegisterKind::Numbers, 597.0), [Marks, Address, Name, Value, Meaning]);
+        // 34 + 34 + 124 + 100 + 76 + 96 + 72 = 536.
+        assert_eq!(shown(RegisterKind::Numbers, 536.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
+        assert_eq!(shown(RegisterKind::Numbers, 535.0), [Marks, Address, Name, Value, Meaning, Range]);
+        assert_eq!(shown(RegisterKind::Numbers, 463.0), [Marks, Address, Name, Value, Meaning]);
         let hides = |width| Columns::new(RegisterKind::Numbers, width, 100.0).hides(RegisterKind::Numbers);
-        assert!(!hides(694.0) && hides(693.0));
+        assert!(!hides(536.0) && hides(535.0));
+    }
+
+    /// Usual 694, minimum 550: at 622 each column has half of what it can spare.
+    #[test]
+    fn columns_are_narrowed_before_one_is_hidden() {
+        let columns = Columns::new(BYTES, 622.0, 100.0);
+        let widths: Vec<f32> = columns.iter().map(|(_, range)| range.span()).collect();
+        assert_eq!(widths, [36.0, 78.0, 105.0, 100.0, 84.0, 107.0, 44.0, 68.0]);
+        for width in 550..800 {
+            let columns = Columns::new(BYTES, width as f32, 100.0);
+            assert!(columns.width() <= width as f32 && columns.width() > width as f32 - 8.0, "{width}");
+        }
     }
 
     #[test]
@@ -139,6 +159,6 @@ mod tests {
         assert_eq!(columns.range(Column::Name), Some(Rangef::new(118.0, 281.0)));
         assert_eq!(columns.range(Column::Value), Some(Rangef::new(281.0, 381.0)));
         assert_eq!(columns.range(Column::Meaning), Some(Rangef::new(477.0, 662.0)));
-        assert_eq!((columns.width(), Columns::new(BYTES, 100.0, 10.0).width()), (794.0, 426.0));
+        assert_eq!((columns.width(), Columns::new(BYTES, 100.0, 10.0).width()), (794.0, 346.0));
     }
 }
