@@ -2,44 +2,21 @@
 //! same text for a screen reader as on the screen, without its icon.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{Button, Id, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
+use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 pub(crate) use super::entries::{forget_secret, labelled_entry, mono_entry, secret_entry};
 pub use super::entries::{settled_entry, text_entry};
+pub(crate) use super::label_column::label_width;
+use super::label_column::with_label_column;
+pub use super::label_column::{entry, row};
 use super::{Theme, icons};
 use crate::analysis::quality::Verdict;
 use crate::app::Text;
 
+/// The least width for words beside an entry; an icon stands for them in less.
+const BESIDE: f32 = 64.0;
 /// The least width of a dialog.
 const MODAL: f32 = 240.0;
-/// Width of the column of labels, unless a label of the card needs more.
-const LABELS: f32 = 132.0;
-/// Largest shares of the width that a column of labels takes without need, and for long labels.
-const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
-
-/// The column of labels of the card that is being drawn.
-#[derive(Clone, Copy, Default)]
-struct LabelColumn {
-    /// Width of the longest label when the card was drawn last.
-    longest: f32,
-    /// Width of the longest label until now.
-    drawn: f32,
-}
-
-impl LabelColumn {
-    fn id() -> Id {
-        Id::unique("column of labels")
-    }
-
-    fn of(ui: &Ui) -> Self {
-        ui.data(|data| data.get_temp(Self::id())).unwrap_or_default()
-    }
-
-    fn set(self, ui: &Ui) {
-        ui.data_mut(|data| data.insert_temp(Self::id(), self));
-    }
-}
-
 /// Takes the whole width; in a very small window it may be negative.
 pub(crate) fn fill(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
@@ -58,75 +35,19 @@ pub(crate) fn card_with<R>(
     aside: impl FnOnce(&mut Ui),
     content: impl FnOnce(&mut Ui) -> R,
 ) -> R {
-    let title = title.into();
+    let heading = theme.words(&title.into());
     theme
         .card()
         .show(ui, |ui| {
             fill(ui);
             ui.horizontal(|ui| {
-                ui.label(theme.heading(theme.words(&title)));
+                ui.label(theme.heading(heading.clone()));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
             });
             ui.add_space(theme.space.inside);
-            with_label_column(ui, content)
+            with_label_column(ui, &heading, content)
         })
         .inner
-}
-
-/// Draws content whose labels have a column that is wide enough for the longest of them.
-fn with_label_column<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
-    let (outer, id) = (LabelColumn::of(ui), ui.scope_id().with(LabelColumn::id()));
-    let longest = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-    LabelColumn { longest, drawn: 0.0 }.set(ui);
-    let result = content(ui);
-    let LabelColumn { drawn, .. } = LabelColumn::of(ui);
-    if drawn != longest {
-        ui.data_mut(|data| data.insert_temp(id, drawn));
-        ui.ctx().request_discard("another column of labels");
-    }
-    outer.set(ui);
-    result
-}
-
-/// Returns the width of the column of labels.
-pub(crate) fn label_width(ui: &Ui) -> f32 {
-    let (usual, most) = LABEL_SHARES;
-    let room = ui.available_width().max(0.0);
-    LABELS.min(room * usual).max(LabelColumn::of(ui).longest.min(room * most))
-}
-
-/// Draws a label and a value that can be selected, on one line.
-pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) {
-    ui.scope(|ui| {
-        // Values are only read: they are closer together than controls.
-        ui.spacing_mut().interact_size.y = 20.0;
-        ui.spacing_mut().item_spacing.y = theme.space.inside;
-        ui.horizontal_top(|ui| {
-            label_ui(ui, theme, label);
-            ui.add(egui::Label::new(value.into()).selectable(true).wrap());
-        });
-    });
-}
-
-/// Draws a label and another widget on one line.
-pub fn entry<R>(ui: &mut Ui, theme: &Theme, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
-    ui.horizontal(|ui| {
-        label_ui(ui, theme, label);
-        content(ui)
-    })
-    .inner
-}
-
-fn label_ui(ui: &mut Ui, theme: &Theme, label: &str) {
-    let width = label_width(ui);
-    let text = egui::WidgetText::from(theme.label(label));
-    let galley = text.clone().into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Body);
-    let column = LabelColumn::of(ui);
-    LabelColumn { drawn: column.drawn.max(galley.size().x.ceil()), ..column }.set(ui);
-    ui.allocate_ui_with_layout(vec2(width, 18.0), egui::Layout::left_to_right(egui::Align::Min), |ui| {
-        ui.set_min_width(width);
-        ui.add(egui::Label::new(text).truncate());
-    });
 }
 
 /// Draws words over several lines, beginning at the left.
@@ -134,13 +55,53 @@ pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
     ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
 }
 
-/// Draws why an entry cannot be used, below it.
+/// Draws why something cannot be shown or done.
 pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     match problem {
         Some(problem) => paragraph(ui, RichText::new(theme.words(problem)).color(theme.palette.bad)),
         // The ids of entries below it do not depend on it, so that typing continues.
         None => ui.skip_ahead_auto_ids(1),
     }
+}
+
+/// Draws why entries cannot be used, below them, in a space that is always reserved: nothing below moves when it comes.
+pub(crate) fn problem_below(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
+    let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.set_min_size(vec2(0.0, size.y));
+        if let Some(problem) = problem {
+            two_lines(ui, theme, theme.words(problem), theme.palette.bad.into());
+        }
+    });
+}
+
+/// Draws why an entry cannot be used, at its right: nothing moves when it comes.
+pub(crate) fn problem_beside(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
+    let Some(problem) = problem else { return };
+    let (words, ink) = (theme.words(problem), theme.palette.bad);
+    if ui.available_width() < BESIDE {
+        ui.label(RichText::new(icons::WARNING_CIRCLE).color(ink)).on_hover_text(words);
+    } else {
+        two_lines(ui, theme, words, ink.into());
+    }
+}
+
+/// Draws a message on one line, or smaller on two, which are together as high as a button: nothing below it moves. One that is
+/// longer has a tooltip with all of it.
+pub(crate) fn two_lines(ui: &mut Ui, theme: &Theme, words: String, ink: egui::Color32) -> Response {
+    let width = ui.available_width();
+    let font = |size: f32| egui::FontId::proportional(size);
+    let whole = ui.painter().layout_no_wrap(words.clone(), font(theme.sizes.body), ink);
+    let galley = if whole.size().x <= width {
+        whole
+    } else {
+        let mut job = egui::text::LayoutJob::simple(words.clone(), font(theme.sizes.caption), ink, width);
+        job.wrap.max_rows = 2;
+        ui.painter().layout_job(job)
+    };
+    let elided = galley.elided;
+    let response = ui.label(galley);
+    if elided { response.on_hover_text(words) } else { response }
 }
 
 /// Draws a dialog over the window, which is blocked meanwhile.

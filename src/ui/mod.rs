@@ -14,6 +14,7 @@ mod entries;
 mod header;
 pub mod icons;
 mod keys;
+mod label_column;
 pub(crate) mod motor;
 mod navigation;
 pub mod page;

@@ -21,10 +21,17 @@ pub(crate) fn around(ui: &Ui, theme: &Theme) -> Margin {
     Margin { left: sides, right: sides, top: ABOVE, bottom: sides.min(ABOVE) }
 }
 
-/// Draws a page that scrolls as a whole; `id` distinguishes it from the others.
+/// Draws a page that scrolls as a whole; `id` distinguishes it from the others. The scroll bar is in the margin: nothing moves
+/// when it appears.
 pub fn scrolling(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
     let frame = Frame::NONE.inner_margin(around(ui, theme));
-    ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| frame.show(ui, content));
+    ui.scope(|ui| {
+        let inside = std::mem::take(&mut ui.spacing_mut().scroll.floating_allocated_width);
+        ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().scroll.floating_allocated_width = inside;
+            frame.show(ui, content)
+        });
+    });
 }
 
 /// Draws widgets whose ids do not depend on the widgets drawn before them; `name` is unique in `ui`. Otherwise each of them

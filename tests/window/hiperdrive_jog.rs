@@ -19,7 +19,7 @@ const BELOW: f32 = 170.0;
 const ABOVE: f32 = 155.0;
 
 /// In control of the drives of a virtual device, in a window of this size.
-fn in_control_on_screen(link: &str, size: [f32; 2]) -> Screen {
+pub(crate) fn in_control_on_screen(link: &str, size: [f32; 2]) -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, link, size);
     screen.until("it is read", |studio| {
         studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready())

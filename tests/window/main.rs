@@ -30,6 +30,7 @@ mod hiperdrive_stop;
 mod interbus;
 mod leaving;
 mod losing;
+mod messages;
 mod monkey;
 #[path = "../new_kind/novo/mod.rs"]
 mod novo;

@@ -260,14 +260,14 @@ fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     desk.until("it is open", |studio| studio.interbus().is_some());
     desk.settle();
     let own = |desk: &Desk| desk.studio.interbus().unwrap().session.id;
-    assert!(desk.studio.interbus().unwrap().marks_beside(None).is_empty());
+    assert!(desk.studio.interbus().unwrap().shown_marks(None).is_empty());
     let steps = Interbus::Edit(Box::new(Edit::Steps(1800)));
     let id = own(&desk);
     desk.act(Action::device(id, steps));
-    let told: Vec<_> = desk.studio.interbus().unwrap().marks_beside(None).iter().map(|text| text.id()).collect();
+    let told: Vec<_> = desk.studio.interbus().unwrap().shown_marks(None).iter().map(|text| text.id()).collect();
     assert_eq!(told, ["cams.mark_beyond"]);
     let shown = ProgramNumber::FIRST;
-    assert!(desk.studio.interbus().unwrap().marks_beside(Some(shown)).is_empty(), "they stand beside the program");
+    assert_eq!(desk.studio.interbus().unwrap().shown_marks(Some(shown)).len(), 1, "once, wherever it is shown");
     save(&mut desk);
     desk.until("it is saved", |studio| !studio.selected_device().unwrap().is_dirty());
     let standing = desk.studio.services.log.standing().unwrap();

@@ -161,6 +161,8 @@ fn live_values_that_start_by_themselves_only_read() {
     let wire = desk.wire();
     let (before, sent) = (wire.count(0x42), wire.sent());
     desk.until("some positions", |_| wire.count(0x42) > before + 5);
+    desk.command(DeviceCommand::Poll(None));
+    desk.until("it stands", |studio| !is_live(studio));
     assert_eq!(wire.sent() - sent, wire.count(0x42) - before, "nothing but 42h");
 }
 

@@ -6,7 +6,9 @@ use crate::analysis::quality::Family;
 use crate::app::Action;
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS, VIRTUAL_ADAPTER};
 use crate::signals::views::say;
-use crate::ui::controls::{button, card_with, choice, entry, icon_button, paragraph, primary, problem, text_entry};
+use crate::ui::controls::{
+    button, card_with, choice, entry, icon_button, paragraph, primary, problem_below, text_entry,
+};
 use crate::ui::{Theme, icons};
 
 /// Selectable sample rates per second; the adapter uses the nearest it supports.
@@ -52,7 +54,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
             }
         });
         paragraph(ui, theme.caption(say(theme, "adapter.link_hint")));
-        problem(ui, theme, source.adapter_problem());
+        problem_below(ui, theme, source.adapter_problem());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
             started |= primary(ui, theme, true, icons::PLAY, &say(theme, "adapter.start")).clicked();
             if source.link() != VIRTUAL_ADAPTER && button(ui, icons::CPU, &say(theme, "adapter.use_virtual")).clicked()

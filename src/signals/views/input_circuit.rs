@@ -7,7 +7,7 @@ use crate::app::Text;
 use crate::signals::state::input_circuit::{Circuit, Form, Point};
 use crate::signals::state::{TEXTS, Unit};
 use crate::signals::views::say;
-use crate::ui::controls::{card, labelled_entry, paragraph, problem, row, split};
+use crate::ui::controls::{card, labelled_entry, paragraph, problem_below, row, split};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, icons};
 
@@ -56,7 +56,7 @@ fn entries(ui: &mut Ui, theme: &Theme, form: &mut Form, refused: Option<&Text>) 
         ] {
             labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY, hint);
         }
-        problem(ui, theme, refused);
+        problem_below(ui, theme, refused);
     });
 }
 

@@ -7,8 +7,8 @@ use crate::signals::state::synchronise::{Form, PhaseInput, Synchronise, Synchron
 use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::Synchronisation};
 use crate::signals::views::say;
 use crate::ui::controls::{
-    card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row, split,
-    verdict_ui,
+    card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, problem_below,
+    row, split, verdict_ui,
 };
 use crate::ui::widgets::{StepRing, series, step_ring};
 use crate::ui::{Theme, controls, icons};
@@ -104,13 +104,12 @@ fn positions(
         typed(ui, theme, "synchronise.offset", &mut form.offset, "0");
         ui.checkbox(&mut form.half_step, say(theme, "synchronise.half_step"))
             .on_hover_text(say(theme, "synchronise.half_step_hint"));
-        problem(ui, theme, refused);
+        problem_below(ui, theme, refused.or(state.problem.as_ref()));
         let ready = device.is_some_and(SineCosineSource::is_ready);
         let read = enabled_button(ui, ready, icons::CROSSHAIR, &say(theme, "synchronise.read"));
         if read.on_disabled_hover_text(say(theme, "synchronise.read_hint")).clicked() {
             actions.extend(device.map(SineCosineSource::read_action));
         }
-        problem(ui, theme, state.problem.as_ref());
     });
 }
 

@@ -7,7 +7,7 @@ use crate::app::{Action, explain, number};
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS};
 use crate::signals::views::say;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
-use crate::ui::controls::{button, card_with, choice, entry, label_width, paragraph, problem, two_columns};
+use crate::ui::controls::{button, card_with, choice, entry, label_width, paragraph, problem_below, two_columns};
 use crate::ui::{Theme, icons};
 
 /// Setting with a slider: the end of its slider (more can be entered), and its decimals.
@@ -62,7 +62,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.visuals_mut().widgets.inactive.bg_fill = theme.palette.line.into();
-        problem(ui, theme, source.problem());
+        problem_below(ui, theme, source.problem());
         two_columns(
             ui,
             theme,

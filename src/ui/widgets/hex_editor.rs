@@ -10,6 +10,7 @@
 //! * **Painting**: changed bytes underlined and in the colour of edits; the selection in the accent; marks as brackets
 //!   below their bytes.
 
+mod addresses;
 mod grid;
 mod keys;
 mod paint;
@@ -26,6 +27,7 @@ use super::focus_ring;
 use crate::app::Text;
 use crate::ui::{Theme, icons};
 
+pub use addresses::HexAddresses;
 use grid::Grid;
 pub use view::HexView;
 
@@ -42,6 +44,7 @@ pub struct HexModel<'a> {
     pub read_only: Option<&'a Text>,
     /// Most lines shown at once.
     pub lines: usize,
+    pub addresses: HexAddresses,
 }
 
 /// Range with a meaning: it has a bracket, and its tooltip shows the meaning.
@@ -76,7 +79,12 @@ pub enum HexEdit {
 impl<'a> HexModel<'a> {
     /// Creates bytes that can be edited, without marks.
     pub fn new(device: &'a [u8], wanted: &'a [u8]) -> Self {
-        HexModel { device, wanted, marks: &[], read_only: None, lines: 16 }
+        HexModel { device, wanted, marks: &[], read_only: None, lines: 16, addresses: HexAddresses::Counted }
+    }
+
+    /// Returns an address as shown.
+    fn address(&self, at: usize) -> String {
+        self.addresses.text(at, self.wanted.len())
     }
 
     fn is_changed(&self, at: usize) -> bool {
@@ -86,11 +94,6 @@ impl<'a> HexModel<'a> {
     fn changes(&self) -> usize {
         (0..self.wanted.len()).filter(|at| self.is_changed(*at)).count()
     }
-}
-
-/// Returns an address as shown: upper-case hex with as many digits as the last one needs, at least two.
-fn address_text(at: usize, digits: usize) -> String {
-    format!("0x{at:0digits$X}")
 }
 
 /// Height of a line, of what surrounds the lines, and of the typed view below the editor.
@@ -120,7 +123,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
             Vec::new()
         }
     };
-    let grid = Grid::new(ui, theme, model.wanted.len());
+    let grid = Grid::new(ui, theme, model);
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
         // A half-visible line of bytes must be readable.
@@ -134,7 +137,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
         if response.has_focus() {
             focus_ring(ui.painter(), theme, frame.response.rect, theme.radius);
         }
-        tell(ui, &response, label, &grid, model, view);
+        tell(ui, &response, label, model, view);
         ui.add_space(theme.space.inside);
         status(ui, theme, &grid, model, view);
     });
@@ -163,7 +166,7 @@ fn body(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, v
             // The tooltip is beside the byte.
             let cell = grid.cell(rect.min, column, at);
             Response { rect: cell, interact_rect: cell, ..response.clone() }
-                .on_hover_ui(|ui| tip::byte(ui, theme, grid, model, at));
+                .on_hover_ui(|ui| tip::byte(ui, theme, model, at));
         }
         response
     });
@@ -212,10 +215,10 @@ fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: 
 }
 
 /// Sets the accessible name and value for screen readers and tests.
-fn tell(ui: &Ui, response: &Response, label: &str, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
+fn tell(ui: &Ui, response: &Response, label: &str, model: &HexModel<'_>, view: &HexView) {
     let selected = view.selection();
     let value = model.wanted.get(selected.clone()).filter(|bytes| !bytes.is_empty()).map(|bytes| {
-        let first = address_text(selected.start, grid.digits);
+        let first = model.address(selected.start);
         format!("{first}: {}", crate::bits::hex(bytes))
     });
     let read_only = model.read_only.is_some();
@@ -242,13 +245,13 @@ fn status(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &
             return;
         }
         let selected = view.selection();
-        let first = address_text(selected.start, grid.digits);
+        let first = model.address(selected.start);
         let place = match selected.len() {
             0 => Text::new("widget.hex_empty"),
             1 => Text::new("widget.hex_at").with("address", first).with("decimal", selected.start),
             count => Text::new("widget.hex_selected")
                 .with("first", first)
-                .with("last", address_text(selected.end.saturating_sub(1), grid.digits))
+                .with("last", model.address(selected.end.saturating_sub(1)))
                 .with("count", count),
         };
         ui.label(sentence(theme, &theme.words(&place), theme.palette.muted.into()));

@@ -8,7 +8,7 @@ use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, places};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{empty, enabled_button, name, paragraph};
-use crate::ui::widgets::{HexEdit, HexModel, HexView, hex_editor, hex_lines, typed_view};
+use crate::ui::widgets::{HexAddresses, HexEdit, HexModel, HexView, hex_editor, hex_lines, typed_view};
 use crate::ui::{Theme, edit_bar, icons};
 
 /// The state of the page between frames.
@@ -35,6 +35,7 @@ pub(super) fn page_ui(
     egui::Panel::bottom("data_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Bytes, actions);
     });
+    super::messages_ui(ui, theme, encoder, actions);
     let shown = encoder.visible_part(area);
     ui.horizontal_wrapped(|ui| {
         for (at, own) in areas.iter().enumerate() {
@@ -57,8 +58,6 @@ pub(super) fn page_ui(
         ui.label(theme.caption(theme.words(&text)));
     });
     ui.add_space(theme.space.inside);
-    super::unsaved_ui(ui, theme, encoder, actions);
-    super::refusal_ui(ui, theme, encoder, actions);
     match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
         Some(((read, wanted), own)) => bytes(ui, theme, encoder, &own, (&read, &wanted), view, actions),
         None if encoder.profile().is_some() => {
@@ -91,7 +90,8 @@ fn bytes(
     }
     let beside = ui.available_width() >= 820.0;
     let lines = hex_lines(ui.available_height(), beside);
-    let model = HexModel { device: read, wanted, marks: &[], read_only: read_only.as_ref(), lines };
+    let addresses = HexAddresses::Banked { first: area.first.into(), size: RegisterAddress::BANK_SIZE.into() };
+    let model = HexModel { read_only: read_only.as_ref(), lines, addresses, ..HexModel::new(read, wanted) };
     let mut edits = Vec::new();
     let label = theme.words(&words::name(&area.name));
     if beside {
@@ -99,7 +99,6 @@ fn bytes(
             ui.vertical(|ui| edits = hex_editor(ui, theme, &label, &model, &mut view.hex));
             ui.add_space(theme.space.between);
             ui.vertical(|ui| {
-                place_ui(ui, theme, area, view);
                 typed_view(ui, theme, view.hex.to_read(wanted));
             });
         });
@@ -108,7 +107,6 @@ fn bytes(
             // Space for the focus ring.
             ui.add_space(theme.space.inside);
             edits = hex_editor(ui, theme, &label, &model, &mut view.hex);
-            place_ui(ui, theme, area, view);
             typed_view(ui, theme, view.hex.to_read(wanted));
         });
     }
@@ -128,13 +126,5 @@ fn bytes(
                 start(range.start).map(|start| own(Biss::Revert { start, count: range.len() }))
             }
         });
-    }
-}
-
-/// Draws the register at the cursor.
-fn place_ui(ui: &mut Ui, theme: &Theme, area: &Area, view: &DataUiState) {
-    if let Some(at) = places(area).nth(view.hex.cursor()) {
-        let text = TEXTS.text("data.at").with("address", at);
-        ui.label(theme.caption(theme.words(&text)));
     }
 }

@@ -61,6 +61,15 @@ pub(crate) struct BissUiState {
     procedures: procedures::ProceduresUiState,
 }
 
+/// Draws the messages of a table's page below it, where they move nothing that can be clicked.
+fn messages_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+    let id = egui::Id::unique(encoder.session.id).with("biss_messages");
+    egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
+        unsaved_ui(ui, theme, encoder, actions);
+        refusal_ui(ui, theme, encoder, actions);
+    });
+}
+
 /// Draws why the data could not be read.
 fn refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = &encoder.refusal else { return };

@@ -13,7 +13,7 @@ use crate::devices::biss::state::explain as explained;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, forms::PresetForm, words};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{
-    allowed_button, card, empty, enabled_button, labelled_entry, options, paragraph, problem, row, two_columns,
+    allowed_button, card, empty, enabled_button, labelled_entry, options, paragraph, problem_below, row, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -223,9 +223,9 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         let layout = &identity.layout;
         // Errors of an entry are drawn below it.
         labelled_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
-        problem(ui, theme, form.singleturn(layout).err().as_ref());
+        problem_below(ui, theme, form.singleturn(layout).err().as_ref());
         labelled_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");
-        problem(ui, theme, form.multiturn(layout).err().as_ref());
+        problem_below(ui, theme, form.multiturn(layout).err().as_ref());
         let value = form.value(layout);
         let ready = encoder.session.is_ready();
         let plan = |value, parts| Biss::Plan(Box::new(Change::Preset { value, parts }));

@@ -46,9 +46,8 @@ pub(super) fn page_ui(
         (1..groups.len()).for_each(|at| view.table.fold(at, true));
     }
     let beside = ui.available_width() >= BESIDE;
+    super::messages_ui(ui, theme, encoder, actions);
     head(ui, theme, encoder, (&groups, beside), view, actions);
-    super::unsaved_ui(ui, theme, encoder, actions);
-    super::refusal_ui(ui, theme, encoder, actions);
     ui.add_space(theme.space.inside);
     let height = ui.available_height();
     if !beside {

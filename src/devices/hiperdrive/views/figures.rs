@@ -54,7 +54,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
             let ink = if count == 0 { theme.palette.text } else { theme.palette.warn };
             row(ui, theme, &say(theme, id), theme.mono(count.to_string()).color(ink));
         }
-        row(ui, theme, &say(theme, "hd_link.parameter_words"), theme.words(&explain::parameter_words(&view)));
+        row(ui, theme, &say(theme, "hd_link.parameter_words"), theme.words(&explain::parameter_words(view)));
         if let Some((least, greatest)) = link.intervals.range_us() {
             let off =
                 TEXTS.text("hd_link.off").with("least", format!("{least:+}")).with("greatest", format!("{greatest:+}"));

@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Percent};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{allowed_button, card, paragraph, problem};
+use crate::ui::controls::{allowed_button, card, paragraph, problem_below};
 use crate::ui::widgets::{HoldButton, hold_button};
 
 /// Height of the buttons that are held.
@@ -60,7 +60,7 @@ pub(super) fn step_card_ui(
                 }
             }
         });
-        problem(ui, theme, view.step_problem.as_ref());
+        problem_below(ui, theme, view.step_problem.as_ref());
         paragraph(ui, theme.caption(say(theme, "hd_step.words")));
     });
 }

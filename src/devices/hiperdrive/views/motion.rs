@@ -1,7 +1,6 @@
 //! The states of the drive and its motion: by jogging, to a position, at a speed.
 
-use egui::text::LayoutJob;
-use egui::{Color32, FontId, Id, Response, RichText, Ui, UiBuilder, vec2};
+use egui::{Id, RichText, Ui, UiBuilder, vec2};
 
 use super::state_machine::{StateMachine, state_machine};
 use super::{figures, jog, outside};
@@ -11,8 +10,8 @@ use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, empty, enabled_button, entry, options, paragraph, problem, row,
-    text_entry, two_columns,
+    allowed_button, card, card_with, choice, empty, enabled_button, entry, options, paragraph, problem_below, row,
+    text_entry, two_columns, two_lines,
 };
 use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 
@@ -173,20 +172,6 @@ fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
     }
 }
 
-/// Draws a message on one line, or smaller on two, which are as high as a button: nothing below it moves.
-fn two_lines(ui: &mut Ui, theme: &Theme, words: String, ink: Color32) -> Response {
-    let width = ui.available_width();
-    let whole = ui.painter().layout_no_wrap(words.clone(), FontId::proportional(theme.sizes.body), ink);
-    let galley = if whole.size().x <= width {
-        whole
-    } else {
-        let mut job = LayoutJob::simple(words, FontId::proportional(theme.sizes.caption), ink, width);
-        job.wrap.max_rows = 2;
-        ui.painter().layout_job(job)
-    };
-    ui.label(galley)
-}
-
 fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
     actions.push(Action::device(id, Hiperdrive::Drive(motor)));
 }
@@ -237,9 +222,8 @@ fn to_position(
             }
         }
     });
-    problem(ui, theme, view.target_problem.as_ref());
     // What keeps the drive from moving at all stands once, below the pads.
-    problem(ui, theme, entered.as_ref().err());
+    problem_below(ui, theme, view.target_problem.as_ref().or(entered.as_ref().err()));
     allowed
 }
 

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
 use crate::devices::hiperdrive::protocol::Direction;
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{allowed_button, card, paragraph, problem};
+use crate::ui::controls::{allowed_button, card, paragraph, problem_below};
 use crate::ui::{Theme, icons};
 
 /// The entered text.
@@ -72,6 +72,6 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
             draft.problem =
                 change.map(|change| actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))))).err();
         }
-        problem(ui, theme, draft.problem.as_ref());
+        problem_below(ui, theme, draft.problem.as_ref());
     });
 }

@@ -7,7 +7,9 @@ use crate::devices::hiperdrive::state::{
     Edit, HiperdriveAction as Hiperdrive, LimitsPolicy, Measure, TEXTS, Unit, forms,
 };
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{card, enabled_button, entry, options, paragraph, problem, row, settled_entry, text_entry};
+use crate::ui::controls::{
+    card, enabled_button, entry, options, paragraph, problem_below, row, settled_entry, text_entry,
+};
 use crate::ui::{Theme, icons};
 
 /// The entered text.
@@ -36,7 +38,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
             });
             ui.label(theme.label(say(theme, "hd_scale.a_turn")));
         });
-        problem(ui, theme, view.pitch.as_ref().and_then(|(_, why)| why.as_ref()));
+        problem_below(ui, theme, view.pitch.as_ref().and_then(|(_, why)| why.as_ref()));
         let word = say(theme, "hd_scale.step");
         entry(ui, theme, &word, |ui| {
             text_entry(ui, &mut view.step, NUMBER, &word, "0.01");
@@ -62,7 +64,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
                     .err();
             }
         });
-        problem(ui, theme, view.refused.as_ref());
+        problem_below(ui, theme, view.refused.as_ref());
         becomes(ui, theme, unit);
         paragraph(ui, theme.caption(say(theme, "hd_scale.words")));
     });

@@ -176,7 +176,7 @@ fn field_ui(
     let marks: Vec<HexMark> = mounting.iter().map(|(range, words)| HexMark { range: range.clone(), words }).collect();
     let beside = ui.available_width() >= 820.0;
     let lines = hex_lines(ui.available_height(), beside);
-    let model = HexModel { device: &device, wanted: bytes, marks: &marks, read_only: read_only.as_ref(), lines };
+    let model = HexModel { marks: &marks, read_only: read_only.as_ref(), lines, ..HexModel::new(&device, bytes) };
     let label = theme.words(&TEXTS.text("memory.bytes").with("number", field.number));
     let mut edits = Vec::new();
     if beside {

@@ -10,7 +10,8 @@ use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS, forms};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    card, choice, enabled_button, entry, forget_secret, paragraph, problem, row, secret_entry, text_entry, two_columns,
+    card, choice, enabled_button, entry, forget_secret, paragraph, problem_below, row, secret_entry, text_entry,
+    two_columns,
 };
 use crate::ui::{Theme, icons};
 use crate::units::{CharacterFormat, Parity};
@@ -108,7 +109,7 @@ fn position(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiSta
             let change = wanted.map(|wanted| Change::SetPosition { wanted, exact, synchronise, kit });
             plan(encoder, change, &mut view.position_problem, actions);
         }
-        problem(ui, theme, view.position_problem.as_ref());
+        problem_below(ui, theme, view.position_problem.as_ref());
         if let Some((from, to)) = encoder.position_set {
             let steps = i64::from(from) - i64::from(to);
             let text = TEXTS.text("position_card.last").with("from", from).with("to", to);
@@ -159,7 +160,7 @@ fn codes(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState,
                 plan(encoder, change, &mut view.code_problem, actions);
             }
         });
-        problem(ui, theme, view.code_problem.as_ref());
+        problem_below(ui, theme, view.code_problem.as_ref());
     });
 }
 
@@ -177,7 +178,7 @@ fn address(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiStat
                 plan(encoder, change, &mut view.address_problem, actions);
             }
         });
-        problem(ui, theme, view.address_problem.as_ref());
+        problem_below(ui, theme, view.address_problem.as_ref());
     });
 }
 
@@ -222,7 +223,7 @@ fn settings(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiSta
                 }
             }
         });
-        problem(ui, theme, view.settings_problem.as_ref());
+        problem_below(ui, theme, view.settings_problem.as_ref());
     });
 }
 

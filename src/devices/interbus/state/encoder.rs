@@ -86,10 +86,10 @@ impl Encoder {
         self.staged.wanted().map(EditedValues::marks).unwrap_or_default()
     }
 
-    /// Returns the marks to show on every page, except those of a program that is shown with its own.
-    pub fn marks_beside(&self, program: Option<ProgramNumber>) -> Vec<Text> {
-        let other = |mark: &Mark| program.is_none() || mark.program() != program;
-        let marks: Vec<Mark> = self.marks().into_iter().filter(other).collect();
+    /// Returns the marks to show on every page, those of this program first.
+    pub fn shown_marks(&self, program: Option<ProgramNumber>) -> Vec<Text> {
+        let mut marks: Vec<Mark> = self.marks();
+        marks.sort_by_key(|mark| program.is_none() || mark.program() != program);
         some(&cams::words::marks(&marks), Text::clone)
     }
 

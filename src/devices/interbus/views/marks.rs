@@ -1,23 +1,29 @@
-//! The problems of the edited values, above every page: a smaller measuring range leaves cams beyond it, which are edited
-//! on another page.
+//! The problems of the edited values, below every page, where they move nothing that can be clicked: a smaller measuring range
+//! leaves cams beyond it, which are edited on another page.
 
 use egui::{RichText, Ui};
 
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::Encoder;
-use crate::ui::controls::paragraph;
-use crate::ui::{Theme, icons};
+use crate::ui::controls::{paragraph, problem};
+use crate::ui::{Theme, icons, page};
 
-/// Draws them, except those of a program that is shown with its own.
+/// Draws them, those of the shown program first, and why the last edit was refused.
 pub(super) fn marks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, shown: Option<ProgramNumber>) {
-    let marks = encoder.marks_beside(shown);
-    for mark in &marks {
-        ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
-            paragraph(ui, theme.words(mark));
-        });
+    let marks = encoder.shown_marks(shown);
+    if marks.is_empty() && encoder.refusal.is_none() {
+        return;
     }
-    if !marks.is_empty() {
-        ui.add_space(theme.space.between);
-    }
+    let around = page::sides(ui, theme);
+    let frame = egui::Frame::NONE.inner_margin(egui::Margin { left: around, right: around, top: 8, bottom: 4 });
+    let id = egui::Id::unique(encoder.session.id).with("interbus_marks");
+    egui::Panel::bottom(id).frame(frame).show_separator_line(false).show(ui, |ui| {
+        for mark in &marks {
+            ui.horizontal_top(|ui| {
+                ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
+                paragraph(ui, theme.words(mark));
+            });
+        }
+        problem(ui, theme, encoder.refusal.as_ref());
+    });
 }

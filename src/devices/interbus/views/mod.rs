@@ -113,12 +113,12 @@ impl TypedDeviceView for InterbusView {
                 .show_separator_line(false)
                 .show(ui, |ui| edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions));
         }
+        let shown = (page == Page::Cams).then(|| view.cams.shown());
+        marks::marks_ui(ui, theme, encoder, shown);
         page::scrolling(ui, theme, (encoder.session.id, page.place()), |ui| {
             if page != Page::Backups {
                 standstill::bar_ui(ui, theme, encoder, actions);
             }
-            let shown = (page == Page::Cams).then(|| view.cams.shown());
-            marks::marks_ui(ui, theme, encoder, shown);
             match page {
                 Page::Encoder => encoder::page_ui(ui, theme, encoder, actions),
                 Page::Parameters => parameters::page_ui(ui, theme, encoder, &mut view.parameters, actions),

@@ -14,7 +14,8 @@ use crate::devices::interbus::protocol::Parameter;
 use crate::devices::interbus::state::staged::Edit;
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, cams, explain, forms, word_meaning, words};
 use crate::ui::controls::{
-    card, choice, empty, enabled_button, entry, paragraph, problem, row, settled_entry, two_columns,
+    card, choice, empty, enabled_button, entry, paragraph, problem, problem_below, problem_beside, row, settled_entry,
+    two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -96,7 +97,10 @@ fn table(
                         Ok(())
                     });
                 }
-                if before != now {
+                let refused = view.drafts.get(parameter.name()).and_then(|draft| draft.as_ref()?.1.as_ref());
+                if refused.is_some() {
+                    problem_beside(ui, theme, refused);
+                } else if before != now {
                     let was = TEXTS.text("ib_set.was").with_text("value", words::setting(parameter, before));
                     ui.add(egui::Label::new(RichText::new(theme.words(&was)).color(theme.palette.staged)).truncate());
                 } else if let Ok(gear) = new.gear()
@@ -107,10 +111,7 @@ fn table(
                     ui.add(egui::Label::new(range).truncate());
                 }
             });
-            let refused = view.drafts.get(parameter.name()).and_then(|draft| draft.as_ref()?.1.as_ref());
-            problem(ui, theme, refused);
         }
-        problem(ui, theme, encoder.refusal.as_ref());
         ui.add_space(theme.space.inside);
         match new.gear() {
             Ok(gear) => {
@@ -161,7 +162,7 @@ fn preset(
                 }
             }
         });
-        problem(ui, theme, view.preset_problem.as_ref());
+        problem_below(ui, theme, view.preset_problem.as_ref());
         if let Some(position) = encoder.position() {
             row(ui, theme, &say(theme, "ib_preset.now"), theme.mono(position.to_string()));
         }

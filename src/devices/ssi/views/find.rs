@@ -10,7 +10,7 @@ use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{
-    card, card_with, enabled_button, entry, icon_button, paragraph, primary, problem, row, settled_entry, spinner,
+    card, card_with, enabled_button, entry, icon_button, paragraph, primary, problem_below, row, settled_entry, spinner,
 };
 use crate::ui::{Theme, icons};
 
@@ -83,7 +83,7 @@ fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
                 ask(Ssi::SetClocks(None));
             }
         });
-        problem(ui, theme, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
+        problem_below(ui, theme, view.clocks.as_ref().and_then(|(_, why)| why.as_ref()));
         let words = encoder.record.count(encoder.clocks());
         row(ui, theme, &say(theme, "ssi_find.read"), theme.mono(words.to_string()));
         if !encoder.is_profile() && words == 0 {

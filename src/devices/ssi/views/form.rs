@@ -10,7 +10,7 @@ use crate::app::{Action, Text};
 use crate::devices::ssi::state::timing::{frequency, read_frequency};
 use crate::devices::ssi::state::{Encoder, Entry, Field, Input, Row, SsiAction as Ssi, whole};
 use crate::ui::Theme;
-use crate::ui::controls::{choice, entry, label_width, problem, settled_entry};
+use crate::ui::controls::{choice, entry, label_width, problem_beside, settled_entry};
 
 /// Entered text that does not take effect yet.
 #[derive(Default)]
@@ -77,6 +77,7 @@ pub(super) fn rows_ui(
                     if let Some(unit) = unit {
                         ui.label(theme.label(theme.words(unit)));
                     }
+                    problem_beside(ui, theme, refusal(draft));
                     response
                 })
             }
@@ -84,26 +85,33 @@ pub(super) fn rows_ui(
                 let draft = view.drafts.entry(row.field).or_default();
                 let shown = theme.words(&frequency((*hertz).into()));
                 entry(ui, theme, &word, |ui| {
-                    settled_entry(ui, draft, &shown, NUMBER, &word, |text| {
+                    let response = settled_entry(ui, draft, &shown, NUMBER, &word, |text| {
                         put(Input::Number(read_frequency(text)?.into()));
                         Ok(())
-                    })
+                    });
+                    problem_beside(ui, theme, refusal(draft));
+                    response
                 })
             }
             Entry::Words(words) => {
                 let draft = view.drafts.entry(row.field).or_default();
                 entry(ui, theme, &word, |ui| {
-                    settled_entry(ui, draft, words, NAME, &word, |text| {
+                    let response = settled_entry(ui, draft, words, NAME, &word, |text| {
                         put(Input::Words(text.to_owned()));
                         Ok(())
-                    })
+                    });
+                    problem_beside(ui, theme, refusal(draft));
+                    response
                 })
             }
         };
         if let Some(hint) = row.hint {
             response.on_hover_text(say(theme, hint));
         }
-        let refused = view.drafts.get(&row.field).and_then(|draft| draft.as_ref()?.1.as_ref());
-        problem(ui, theme, refused);
     }
+}
+
+/// Returns why the text of an entry was refused.
+fn refusal(draft: &Option<(String, Option<Text>)>) -> Option<&Text> {
+    draft.as_ref()?.1.as_ref()
 }

@@ -13,7 +13,7 @@ use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, 
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::controls::{
-    button, card_with, choice, enabled_button, icon_button, name, paragraph, primary, problem, settled_entry,
+    button, card_with, choice, enabled_button, icon_button, name, paragraph, primary, problem_below, settled_entry,
     two_columns,
 };
 use crate::ui::{Theme, icons};
@@ -94,7 +94,7 @@ fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
                 }
             });
         }
-        problem(ui, theme, designer.problem());
+        problem_below(ui, theme, designer.problem());
         for advice in &designer.design().advice {
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::INFO).color(theme.palette.accent));

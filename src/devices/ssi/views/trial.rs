@@ -7,7 +7,9 @@ use crate::devices::ssi::protocol::{Location, Meaning, frame_bits};
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, Try, whole};
 use crate::devices::ssi::views::say;
-use crate::ui::controls::{card_with, entry, icon_button, mono_entry, name, paragraph, problem, row, settled_entry};
+use crate::ui::controls::{
+    card_with, entry, icon_button, mono_entry, name, paragraph, problem_below, problem_beside, row, settled_entry,
+};
 use crate::ui::{Theme, icons};
 
 /// Entered text that does not take effect yet.
@@ -55,7 +57,7 @@ pub(super) fn card_ui(
     card_with(ui, theme, TEXTS.text("ssi_trial.title"), live, |ui| {
         numbers(ui, theme, encoder, &shown, view, &mut |with| actions.push(Action::device(id, Ssi::Try(with))));
         bits(ui, theme, encoder, &shown, view, actions);
-        problem(ui, theme, encoder.trial.problem());
+        problem_below(ui, theme, encoder.trial.problem());
         findings(ui, theme, &shown);
     });
     actions.extend(action.map(|with| Action::device(id, Ssi::Try(with))));
@@ -79,8 +81,8 @@ fn numbers(
             put(Try::Position(whole(text)?));
             Ok(())
         });
+        refused(ui, theme, view.position.as_ref());
     });
-    refused(ui, theme, view.position.as_ref());
     match shown.place {
         Some((_, Location::Shaft { turns, steps, degrees })) => {
             let (own_turns, own_steps) = (theme.say("live.turns"), theme.say("live.step"));
@@ -89,15 +91,15 @@ fn numbers(
                     put(Try::Place(whole(text)?, steps));
                     Ok(())
                 });
+                refused(ui, theme, view.turns.as_ref());
             });
-            refused(ui, theme, view.turns.as_ref());
             entry(ui, theme, &own_steps, |ui| {
                 settled_entry(ui, &mut view.steps, &steps.to_string(), NUMBER, &own_steps, |text| {
                     put(Try::Place(turns, whole(text)?));
                     Ok(())
                 });
+                refused(ui, theme, view.steps.as_ref());
             });
-            refused(ui, theme, view.steps.as_ref());
             row(ui, theme, &say(theme, "ssi_trial.angle"), theme.mono(format!("{} °", theme.number(degrees, 4))));
         }
         Some((_, Location::Length { millimetres })) => {
@@ -108,7 +110,7 @@ fn numbers(
 }
 
 fn refused(ui: &mut Ui, theme: &Theme, draft: Option<&(String, Option<Text>)>) {
-    problem(ui, theme, draft.and_then(|(_, problem)| problem.as_ref()));
+    problem_beside(ui, theme, draft.and_then(|(_, problem)| problem.as_ref()));
 }
 
 /// Draws the bits as text, to be copied and replaced by pasting.

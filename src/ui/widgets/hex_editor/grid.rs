@@ -2,6 +2,7 @@
 
 use egui::{FontId, Pos2, Rect, Ui, Vec2};
 
+use super::HexModel;
 use super::view::Column;
 use crate::ui::Theme;
 
@@ -15,8 +16,6 @@ pub(super) struct Grid {
     pub(super) glyph: f32,
     pub(super) row: f32,
     pub(super) width: f32,
-    /// Digits of an address.
-    pub(super) digits: usize,
     /// Extra space after eight bytes, and beside the separator.
     pub(super) gap: f32,
     pub(super) text_left: f32,
@@ -32,13 +31,14 @@ fn on_grid(length: f32) -> f32 {
 }
 
 impl Grid {
-    pub(super) fn new(ui: &Ui, theme: &Theme, len: usize) -> Self {
+    pub(super) fn new(ui: &Ui, theme: &Theme, model: &HexModel<'_>) -> Self {
+        let len = model.wanted.len();
         let font = FontId::monospace(theme.sizes.body);
         let (glyph, row) = ui.fonts_mut(|fonts| (fonts.glyph_width(&font, '0'), fonts.row_height(&font)));
-        let digits = format!("{:X}", len.saturating_sub(1)).len().max(2);
+        let characters = model.addresses.width(len);
         let (byte, letter) = (on_grid(glyph * 2.0 + theme.space.between - 1.0), glyph.ceil());
         let places = |gap: f32| {
-            let hex_left = on_grid(glyph * digits as f32) + gap + theme.space.inside;
+            let hex_left = on_grid(glyph * characters as f32) + gap + theme.space.inside;
             let text_left = hex_left + byte * WIDTH as f32 + gap * 3.0;
             (gap, hex_left, text_left, text_left + letter * WIDTH as f32 + theme.space.inside)
         };
@@ -47,7 +47,7 @@ impl Grid {
         let fits = wide.3 + theme.space.between * 2.0 <= ui.available_width();
         let (gap, hex_left, text_left, width) = if fits { wide } else { places(theme.space.inside) };
         let row = on_grid(row + 2.0);
-        Grid { font, glyph, row, width, digits, gap, text_left, hex_left, byte, letter, len }
+        Grid { font, glyph, row, width, gap, text_left, hex_left, byte, letter, len }
     }
 
     pub(super) fn lines(&self) -> usize {

@@ -4,7 +4,7 @@ use egui::{Event, FocusDirection, Key, Modifiers, Ui};
 
 use super::grid::WIDTH;
 use super::view::{Column, HexView};
-use super::{HexEdit, HexModel, address_text};
+use super::{HexEdit, HexModel};
 use crate::app::Text;
 use crate::bits::{self, HexError};
 
@@ -211,9 +211,8 @@ fn put(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut 
         return;
     }
     if bytes.len() > room {
-        let digits = format!("{:X}", model.wanted.len().saturating_sub(1)).len().max(2);
         let problem = Text::new("widget.hex_too_long").with("count", bytes.len()).with("room", room);
-        view.problem = Some(problem.with("address", address_text(address, digits)));
+        view.problem = Some(problem.with("address", model.address(address)));
         return;
     }
     let end = address + bytes.len();

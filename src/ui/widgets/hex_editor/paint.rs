@@ -68,7 +68,7 @@ impl Brush<'_> {
         let start = line * WIDTH;
         let end = (start + WIDTH).min(self.model.wanted.len());
         let here = (start..end).contains(&self.view.cursor());
-        let address = format!("{start:0digits$X}", digits = self.grid.digits);
+        let address = self.model.addresses.heading(start, self.model.wanted.len());
         let colour = if here { self.theme.palette.text } else { self.theme.palette.muted };
         let left = self.origin + Vec2::new(0.0, self.grid.row * (line as f32 + 0.5));
         self.ui.painter().text(left, Align2::LEFT_CENTER, address, self.grid.font.clone(), colour.into());

@@ -2,13 +2,12 @@
 
 use egui::Ui;
 
-use super::grid::Grid;
-use super::{HexModel, address_text};
+use super::HexModel;
 use crate::bits;
 use crate::ui::{Theme, icons};
 
 /// Draws the byte in every representation, the device's byte, and the mark that it belongs to.
-pub(super) fn byte(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, at: usize) {
+pub(super) fn byte(ui: &mut Ui, theme: &Theme, model: &HexModel<'_>, at: usize) {
     let Some(byte) = model.wanted.get(at).copied() else { return };
     ui.spacing_mut().item_spacing = egui::vec2(theme.space.groups, theme.space.inside);
     let row = |ui: &mut Ui, name: String, value: egui::RichText| {
@@ -17,7 +16,7 @@ pub(super) fn byte(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>
         ui.end_row();
     };
     egui::Grid::new("byte").num_columns(2).min_row_height(theme.space.groups).show(ui, |ui| {
-        let address = format!("{} ({at})", address_text(at, grid.digits));
+        let address = format!("{} ({at})", model.address(at));
         row(ui, theme.say("widget.hex_tip_address"), theme.mono(address));
         row(ui, theme.say("widget.hex_tip_hex"), theme.mono(format!("{byte:02X}")));
         row(ui, theme.say("widget.hex_tip_decimal"), theme.mono(byte.to_string()));

@@ -24,7 +24,7 @@ fn editor(count: u8, read_only: Option<Text>) -> Harness<'static, Bytes> {
     let state = Bytes { wanted: device.clone(), device, read_only, ..Bytes::default() };
     let mut harness = window(state, |ui, state: &mut Bytes| {
         let marks = [HexMark { range: 4..8, words: "belongs to the mounting" }];
-        let model = HexModel { device: &state.device, wanted: &state.wanted, marks: &marks, read_only: None, lines: 8 };
+        let model = HexModel { marks: &marks, lines: 8, ..HexModel::new(&state.device, &state.wanted) };
         let model = HexModel { read_only: state.read_only.as_ref(), ..model };
         let edits = hex_editor(ui, &theme(), BYTES, &model, &mut state.view);
         for edit in &edits {

@@ -5,10 +5,9 @@ use egui::{RichText, Ui};
 use super::CamsUiState as Page;
 use crate::app::{Action, Language, Text};
 use crate::devices::interbus::protocol::ProgramNumber;
-use crate::devices::interbus::state::cams::words;
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
-use crate::ui::controls::{button, entry, icon_menu, name, paragraph, problem, text_entry};
+use crate::ui::controls::{button, entry, icon_menu, name, paragraph, problem_below, text_entry};
 use crate::ui::{Theme, icons};
 
 /// The entered text.
@@ -49,14 +48,6 @@ pub(super) fn bar_ui(
         }
         tables(ui, theme, encoder, program, actions);
     });
-    let own: Vec<_> = marks.into_iter().filter(|mark| mark.program() == Some(program)).collect();
-    for words in words::marks(&own) {
-        ui.horizontal_top(|ui| {
-            ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
-            paragraph(ui, theme.words(&words));
-        });
-    }
-    problem(ui, theme, encoder.refusal.as_ref());
 }
 
 /// A program copied, mirrored, shifted.
@@ -100,7 +91,7 @@ fn whole(
                 }
             }
         });
-        problem(ui, theme, view.refused.as_ref());
+        problem_below(ui, theme, view.refused.as_ref());
         paragraph(ui, theme.caption(say(theme, "ib_cams.move_words")));
     });
 }

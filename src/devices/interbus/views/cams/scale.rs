@@ -7,7 +7,7 @@ use crate::devices::interbus::profile::{Scale, Unit};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{card, choice, entry, paragraph, problem, settled_entry};
+use crate::ui::controls::{card, choice, entry, paragraph, problem_below, settled_entry};
 
 /// Entered text that does not take effect yet.
 #[derive(Default)]
@@ -56,7 +56,7 @@ pub(super) fn card_ui(
                     Ok(())
                 });
             });
-            problem(ui, theme, view.steps.as_ref().and_then(|own| own.1.as_ref()));
+            problem_below(ui, theme, view.steps.as_ref().and_then(|own| own.1.as_ref()));
         }
         let word = say(theme, "ib_scale.zero");
         entry(ui, theme, &word, |ui| {
@@ -65,6 +65,6 @@ pub(super) fn card_ui(
                 Ok(())
             });
         });
-        problem(ui, theme, view.zero.as_ref().and_then(|own| own.1.as_ref()));
+        problem_below(ui, theme, view.zero.as_ref().and_then(|own| own.1.as_ref()));
     });
 }

@@ -1,0 +1,90 @@
+//! Rows of a label and a value or an entry. The labels of a card have a column that is as wide as its longest label needs.
+
+use egui::{Id, RichText, Ui, vec2};
+
+use super::Theme;
+
+/// Width of the column of labels, unless a label of the card needs more.
+const LABELS: f32 = 132.0;
+/// Largest shares of the width that a column of labels takes without need, and for long labels.
+const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
+
+/// The column of labels of the card that is being drawn.
+#[derive(Clone, Copy, Default)]
+struct LabelColumn {
+    /// Width of the longest label when the card was drawn last.
+    longest: f32,
+    /// Width of the longest label until now.
+    drawn: f32,
+}
+
+impl LabelColumn {
+    fn id() -> Id {
+        Id::unique("column of labels")
+    }
+
+    fn of(ui: &Ui) -> Self {
+        ui.data(|data| data.get_temp(Self::id())).unwrap_or_default()
+    }
+
+    fn set(self, ui: &Ui) {
+        ui.data_mut(|data| data.insert_temp(Self::id(), self));
+    }
+}
+
+/// Draws the content of the card with this heading: its labels have a column that is wide enough for the longest of them.
+pub(crate) fn with_label_column<R>(ui: &mut Ui, heading: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
+    let (outer, id) = (LabelColumn::of(ui), ui.scope_id().with((LabelColumn::id(), heading)));
+    let longest = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    LabelColumn { longest, drawn: 0.0 }.set(ui);
+    let result = content(ui);
+    let LabelColumn { drawn, .. } = LabelColumn::of(ui);
+    if drawn != longest {
+        ui.data_mut(|data| data.insert_temp(id, drawn));
+        // Not in the same frame again: input would count twice.
+        ui.ctx().request_repaint();
+    }
+    outer.set(ui);
+    result
+}
+
+/// Returns the width of the column of labels.
+pub(crate) fn label_width(ui: &Ui) -> f32 {
+    let (usual, most) = LABEL_SHARES;
+    let room = ui.available_width().max(0.0);
+    LABELS.min(room * usual).max(LabelColumn::of(ui).longest.min(room * most))
+}
+
+/// Draws a label and a value that can be selected, on one line.
+pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) {
+    ui.scope(|ui| {
+        // Values are only read: they are closer together than controls.
+        ui.spacing_mut().interact_size.y = 20.0;
+        ui.spacing_mut().item_spacing.y = theme.space.inside;
+        ui.horizontal_top(|ui| {
+            label_ui(ui, theme, label);
+            ui.add(egui::Label::new(value.into()).selectable(true).wrap());
+        });
+    });
+}
+
+/// Draws a label and another widget on one line.
+pub fn entry<R>(ui: &mut Ui, theme: &Theme, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.horizontal(|ui| {
+        label_ui(ui, theme, label);
+        content(ui)
+    })
+    .inner
+}
+
+fn label_ui(ui: &mut Ui, theme: &Theme, label: &str) {
+    let width = label_width(ui);
+    let text = egui::WidgetText::from(theme.label(label));
+    let galley = text.clone().into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Body);
+    let column = LabelColumn::of(ui);
+    LabelColumn { drawn: column.drawn.max(galley.size().x.ceil()), ..column }.set(ui);
+    ui.allocate_ui_with_layout(vec2(width, 18.0), egui::Layout::left_to_right(egui::Align::Min), |ui| {
+        ui.set_min_width(width);
+        ui.add(egui::Label::new(text).truncate());
+    });
+}

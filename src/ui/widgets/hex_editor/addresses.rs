@@ -1,0 +1,64 @@
+//! The addresses of the bytes in a hex editor, as text.
+
+/// How addresses are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HexAddresses {
+    /// Counted from the first byte: `0x1F`.
+    #[default]
+    Counted,
+    /// Bank and offset: `0x24:0x1F`.
+    Banked {
+        /// Bank of the first byte, which is at its beginning.
+        first: usize,
+        /// Bytes of a bank; not zero.
+        size: usize,
+    },
+}
+
+impl HexAddresses {
+    /// Returns an address among so many bytes: upper-case hex with as many digits as the last one needs, at least two.
+    pub(super) fn text(self, at: usize, len: usize) -> String {
+        match self.parts(at) {
+            (None, at) => format!("0x{at:0digits$X}", digits = digits(len)),
+            (Some(bank), offset) => format!("0x{bank:02X}:0x{offset:02X}"),
+        }
+    }
+
+    /// Returns the heading of the line that begins at an address: the text without its marks.
+    pub(super) fn heading(self, at: usize, len: usize) -> String {
+        self.text(at, len).replace("0x", "")
+    }
+
+    /// Returns the characters of the longest heading.
+    pub(super) fn width(self, len: usize) -> usize {
+        self.heading(len.saturating_sub(1), len).len()
+    }
+
+    fn parts(self, at: usize) -> (Option<usize>, usize) {
+        match self {
+            HexAddresses::Counted => (None, at),
+            HexAddresses::Banked { first, size } => {
+                let size = size.max(1);
+                (Some(first + at / size), at % size)
+            }
+        }
+    }
+}
+
+fn digits(len: usize) -> usize {
+    format!("{:X}", len.saturating_sub(1)).len().max(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::HexAddresses::{Banked, Counted};
+
+    #[test]
+    fn addresses_are_counted_or_have_a_bank() {
+        assert_eq!((Counted.text(0x1F, 32), Counted.heading(0x10, 32)), ("0x1F".to_owned(), "10".to_owned()));
+        assert_eq!((Counted.text(0x1F, 2048).as_str(), Counted.width(2048)), ("0x01F", 3));
+        let banked = Banked { first: 0x24, size: 64 };
+        assert_eq!((banked.text(0x4A, 2048).as_str(), banked.heading(0x40, 2048).as_str()), ("0x25:0x0A", "25:00"));
+        assert_eq!(banked.width(2048), 5);
+    }
+}

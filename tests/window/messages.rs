@@ -1,0 +1,78 @@
+//! Messages that come and go on a page: nothing that can be clicked moves.
+
+use egui::Rect;
+use egui::accesskit::Role;
+use egui_kittest::kittest::{NodeT, Queryable};
+use encoder_studio::app::{Action, Language};
+use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus};
+
+use crate::hiperdrive_jog::in_control_on_screen;
+use crate::screen::Screen;
+use crate::tabs::Tabs as _;
+
+const SIZES: [[f32; 2]; 2] = [[1280.0, 800.0], [1024.0, 640.0]];
+
+/// Returns the buttons and entries with their places.
+fn places(screen: &Screen) -> Vec<(Role, String, Rect)> {
+    let nodes = screen.harness.query_all_by(|node| {
+        matches!(node.role(), Role::Button | Role::TextInput | Role::CheckBox | Role::ComboBox | Role::Slider)
+    });
+    let mut places: Vec<_> = nodes
+        .map(|node| {
+            let own = node.accesskit_node();
+            (own.role(), own.label().unwrap_or_default(), node.rect())
+        })
+        .collect();
+    places.sort_by(|one, other| one.1.cmp(&other.1).then(one.2.top().total_cmp(&other.2.top())));
+    places
+}
+
+#[track_caller]
+fn assert_nothing_moved(before: &[(Role, String, Rect)], after: &[(Role, String, Rect)]) {
+    for (role, label, place) in before {
+        let now: Vec<_> = after.iter().filter(|own| own.0 == *role && own.1 == *label).collect();
+        // A job that ends meanwhile takes its button away.
+        let stays = now.is_empty() || now.iter().any(|own| own.2 == *place);
+        assert!(stays, "{role:?} {label:?} was at {place:?}: {now:?}");
+    }
+}
+
+#[test]
+fn a_refused_target_moves_nothing() {
+    // So high that the button needs no scrolling.
+    for size in SIZES.map(|[width, height]| [width, height * 2.0]) {
+        let mut screen = in_control_on_screen("sim:", size);
+        let label = screen.say("hd_move.target");
+        screen.harness.get_by_role_and_label(Role::TextInput, &label).focus();
+        screen.steps();
+        screen.harness.get_by_role_and_label(Role::TextInput, &label).type_text("far away");
+        screen.steps();
+        let before = places(&screen);
+        assert!(screen.is_enabled("hd_move.go"));
+        screen.click("hd_move.go");
+        assert!(screen.shows("far away"), "the reason is shown");
+        assert_nothing_moved(&before, &places(&screen));
+    }
+}
+
+#[test]
+fn cams_beyond_the_range_move_nothing_on_the_other_pages() {
+    for size in SIZES {
+        let link = "sim:?steps=3600&revolutions=1&cams=demo";
+        let mut screen = Screen::opened_in(crate::tabs::INTERBUS, link, size);
+        screen.until("it is read", |studio| {
+            studio.interbus().is_some_and(|own| own.programs_read() == 8 && own.session.is_ready())
+        });
+        screen.click("page.parameters");
+        let id = screen.studio().interbus().unwrap().session.id;
+        let edit = |steps| Action::device(id, Interbus::Edit(Box::new(Edit::Steps(steps))));
+        // An edit without a mark first: it enables the buttons of the edit bar.
+        screen.act(edit(3601));
+        let before = places(&screen);
+        screen.act(edit(3000));
+        assert!(screen.shows("are outside the measuring range, which ends at 2999."));
+        assert_nothing_moved(&before, &places(&screen));
+        screen.act(Action::SetLanguage(Language::German));
+        screen.check_language();
+    }
+}
