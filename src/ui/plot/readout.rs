@@ -30,8 +30,12 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
         });
     }
     let measured = recorder.visible_series().any(|line| recorder.measure(line).is_some());
-    if measured && ui.available_width() > WIDE {
-        table(ui, context, hovered);
+    if measured {
+        if ui.available_width() > WIDE {
+            table(ui, context, hovered)
+        } else {
+            columns(ui, context, hovered)
+        }
         return;
     }
     for line in recorder.visible_series() {
@@ -39,10 +43,7 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
             name(ui, theme, line);
             ui.label(small(theme, now(context, line, hovered)));
             ui.label(theme.caption(line.scale().map(|scale| theme.words(&scale.unit)).unwrap_or_default()));
-            remarks(ui, theme, line, recorder.measure(line).as_ref());
-            for (label, value) in recorder.measure(line).map(|own| figures(theme, line, &own)).unwrap_or_default() {
-                figure(ui, theme, &label, &value);
-            }
+            remarks(ui, theme, line, None);
         });
     }
 }
@@ -87,10 +88,54 @@ fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
     });
 }
 
+/// Draws a column per line, a row per number, where there is little width.
+fn columns(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
+    let (theme, recorder) = (context.theme, context.recorder);
+    let lines: Vec<(&Series, Option<Measured>)> =
+        recorder.visible_series().map(|line| (line, recorder.measure(line))).collect();
+    let numbers: Vec<Vec<(String, String)>> = lines
+        .iter()
+        .map(|(line, measured)| measured.as_ref().map(|own| figures(theme, line, own)).unwrap_or_default())
+        .collect();
+    let labels: Vec<&String> =
+        numbers.iter().max_by_key(|own| own.len()).into_iter().flatten().map(|(label, _)| label).collect();
+    egui::Grid::new("measured").num_columns(lines.len() + 1).spacing(vec2(theme.space.between, 2.0)).show(ui, |ui| {
+        ui.label("");
+        for (line, _) in &lines {
+            let unit = line.scale().map(|scale| theme.words(&scale.unit)).unwrap_or_default();
+            ui.horizontal(|ui| {
+                swatch(ui, theme, line);
+                ui.label(theme.caption(unit)).on_hover_text(theme.words(&line.name));
+            });
+        }
+        ui.end_row();
+        ui.label("");
+        for (line, _) in &lines {
+            ui.label(small(theme, now(context, line, hovered)));
+        }
+        ui.end_row();
+        for (at, label) in labels.into_iter().enumerate() {
+            ui.label(theme.caption(label));
+            for own in &numbers {
+                ui.label(small(theme, own.get(at).map_or("", |(_, value)| value.as_str())));
+            }
+            ui.end_row();
+        }
+    });
+    for (line, measured) in &lines {
+        ui.horizontal_wrapped(|ui| remarks(ui, theme, line, measured.as_ref()));
+    }
+}
+
 fn name(ui: &mut Ui, theme: &Theme, line: &Series) {
+    swatch(ui, theme, line);
+    ui.label(theme.caption(theme.words(&line.name)));
+}
+
+/// Draws a square in the colour of a line.
+fn swatch(ui: &mut Ui, theme: &Theme, line: &Series) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
     ui.painter().rect_filled(rect.shrink(1.0), 2.0, chart::colour(theme, line));
-    ui.label(theme.caption(theme.words(&line.name)));
 }
 
 /// Returns the raw sample under the pointer, or the newest.

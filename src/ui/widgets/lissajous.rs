@@ -90,6 +90,7 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
     let place = PlotArea { rect, range_v: range(figure) };
     grid(&painter, theme, &place);
     rings(&painter, theme, &place, figure);
+    labels(&painter, theme, &place);
     for own in figure.figures {
         samples(&painter, &place, own);
     }
@@ -125,31 +126,49 @@ fn range(figure: &Lissajous<'_>) -> f64 {
     curves.chain(pictures).fold(figure.ok_v.1 * 1.12, f64::max)
 }
 
+fn step(place: &PlotArea) -> f64 {
+    STEPS.into_iter().find(|step| place.range_v / step < 3.0).unwrap_or(place.range_v / 2.0)
+}
+
+fn marks(place: &PlotArea) -> impl Iterator<Item = (i32, f64)> {
+    let step = step(place);
+    let count = (place.range_v / step).floor().min(4.0) as i32;
+    (-count..=count).map(move |number| (number, f64::from(number) * step))
+}
+
 fn grid(painter: &Painter, theme: &Theme, place: &PlotArea) {
     let line = Stroke::new(1.0, theme.palette.line);
-    let step = STEPS.into_iter().find(|step| place.range_v / step < 3.0).unwrap_or(place.range_v / 2.0);
+    for (_, volts) in marks(place) {
+        painter.vline(place.at((volts, 0.0)).x, place.rect.y_range(), line);
+        painter.hline(place.rect.x_range(), place.at((0.0, volts)).y, line);
+    }
+}
+
+/// Draws the labels of the axes over the rings, each on a ground of its own.
+fn labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
+    let step = step(place);
     let font = FontId::proportional(theme.sizes.caption);
     let muted = Color32::from(theme.palette.muted);
     let (rect, inside) = (place.rect, theme.space.inside);
-    let count = (place.range_v / step).floor().min(4.0) as i32;
-    for number in -count..=count {
-        let volts = f64::from(number) * step;
+    let text = |pos: Pos2, align: Align2, words: String| {
+        let galley = painter.layout_no_wrap(words, font.clone(), muted);
+        let own = align.anchor_size(pos, galley.size());
+        painter.rect_filled(own.expand(1.0), 2.0, Color32::from(theme.palette.sunken).gamma_multiply(0.85));
+        painter.galley(own.min, galley, muted);
+    };
+    for (_, volts) in marks(place).filter(|(number, _)| *number != 0) {
         let (x, y) = (place.at((volts, 0.0)).x, place.at((0.0, volts)).y);
-        painter.vline(x, rect.y_range(), line);
-        painter.hline(rect.x_range(), y, line);
-        if number != 0 {
-            let words =
-                theme.number(volts, if step < 0.1 { 2 } else { usize::from(step < 1.0) + usize::from(step == 0.25) });
-            painter.text(Pos2::new(x + 2.0, rect.bottom() - inside), Align2::LEFT_BOTTOM, &words, font.clone(), muted);
-            painter.text(Pos2::new(rect.left() + inside, y - 2.0), Align2::LEFT_BOTTOM, words, font.clone(), muted);
-        }
+        let decimals = if step < 0.1 { 2 } else { usize::from(step < 1.0) + usize::from(step == 0.25) };
+        let words = theme.number(volts, decimals);
+        text(Pos2::new(x + 2.0, rect.bottom() - inside), Align2::LEFT_BOTTOM, words.clone());
+        text(Pos2::new(rect.left() + inside, y - 2.0), Align2::LEFT_BOTTOM, words);
     }
     let sine = format!("{} / V", theme.say("signals.sine"));
     let cosine = format!("{} / V", theme.say("signals.cosine"));
     // Each at the end of its own axis.
     let (top, right) = (Pos2::new(rect.center().x + inside, rect.top() + inside), rect.right_center());
-    painter.text(top, Align2::LEFT_TOP, sine, font.clone(), muted);
-    painter.text(right - Vec2::splat(inside), Align2::RIGHT_BOTTOM, cosine, font, muted);
+    text(top, Align2::LEFT_TOP, sine);
+    text(right - Vec2::splat(inside), Align2::RIGHT_BOTTOM, cosine);
 }
 
 fn rings(painter: &Painter, theme: &Theme, place: &PlotArea, figure: &Lissajous<'_>) {

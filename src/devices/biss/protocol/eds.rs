@@ -2,8 +2,6 @@
 //! the encoder (manual, appendix 9.1.4 and 9.1.5). Numbers have their high byte first; the last byte of each bank is the
 //! sum of the others. Bytes that the tables do not name are kept.
 
-use std::time::Duration;
-
 use super::crc::{Crc, CrcError};
 use super::single_cycle::{Layout, LayoutError};
 use super::status::ProfileId;
@@ -54,7 +52,7 @@ pub enum EdsValue {
     Bank(u8),
     /// FFh in place of a bank's number.
     NotAvailable,
-    /// A time in units that are not published ([`EDS_TICK`] is a guess).
+    /// A time in units that are not published: the manual's tables fit no length exactly (`U`).
     Ticks(u8),
     /// 0 as a time-out: it adapts itself.
     Adaptive,
@@ -86,9 +84,6 @@ pub enum Feedback {
     /// An unknown code.
     Unknown(u8),
 }
-
-/// The tick of times: it fits neither of the manual's own tables exactly; nothing better is published (`U`).
-pub const EDS_TICK: Duration = Duration::from_nanos(250);
 
 const NUMBER: Meaning = Meaning::Number("");
 const TIME_OUT: Meaning = Meaning::Ticks { zero: EdsValue::Adaptive };
@@ -321,14 +316,6 @@ impl EdsValue {
     pub fn celsius(self) -> Option<i32> {
         match self {
             EdsValue::Kelvin(kelvin) => Some(i32::from(kelvin) - 273),
-            _ => None,
-        }
-    }
-
-    /// Returns the time of a number of ticks, with the length of one.
-    pub fn duration(self, tick: Duration) -> Option<Duration> {
-        match self {
-            EdsValue::Ticks(ticks) => Some(tick * u32::from(ticks)),
             _ => None,
         }
     }

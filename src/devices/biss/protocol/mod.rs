@@ -31,7 +31,7 @@ pub use description::{
     Access, Area, Claim, Decoded, Decoding, Description, DescriptionError, Descriptions, Flaw, Identity, Lock,
     Mismatch, Name, Procedure, Register, Role,
 };
-pub use eds::{EDS_TICK, Eds, EdsBank, EdsError, EdsField, EdsValue, Feedback, layout as eds_layout};
+pub use eds::{Eds, EdsBank, EdsError, EdsField, EdsValue, Feedback, layout as eds_layout};
 pub use line::{Cycle, CycleError};
 pub use procedure::{
     CalibrationCommand, CalibrationStatus, DataCommand, DataStatus, FilterCommand, FilterStatus, PresetCommand,

@@ -137,7 +137,7 @@ mod tests {
             ("0x7E", "Fr", "Fr"),
             ("0x00:0x09", "5.3 V", "5,3 V"),
             ("0x02:0x01", "2 banks", "2 Bänke"),
-            ("0x02:0x05", "7.00 µs at 250 ns", "7,00 µs bei 250 ns"),
+            ("0x02:0x05", "unit not published", "Einheit nicht veröffentlicht"),
             ("0x02:0x11", "1 slave address", "1 Slave-Adresse"),
             ("0x02:0x17", "0x43", "0x43"),
             ("0x02:0x3F", "checksum fits", "Prüfsumme stimmt"),

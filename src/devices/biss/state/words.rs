@@ -7,7 +7,7 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::biss::jobs::BissJob;
 use crate::devices::biss::protocol::{
-    Description, Descriptions, EDS_TICK, EdsBank, EdsError, EdsField, EdsValue, Feedback, Filter, RegisterAddress,
+    Description, Descriptions, EdsBank, EdsError, EdsField, EdsValue, Feedback, Filter, RegisterAddress,
 };
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
@@ -69,7 +69,7 @@ pub fn eds(value: EdsValue) -> Text {
         EdsValue::Number(number, unit) => plain(format!("{number} {unit}")),
         EdsValue::Bank(bank) => plain(format!("0x{bank:02X}")),
         EdsValue::NotAvailable => text("eds.none"),
-        EdsValue::Ticks(ticks) => TEXTS.text("eds.ticks").with("ticks", ticks).with_text("time", ticks_long(value)),
+        EdsValue::Ticks(ticks) => text("eds.ticks").with("ticks", ticks),
         EdsValue::Adaptive => text("eds.adaptive"),
         EdsValue::NoLimit => text("eds.no_limit"),
         EdsValue::Kelvin(kelvin) => plain(format!("{kelvin} K  {} °C", value.celsius().unwrap_or_default())),
@@ -90,7 +90,7 @@ pub fn eds(value: EdsValue) -> Text {
 pub(super) fn beyond_number(value: EdsValue) -> Option<Text> {
     match value {
         EdsValue::Number(_, "") => None,
-        EdsValue::Ticks(_) => Some(ticks_long(value)),
+        EdsValue::Ticks(_) => Some(TEXTS.text("eds.no_unit")),
         _ => Some(eds(value)),
     }
 }
@@ -105,9 +105,3 @@ pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
 /// The description with the manual's names, in both languages, for the fields that every data sheet has.
 static KIT: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());
-
-/// Returns the duration of a number of ticks.
-fn ticks_long(value: EdsValue) -> Text {
-    let microseconds = value.duration(EDS_TICK).map_or(0.0, |own| own.as_secs_f64() * 1e6);
-    TEXTS.text("eds.ticks_long").with_number("time", microseconds, 2)
-}
