@@ -78,11 +78,16 @@ impl CamChart<'_> {
             Hold::Edge(_, edge) => own.map(|cam| cams::pulled(cam, edge, by(hold, cam), range)),
             Hold::Whole(_) => own.map(|cam| cams::moved(cam, by(hold, cam), range)),
             Hold::New(number) => {
-                let first = from.floor() as i64;
-                let place = Value::of_word(first.rem_euclid(i64::from(range.max(1))) as u32);
-                let edge = if at < from { Edge::Start } else { Edge::Stop };
-                let one = Cam { start: place, stop: place };
-                Some(cams::drawn(first, first + by(Hold::Edge(number, edge), one), range))
+                let (anchor, edge) = if at < from { (Edge::Stop, Edge::Start) } else { (Edge::Start, Edge::Stop) };
+                // The place where an edge that begins at one step snaps when it is dragged to another place.
+                let snapped = |edge, begin: i64, to: f64| {
+                    let place = Value::of_word(begin.rem_euclid(i64::from(range.max(1))) as u32);
+                    let one = Cam { start: place, stop: place };
+                    let hold = Hold::Edge(number, edge);
+                    begin + cams::snap(self.chart, self.scale, hold, one, to - begin as f64, snap)
+                };
+                let first = snapped(anchor, from.floor() as i64, from.floor());
+                Some(cams::drawn(first, snapped(edge, first, at), range))
             }
         }
     }

@@ -49,6 +49,10 @@ fn page() -> Page {
 }
 
 fn draw(page: Page, ring: bool) -> Harness<'static, Page> {
+    draw_with(page, ring, false)
+}
+
+fn draw_with(page: Page, ring: bool, snaps: bool) -> Harness<'static, Page> {
     window(page, move |ui, page: &mut Page| {
         let chart = Chart::of(&page.staged, program()).unwrap();
         let model = CamChart {
@@ -59,7 +63,7 @@ fn draw(page: Page, ring: bool) -> Harness<'static, Page> {
             own: page.own,
             selected: page.selected,
             movable: true,
-            snaps: false,
+            snaps,
         };
         let event =
             if ring { cam_ring(ui, &theme(), &model, 400.0) } else { cam_lanes(ui, &theme(), &model, page.view) };
@@ -256,6 +260,20 @@ fn the_wheel_zooms_and_keys_scroll_into_view() {
     harness.run();
     let view = harness.state().view;
     assert!(view.first() <= 900.0 && 900.0 <= view.first() + view.span(), "{view:?}");
+}
+
+/// Cam 4 is drawn from a few steps beside the start of cam 0, which is at 100, to a few beside its end, which is 299.
+#[test]
+fn both_edges_of_a_drawn_cam_snap() {
+    let mut harness = draw_with(page(), false, true);
+    let lane = harness.get_by_label("Output 7").rect();
+    let start = harness.get_by_label("Cam 0: start").rect().center();
+    let from = egui::pos2(start.x + steps(&harness, 3.0).x, lane.center().y);
+    let by = steps(&harness, 191.0);
+    drag(&mut harness, from, by);
+    let drawn = changes(&harness);
+    let Some(CamEvent::Moved { to, drawn: true, .. }) = drawn.last() else { panic!("{drawn:?}") };
+    assert_eq!((to.start.get(), to.stop.get()), (100, 299));
 }
 
 #[test]

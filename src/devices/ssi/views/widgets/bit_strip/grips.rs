@@ -8,8 +8,15 @@ use super::{Drag, StripContext, StripEvent, keep_arrows, paint};
 use crate::devices::ssi::state::strip::{self, Handle, Strip};
 
 /// Offset and width of the grab area of a handle beside its edge.
-const BESIDE: f32 = 5.0;
-const WIDTH: f32 = 9.0;
+const BESIDE: f32 = 7.0;
+const WIDTH: f32 = 14.0;
+/// Width of the strip after the last clock.
+const ROOM: f32 = 9.5;
+/// Offset of the drawn tab of a handle, and of one that has another on its edge.
+const TAB: f32 = 3.0;
+const SECOND_TAB: f32 = 8.0;
+/// Share of a field at each of its ends where it cannot be taken hold of as a whole.
+const ENDS: f32 = 0.25;
 
 /// Draws all handles, and returns the user's action.
 pub(super) fn grips(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
@@ -74,9 +81,10 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
         let (first, last) = strip.position()?;
         let runs = rows.runs(first, last);
         let widest = runs.into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))?;
-        // Its ends belong to the boundaries there.
+        // Its ends belong to the boundaries there: it moves only by its middle.
         let lane = Rows::lane(widest);
-        return Some(lane.shrink2(Vec2::new(WIDTH.min(lane.width() / 3.0), 0.0)));
+        let ends = (lane.width() * ENDS).max(WIDTH).min(lane.width() / 3.0);
+        return Some(lane.shrink2(Vec2::new(ends, 0.0)));
     }
     let edge = edge(rows, strip, handle)?;
     let x = edge.center().x + side(handle) * if is_second(strip, handle) { WIDTH } else { BESIDE };
@@ -85,7 +93,9 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
         Handle::AreaEnd => (edge.top() - BESIDE * 3.0, edge.top()),
         _ => (edge.top(), edge.bottom()),
     };
-    Some(Rect::from_x_y_ranges(x - WIDTH / 2.0..=x + WIDTH / 2.0, top..=bottom))
+    // The last one ends with the strip.
+    let right = if handle == Handle::FrameEnd { edge.center().x + ROOM } else { x + WIDTH / 2.0 };
+    Some(Rect::from_x_y_ranges(x - WIDTH / 2.0..=right, top..=bottom))
 }
 
 /// Returns the edge of a boundary.
@@ -99,7 +109,7 @@ pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
 
 /// Returns the offset of a boundary's tab from its edge.
 pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
-    side(handle) * if is_second(strip, handle) { WIDTH - 1.0 } else { BESIDE * 0.6 }
+    side(handle) * if is_second(strip, handle) { SECOND_TAB } else { TAB }
 }
 
 /// Returns whether a boundary is beside the edge: one between turns and steps is on the edge itself, one where zeros are
