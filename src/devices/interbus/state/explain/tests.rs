@@ -217,14 +217,21 @@ fn operations_are_described_one_by_one() {
     let turned = ParameterChange { parameter: Parameter::Direction, from: 3, to: 4 };
     let expected = vec!["direction: clockwise → counterclockwise".to_owned()];
     assert_eq!(words(&Op::Parameterise(vec![turned])), ("Parameters, stored once".to_owned(), expected));
+    let cam = |number| CamNumber::new(number).unwrap();
     let change = ProgramChange {
         program: ProgramNumber::new(2).unwrap(),
-        cams: vec![CamChange { cam: CamNumber::new(5).unwrap(), edge: Edge::Stop, from: value(10), to: value(20) }],
+        cams: vec![
+            CamChange { cam: cam(5), edge: Edge::Stop, from: value(10), to: value(20) },
+            CamChange { cam: cam(6), edge: Edge::Start, from: value(900), to: value(910) },
+            CamChange { cam: cam(6), edge: Edge::Stop, from: value(40), to: value(55) },
+        ],
         mask: Some((0, 0x93)),
         shift: WindowShift::new(0).zip(WindowShift::new(8)),
     };
     let expected =
-        ["cam 5, stop: 10 → 20", "active cams: none → 0, 1, 4, 7", "window shift: 0 → 8"].map(str::to_owned).to_vec();
+        ["cam 5, stop: 10 → 20", "cam 6: 900…40 → 910…55", "active cams: none → 0, 1, 4, 7", "window shift: 0 → 8"]
+            .map(str::to_owned)
+            .to_vec();
     assert_eq!(words(&Op::Program(change)), ("Cam program 2, stored once".to_owned(), expected));
     let fired = words(&Op::FirePreset { value: 500 });
     assert_eq!(fired.1, ["position at that time → 500"]);

@@ -13,7 +13,7 @@ use crate::devices::interbus::procedures::write::{EndState, Interrupted, Written
 use crate::devices::interbus::profile::{
     CamChange, Edge, Item, Op, OtherType, ParameterChange, PlanError, ProgramChange,
 };
-use crate::devices::interbus::protocol::{Flags, GearError};
+use crate::devices::interbus::protocol::{Flags, GearError, Value};
 use crate::devices::interbus::state::TEXTS;
 use crate::worker::NotBegun;
 
@@ -57,10 +57,22 @@ pub fn op(op: &Op) -> OpWords {
 
 fn program(change: &ProgramChange) -> Vec<ChangeWords> {
     let words = |part: Text, old: Text, new: Text| ChangeWords { part: Some(part), old, new };
-    let of_cam = |own: &CamChange| words(edge(own.cam, own.edge), plain(own.from.get()), plain(own.to.get()));
+    // A line a cam.
+    let of_cam = |own: &[CamChange]| match own {
+        [start @ CamChange { edge: Edge::Start, .. }, stop] => {
+            let edges = |start: Value, stop: Value| plain(format!("{}…{}", start.get(), stop.get()));
+            let cam = TEXTS.text("ib_item.cam").with("cam", start.cam.get());
+            vec![words(cam, edges(start.from, stop.from), edges(start.to, stop.to))]
+        }
+        own => {
+            let each = |own: &CamChange| words(edge(own.cam, own.edge), plain(own.from.get()), plain(own.to.get()));
+            own.iter().map(each).collect()
+        }
+    };
+    let of_cams = change.cams.chunk_by(|one, other| one.cam == other.cam).flat_map(of_cam);
     let mask = change.mask.map(|(old, new)| words(TEXTS.text("ib_item.mask"), cams(old), cams(new)));
     let shift = change.shift.map(|(old, new)| words(TEXTS.text("ib_item.shift"), plain(old.get()), plain(new.get())));
-    change.cams.iter().map(of_cam).chain(mask).chain(shift).collect()
+    of_cams.chain(mask).chain(shift).collect()
 }
 
 /// Returns the text for a profile for another type of encoder.
