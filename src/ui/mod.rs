@@ -13,6 +13,7 @@ mod end;
 mod entries;
 mod header;
 pub mod icons;
+mod input_order;
 mod keys;
 mod label_column;
 pub(crate) mod motor;

@@ -74,6 +74,10 @@ impl eframe::App for StudioApp {
         self.window.logic(ctx);
     }
 
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        self.window.order_input(ctx, input);
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         // The second frame begins when the first is on the screen.
         if ui.ctx().cumulative_frame_nr() > 0

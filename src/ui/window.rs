@@ -8,6 +8,7 @@ use super::commands::{self, Effect};
 use super::device_view::TabViews;
 use super::dialogs::{self, FileView, PaletteUiState};
 use super::docks::Docks;
+use super::input_order::HeldInput;
 use super::keys::Keys;
 use super::navigation::navigation_ui;
 use super::page::apart;
@@ -20,6 +21,7 @@ pub struct Window {
     views: Views,
     docks: Docks,
     keys: Keys,
+    held_input: HeldInput,
     /// The request to close the window was already handled in this frame.
     close_heard: bool,
     look: &'static ThemeData,
@@ -33,12 +35,31 @@ impl Window {
     pub fn new(studio: Studio, look: &'static ThemeData, tabs: TabViews) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
         let views = Views::new(tabs);
-        Window { studio, views, docks, keys: Keys::new(), close_heard: false, look, dressed: None, notice_since: None }
+        Window {
+            studio,
+            views,
+            docks,
+            keys: Keys::new(),
+            held_input: HeldInput::default(),
+            close_heard: false,
+            look,
+            dressed: None,
+            notice_since: None,
+        }
     }
 
     /// Returns the complete state.
     pub fn studio(&self) -> &Studio {
         &self.studio
+    }
+
+    /// Divides the input of a frame so that text reaches the entry that was clicked before it. While drives are under control
+    /// nothing is held back.
+    pub fn order_input(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        let at_once = !input.focused || self.studio.is_in_control();
+        if self.held_input.divide(&mut input.events, at_once) {
+            ctx.request_repaint();
+        }
     }
 
     /// Draws everything and carries out the actions.

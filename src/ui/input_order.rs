@@ -1,0 +1,91 @@
+//! The order of input within a frame. Whoever types fast, or has a busy computer, clicks an entry and types into it within one
+//! frame, and the entry gets the keyboard only at the end of that frame. Text after such an event is therefore held back until
+//! the next frame.
+
+use egui::{Event, Key};
+
+/// Events that are held back.
+#[derive(Debug, Default)]
+pub(super) struct HeldInput(Vec<Event>);
+
+impl HeldInput {
+    /// Leaves the events of this frame in `events`: until the first that may move the keyboard focus, if something typed
+    /// follows it. With `at_once` nothing is held back. Returns whether the next frame is due at once.
+    pub(super) fn divide(&mut self, events: &mut Vec<Event>, at_once: bool) -> bool {
+        self.0.append(events);
+        let after_first = self.0.iter().position(may_move_focus).map_or(self.0.len(), |at| at + 1);
+        let is_followed = self.0.iter().skip(after_first).any(is_typed);
+        let later = if at_once || !is_followed { Vec::new() } else { self.0.split_off(after_first) };
+        *events = std::mem::replace(&mut self.0, later);
+        !self.0.is_empty()
+    }
+}
+
+fn may_move_focus(event: &Event) -> bool {
+    matches!(
+        event,
+        Event::PointerButton { pressed: false, .. } | Event::Key { key: Key::Tab | Key::Enter, pressed: true, .. }
+    )
+}
+
+fn is_typed(event: &Event) -> bool {
+    matches!(event, Event::Text(_) | Event::Paste(_) | Event::Ime(_) | Event::Key { pressed: true, .. })
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Modifiers, PointerButton, Pos2};
+
+    use super::*;
+
+    fn button(pressed: bool) -> Event {
+        let (pos, modifiers) = (Pos2::ZERO, Modifiers::NONE);
+        Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers }
+    }
+
+    fn key(key: Key, pressed: bool) -> Event {
+        Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: Modifiers::NONE }
+    }
+
+    fn text(text: &str) -> Event {
+        Event::Text(text.to_owned())
+    }
+
+    /// Divides events into frames until nothing is held back.
+    fn frames(mut events: Vec<Event>) -> Vec<Vec<Event>> {
+        let (mut held, mut frames) = (HeldInput::default(), Vec::new());
+        while held.divide(&mut events, false) || !events.is_empty() {
+            frames.push(std::mem::take(&mut events));
+        }
+        frames
+    }
+
+    #[test]
+    fn text_after_a_click_or_tab_waits_for_the_next_frame() {
+        let events = [button(true), button(false), text("12"), key(Key::Tab, true), key(Key::Tab, false), text("3")];
+        let expected = [
+            vec![button(true), button(false)],
+            vec![text("12"), key(Key::Tab, true)],
+            vec![key(Key::Tab, false), text("3")],
+        ];
+        assert_eq!(frames(events.to_vec()), expected);
+    }
+
+    #[test]
+    fn without_text_after_it_everything_is_in_one_frame() {
+        let events = vec![text("1"), key(Key::Enter, true), key(Key::Enter, false), button(true), button(false)];
+        let (mut held, mut now) = (HeldInput::default(), events.clone());
+        assert!(!held.divide(&mut now, false));
+        assert_eq!(now, events);
+    }
+
+    #[test]
+    fn at_once_nothing_is_held_back() {
+        let (mut held, mut now) = (HeldInput::default(), vec![button(false), text("1")]);
+        assert!(held.divide(&mut now, false));
+        assert_eq!(now, [button(false)]);
+        let mut now = vec![key(Key::Space, false)];
+        assert!(!held.divide(&mut now, true));
+        assert_eq!(now, [text("1"), key(Key::Space, false)], "in the order in which they came");
+    }
+}
