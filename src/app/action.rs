@@ -78,7 +78,7 @@ pub enum Action {
     Chosen(FileQuestion, PathBuf),
     /// Close the comparison on display.
     CloseComparison,
-    /// Something with the recorder of a desk.
+    /// An action of the recorder.
     Recorder(RecorderOwner, recorder::RecorderAction),
     /// Clear a recording; asks first if it is long.
     AskForget(RecorderOwner),

@@ -27,7 +27,7 @@ impl StopPresses {
         self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
     }
 
-    /// Handles a press of the pointer on a button that stops.
+    /// Handles a pointer press on a stop button.
     pub fn goes_down(&mut self, now: f64) {
         self.pressed = Some(now);
     }

@@ -109,7 +109,7 @@ impl Text {
         self
     }
 
-    /// Fills `{name}` with a number of this many decimals: 1.5 in English, 1,5 in German.
+    /// Replaces `{name}` with a number that has this many decimals: 1.5 in English, 1,5 in German.
     #[must_use]
     pub fn with_number(mut self, name: &'static str, value: f64, decimals: usize) -> Self {
         self.arguments.push((name, Argument::Number(format!("{value:.decimals$}"))));

@@ -214,8 +214,8 @@ impl<'a> SerialLine<'a> {
         again
     }
 
-    /// Continues to receive after a time-out, longer each time: bytes that arrive now are the reply to an earlier request,
-    /// on a connection slower than its margin, and would be taken for the reply to the next one.
+    /// Keeps receiving after a time-out, for longer each time. Bytes that arrive now belong to an earlier request, on a
+    /// connection that is slower than its margin. They must not be taken for the reply to the next request.
     ///
     /// # Errors
     /// See [`LineError`].

@@ -118,7 +118,7 @@ pub enum UrlError {
     /// A parameter that appears twice.
     #[error("{0} appears twice")]
     Twice(String),
-    /// A parameter that this link does not take.
+    /// A parameter that this link does not accept.
     #[error("{name} is not a parameter of {scheme}: links; valid parameters are {known}")]
     Unknown {
         /// The name as written.

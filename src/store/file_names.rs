@@ -5,7 +5,7 @@
 pub(super) enum Case {
     /// The names differ in more than their case.
     Kept,
-    /// The names may differ only in their case.
+    /// Names that differ only in case are equal.
     Told,
 }
 

@@ -126,7 +126,7 @@ pub trait DeviceView: Sync {
     /// Returns the kind of device.
     fn kind(&self) -> &'static dyn DeviceKind;
 
-    /// Returns all pages, in the order of the navigation.
+    /// Returns all pages, in navigation order.
     fn pages(&self) -> Vec<PageInfo>;
 
     /// Returns whether the keys of undo and redo act on the edits of the device.

@@ -130,7 +130,8 @@ impl<D: Device> Bench<D> {
         self.events.send(end);
     }
 
-    /// Takes a sample or watched value; returns false if a job or another request interrupted it: it is then still due.
+    /// Takes a sample or watched value that is due. Returns false if a job or another request interrupted it; it is then
+    /// still due.
     fn take(&mut self, due: &Due<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling().clone());
         let request = self.live.number();

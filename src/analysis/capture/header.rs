@@ -123,7 +123,7 @@ impl VoltUnit {
     }
 }
 
-/// Returns whether it is a unit of angles, as a header writes it.
+/// Returns whether a unit in a header is an angular unit.
 fn is_degrees(text: &str) -> bool {
     ["deg", "degree", "degrees", "\u{b0}", "grad"].contains(&text)
 }

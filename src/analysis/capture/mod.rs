@@ -101,7 +101,7 @@ pub enum CaptureError {
         /// Rows without one.
         left_out: u64,
         rows: u64,
-        /// Line of the first of them in the file, from 1.
+        /// Line of the first of these in the file, counted from 1.
         row: u64,
     },
     /// The header names a start and an increment of the time, and the line below does not give them.

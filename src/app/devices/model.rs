@@ -251,7 +251,7 @@ impl<'a> ActContext<'a> {
 
 /// Motion requested in this window. Stop and release use only this interface, never an action of a kind.
 pub trait MotionControl {
-    /// Stops everything that moves.
+    /// Stops all motion.
     fn stop(&mut self);
 
     /// Ends motion that lasts only while it is held: a jog, and a run without an end.

@@ -151,7 +151,7 @@ impl<D: Kind> Session<D> {
         self.line.as_ref()
     }
 
-    /// Returns whether the device lives in this process.
+    /// Returns whether the device is simulated in this process.
     pub fn is_virtual(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.is_virtual)
             || matches!(&self.source, Source::Link(url) if url.scheme == Scheme::Sim)

@@ -12,7 +12,7 @@ use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 
-/// Profile of earlier readings, with remarks; or a text for each missing part.
+/// Profile made from earlier readings, with remarks; or a message for each missing part.
 pub type KnownProfile = Result<(Body, Vec<Text>), Vec<Text>>;
 
 /// Returns the remark that a number of edits is not included.

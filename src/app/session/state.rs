@@ -61,7 +61,7 @@ impl SessionState {
         }
     }
 
-    /// Returns whether this is the attempt to open its link that counts.
+    /// Returns whether this is the latest attempt to open its link.
     pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
         self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
     }

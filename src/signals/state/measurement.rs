@@ -83,7 +83,7 @@ pub struct Results {
     /// The analysis, or why there is none.
     pub analysis: Result<Analysis, AnalysisError>,
     pub diagnosis: Diagnosis,
-    /// Criteria of the diagnosis.
+    /// Diagnostic criteria.
     pub judge: Judge,
     /// Mean level of REFSIN and of REFCOS in volts, if they were recorded.
     pub levels_v: Option<(f64, f64)>,

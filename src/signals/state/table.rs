@@ -37,7 +37,7 @@ pub enum Column {
 
 /// Lines that are shown.
 const LINES: usize = 6;
-/// Characters of a line that are shown.
+/// Maximum number of characters shown per line.
 const WIDTH: usize = 160;
 /// Most columns that are offered.
 const MOST_COLUMNS: usize = 64;

@@ -18,7 +18,7 @@ use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, probl
 use crate::ui::widgets::{Figure, Lissajous, lissajous, phosphor, series};
 use crate::ui::{Theme, icons};
 
-/// Periods that encoders have.
+/// Usual numbers of periods per revolution.
 const USUAL_PERIODS: [u32; 11] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 65_536];
 /// Points of a fitted ellipse.
 const CURVE: usize = 180;

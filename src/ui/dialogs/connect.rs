@@ -76,7 +76,7 @@ pub(in crate::ui) fn connect_ui(
     });
 }
 
-/// Draws the kinds of devices.
+/// Draws the choice of the device kind.
 fn devices(ui: &mut Ui, theme: &Theme, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
     for own in tabs.of_devices() {
         let word = tabs.title(theme, own);

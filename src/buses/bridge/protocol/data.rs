@@ -58,7 +58,7 @@ pub struct AnalogData {
     pub t0_us: u64,
     /// Samples that the adapter has lost since its last packet.
     pub lost: u16,
-    /// Sine and cosine in parts of the full scale; at most 255.
+    /// Sine and cosine as fractions of full scale; at most 255.
     pub samples: Vec<(i16, i16)>,
 }
 

@@ -65,7 +65,7 @@ impl Packet {
         Ok(Packet { seq, op, body: bytes })
     }
 
-    /// Returns the stuffed bytes and the 00 that ends them.
+    /// Returns the stuffed bytes, followed by the terminating 00.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.body.len() + Self::OVERHEAD);
         bytes.extend([self.seq, self.op]);

@@ -121,8 +121,7 @@ impl InterfaceConfiguration {
     /// The attribute.
     pub const ATTRIBUTE: u16 = 5;
 
-    /// Parses the attribute: five addresses as numbers, low byte first, and a text with its length in two bytes, padded to
-    /// whole words.
+    /// Parses the attribute: five little-endian addresses, then a string with a two-byte length, padded to whole words.
     ///
     /// # Errors
     /// [`PacketError`] if it is incomplete or too long.

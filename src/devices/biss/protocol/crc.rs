@@ -13,7 +13,7 @@ pub struct Crc {
     table: [u32; 256],
 }
 
-/// The reason why a checksum is not possible.
+/// Why a checksum cannot be calculated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CrcError {
     /// The polynomial's degree is 0 or above 32.

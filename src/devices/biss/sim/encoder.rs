@@ -389,7 +389,7 @@ impl Encoder {
         self.saved_wiegand = self.flash.wiegand;
     }
 
-    /// Ends everything in progress.
+    /// Ends all operations in progress.
     fn abandon(&mut self) {
         if self.calibration.abandon() == Ended::Lost {
             self.flash.calibrated = false;

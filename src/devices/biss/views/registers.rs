@@ -63,7 +63,7 @@ pub(super) fn page_ui(
     });
 }
 
-/// Draws the actions of the selected bank and register, and their messages.
+/// Draws the buttons for the selected bank and register, and the messages about them.
 fn head(
     ui: &mut Ui,
     theme: &Theme,

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use crate::cli::args::DirectionOption;
 use crate::devices::hiperdrive::protocol::{ByteOrder, KIND};
 
-/// A drive of a hub: only behind one there are several.
+/// A drive behind a hub; only a hub has several.
 #[derive(Args)]
 pub(super) struct OfDrive {
     /// hiperdrive: drive of a hub, 1 to 8. Default: the first, or the one in the parameter's number.

@@ -203,7 +203,7 @@ fn written_words(pkw: Pkw, raw: u32, word: bool) -> String {
     format!("write {} to {}{warning}", value_words(pkw, raw, word), parameter_name(pkw.number()))
 }
 
-/// Returns a number in the parameter's unit, or four characters of a text.
+/// Returns a number in the parameter's unit, or four characters of a string.
 fn value_words(pkw: Pkw, raw: u32, word: bool) -> String {
     match row(pkw) {
         None => raw.to_string(),

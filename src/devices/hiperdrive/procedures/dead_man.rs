@@ -147,7 +147,7 @@ impl DeadMan {
         self.received.map(|(at, _)| at)
     }
 
-    /// Returns the setpoint sent last.
+    /// Returns the last setpoint that was sent.
     pub const fn sent(&self) -> Setpoint {
         self.sent
     }

@@ -11,7 +11,7 @@ pub struct Pkw {
     pub pke: u16,
     /// IND: the element of an array.
     pub ind: u16,
-    /// PWE: the value; a word uses the lower half.
+    /// PWE: the value of the parameter; a 16-bit value is in the lower half.
     pub pwe: u32,
 }
 

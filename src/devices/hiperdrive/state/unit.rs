@@ -183,7 +183,7 @@ impl Unit {
         record
     }
 
-    /// Returns the identity of a drive; `None` before it was read.
+    /// Returns the identity of a drive; `None` if it has not been read yet.
     pub fn drive_identity(&self, drive: DriveNumber) -> Option<&DriveIdentity> {
         self.identity()?.drive(drive)
     }

@@ -38,7 +38,7 @@ pub struct CommandRow {
     pub name: &'static str,
     /// Whether "Code 0" is required.
     pub code0: bool,
-    /// Longest time to process it, without transfer and protocol time-out; zero for a command without reply.
+    /// Longest processing time of the command, excluding the transfer and the protocol's time-out; zero if it has no reply.
     pub max_time: Duration,
     /// Bytes between command and checksum of the request; for 4Bh the least number.
     pub request_payload: usize,

@@ -50,7 +50,7 @@ pub enum LabelPart {
         number: u8,
         /// The word.
         value: i16,
-        /// Whether its selector bit is set.
+        /// Whether the selector bit of this entry is set.
         valid: bool,
     },
 }

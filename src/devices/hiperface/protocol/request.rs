@@ -27,7 +27,7 @@ pub enum Request {
     },
     /// 46h: the 24-bit counter.
     ReadCounter,
-    /// 47h: counter + 1. Wears the EEPROM: about a million times in its life.
+    /// 47h: increments the counter. Wears the EEPROM, which endures about a million writes.
     IncrementCounter,
     /// 49h: counter to 0.
     ClearCounter {

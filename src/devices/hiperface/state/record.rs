@@ -12,7 +12,7 @@ use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
 use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 
-/// Recorder of an encoder, and the latest values.
+/// Recorder of one encoder, with its latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     pub(super) track: Track<Watch>,
@@ -21,7 +21,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Begins a session; earlier recordings stay.
+    /// Begins a session; earlier recordings are kept.
     pub(super) fn begin(&mut self, began: &Zoned) {
         (self.last, self.refused) = (None, false);
         self.track.begin(began);

@@ -32,7 +32,7 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     Ok(prepared)
 }
 
-/// Returns whether the measuring range ends earlier.
+/// Returns whether an operation shortens the measuring range.
 fn is_shorter(op: &Op) -> bool {
     let Op::Parameterise(changes) = op else { return false };
     changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)

@@ -89,7 +89,7 @@ impl Journal for Notes {
     }
 }
 
-/// Returns the mode in which it was found, then those it was sent into, as read-out 9 numbers them.
+/// Returns the mode in which the encoder was found, then the modes that it was switched to, with the numbers of read-out 9.
 fn emit(excursion: &Excursion) -> String {
     let modes: Vec<u32> =
         std::iter::once(excursion.found).chain(excursion.sent.iter().copied()).map(StartupMode::emit).collect();

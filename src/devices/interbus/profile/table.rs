@@ -38,7 +38,7 @@ pub struct CamTable {
     pub rows: Vec<TableRow>,
     /// The problems, in the order of the table.
     pub problems: Vec<TableProblem>,
-    /// Remarks on the valid rows.
+    /// Warnings about rows that are otherwise valid.
     pub notes: Vec<TableNote>,
 }
 

@@ -30,7 +30,7 @@ impl Value {
         (self.0 << above) as i32 >> above
     }
 
-    /// Creates the field of a word.
+    /// Creates the line for a word.
     pub const fn of_word(word: u32) -> Self {
         Value(word & Value::MAX.0)
     }

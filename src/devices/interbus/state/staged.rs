@@ -54,7 +54,7 @@ pub struct Staged {
     base: Option<EditedValues>,
     wanted: Option<EditedValues>,
     history: History<EditedValues>,
-    /// Earlier edits of items that were not read yet.
+    /// Earlier edits of items that have not been read yet.
     waiting: Vec<SavedEdit>,
 }
 

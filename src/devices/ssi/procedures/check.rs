@@ -78,7 +78,7 @@ pub enum CheckFinding {
     },
     /// The shaft turns: the maximum steps from one word to the next.
     Turns {
-        /// Steps, the shorter way round.
+        /// Distance in steps, in the shorter direction.
         most: u64,
     },
 }

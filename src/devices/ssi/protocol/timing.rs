@@ -162,7 +162,7 @@ pub enum Warning {
     },
     /// The family has no synchronous mode.
     NoSynchronous,
-    /// Whether the encoder has a synchronous mode is not known: it belongs to no family.
+    /// The encoder belongs to no family, so it is not known whether it has a synchronous mode.
     SynchronousUnknown,
 }
 

@@ -88,7 +88,7 @@ impl Columns {
         self.0.len() < all(kind).len()
     }
 
-    /// Returns the range of a column, from the left of the table; `None` if it is hidden.
+    /// Returns where a column begins and ends, measured from the left edge of the table; `None` if it is hidden.
     pub(super) fn range(&self, column: Column) -> Option<Rangef> {
         self.0.iter().find(|(own, _)| *own == column).map(|(_, range)| *range)
     }

@@ -49,7 +49,7 @@ fn place(layout: &Layout, reading: &PositionData, raw: u64, more: &mut Map<Strin
     format!("turn {turns}, step {steps} of {}, {degrees:.6}°", 1u64 << layout.singleturn_bits())
 }
 
-/// Returns one line per field, or why the bits are not a frame.
+/// Returns one line per field, or the reason why the bits are not a valid frame.
 pub(super) fn meaning(raw: u64, more: &mut Map<String, Json>) -> Result<Vec<String>, String> {
     let layout = Layout::default();
     match layout.parse(raw) {

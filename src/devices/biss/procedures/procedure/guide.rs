@@ -108,7 +108,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.step
     }
 
-    /// Begins the operation of that number.
+    /// Begins the operation with this number.
     pub(in crate::devices::biss::procedures) fn begin(&mut self, op: usize) {
         self.op = op;
     }

@@ -122,7 +122,7 @@ impl Connection {
         }
     }
 
-    /// Returns the packet that is due. A late call sends one, not all that were missed.
+    /// Returns the packet that is due. A late call returns one packet; those that were missed are skipped.
     pub fn packet(&mut self, now: Moment, image: &OutImage) -> Vec<u8> {
         self.next = self.next + self.send_interval;
         if self.next <= now {

@@ -24,7 +24,7 @@ pub fn title(step: AxisStep) -> Text {
     })
 }
 
-/// Returns the task of a step.
+/// Returns what the user has to do in a step.
 pub fn todo(step: AxisStep, seen: &DriveFacts) -> Text {
     TEXTS.text(match step {
         AxisStep::Request => "hd_axis.do_request",
@@ -209,7 +209,7 @@ pub fn returned(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     Some(text.with("all", axis.returned.len()))
 }
 
-/// Returns a message if the position is left as set although parameters were written back; `None` otherwise.
+/// Returns a message if parameters were restored but the position was not; otherwise `None`.
 pub fn place_left(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let is_set = axis.changes().iter().any(|own| matches!(own, AxisChange::Position(_)));
     let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_place_other(seen));

@@ -23,7 +23,7 @@ pub enum Edit {
     Direction(Direction),
     /// Set the preset, in steps. This does not fire it.
     Preset(u32),
-    /// The zero point shifting, in steps.
+    /// The zero shift, in steps.
     ZeroShift(u32),
     /// The shift of the window in cam mode.
     Shift(WindowShift),

@@ -27,7 +27,7 @@ pub(super) struct FrameSet {
 pub(super) struct Bit {
     /// Its usual value.
     pub(super) usual: bool,
-    /// Frames with the other value.
+    /// Number of frames in which the bit has the opposite value.
     pub(super) unusual: usize,
     /// From a frame to the next, how often it changed.
     pub(super) changes: usize,

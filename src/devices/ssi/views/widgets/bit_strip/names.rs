@@ -177,7 +177,7 @@ pub(super) fn tags(
     (tags, levels)
 }
 
-/// Returns the verdict of a meaning for the position.
+/// Returns how serious a meaning is for the position.
 pub(super) const fn verdict(meaning: Meaning) -> Verdict {
     match meaning {
         Meaning::Invalid => Verdict::Fault,
