@@ -47,7 +47,7 @@ fn the_input_circuit_is_computed_while_typing() {
     screen.retype("input.speed", "18000");
     assert!(screen.shows("Above the bandwidth of 150 kHz"));
     screen.retype("input.capacitance", "47 pigs");
-    assert!(screen.shows("\"47 pigs\" is not a value from 1 fF to 1 mF"));
+    assert!(screen.shows("\"47 pigs\" is not between 1 fF and 1 mF"));
     assert!(!screen.shows("338.6 kHz"), "nothing is shown that is not reckoned");
     screen.act(Action::SetLanguage(Language::German));
     screen.check_language();

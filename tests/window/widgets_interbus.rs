@@ -132,11 +132,11 @@ fn conflicts_and_out_of_range_cams_are_marked_in_their_lanes() {
     for number in [1, 2] {
         screen.edit_cams(Edit::Name { program: program(), cam: cam(number), name: "glue".to_owned() });
     }
-    assert!(!screen.shows("are pulses of one track"));
+    assert!(!screen.shows("are pulses on the same track"));
     let (start, _) = screen.cam(2);
     let (own, _) = screen.cam(1);
     screen.edit_cams(Edit::Cam { program: program(), cam: cam(1), start: own, stop: start, on: true });
-    assert!(screen.shows(&format!("Program 1: cams 1 and 2 are pulses of one track and overlap at {start}.")));
+    assert!(screen.shows(&format!("Program 1: cams 1 and 2 are pulses on the same track and overlap at {start}.")));
     screen.edit_cams(Edit::Steps(3200));
     assert!(screen.shows("Program 1: cam 7 is outside the measuring range, which ends at 3199."));
     // Issue 22.28: the cams of a program that are beyond it in one line, so that the chart stays visible.

@@ -47,19 +47,19 @@ pub const ERROR_CODES: [ErrorCodeRow; 16] = [
     row(
         ErrorCode::FOLLOWING,
         "following error",
-        "the drive could not keep to its set speed",
+        "the drive could not maintain its set speed",
         "less speed or more torque; look for what makes the spindle heavy",
     ),
     row(
         ErrorCode::BLOCK_REVERSE,
         "blocked in reverse",
-        "the spindle is blocked while turning in reverse",
+        "the spindle is blocked in the reverse direction",
         "remove the obstacle, then move away from it at low torque",
     ),
     row(
         ErrorCode::BLOCK_FORWARD,
         "blocked forward",
-        "the spindle is blocked while turning forward",
+        "the spindle is blocked in the forward direction",
         "remove the obstacle, then move away from it at low torque",
     ),
     row(

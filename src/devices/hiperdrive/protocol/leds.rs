@@ -121,7 +121,7 @@ const ADAPTER_LEDS: [LedRow; 7] = [
     drive(
         DriveLight::Red,
         "communication error with the requested drive",
-        "check the drive's cable and supply, then acknowledge its fault (197 = 0)",
+        "check the drive's cable and supply, then acknowledge its fault (set parameter 197 to 0)",
     ),
     drive(DriveLight::RedGreen, "drive error", "read the errors, remove the cause, then acknowledge"),
     drive(
@@ -144,7 +144,7 @@ const DRIVES_LEDS: [LedRow; 7] = [
     drive(
         DriveLight::Red,
         "communication error with a requested drive",
-        "turn S3 to each drive to find the one affected. Check its cable, then acknowledge its fault (197 = 0)",
+        "turn S3 to each drive to find the one affected. Check its cable, then acknowledge its fault (set parameter 197 to 0)",
     ),
     drive(
         DriveLight::RedGreen,
@@ -171,7 +171,11 @@ const DRIVES_LEDS: [LedRow; 7] = [
 /// RS485 LED of a hub with switch S3 at a drive's number, for that drive (manual 3.3).
 const DRIVE_LEDS: [LedRow; 4] = [
     drive(DriveLight::Off, "the drive is neither connected nor requested", "to use the drive, plug it in"),
-    drive(DriveLight::Red, "communication error", "check the drive's cable, then acknowledge its fault (197 = 0)"),
+    drive(
+        DriveLight::Red,
+        "communication error",
+        "check the drive's cable, then acknowledge its fault (set parameter 197 to 0)",
+    ),
     drive(DriveLight::RedGreen, "drive error", "read the errors, remove the cause, then acknowledge"),
     drive(DriveLight::Green, "the drive has no error", "turn S3 back to 0, or the bus cannot move the drive"),
 ];
