@@ -76,19 +76,36 @@ fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &F
     }
 }
 
+/// Least distance of a label from the edge of its lane, and half the height of a label.
+const EDGE: f32 = 2.0;
+const HALF: f32 = 5.5;
+
+/// Returns the ticks that have a label, with the heights of the labels: those beside their line, since between two lanes there
+/// is space for half a label. In a low lane that has fewer than two of them, the outermost ticks, with their labels inside.
+fn labelled(ticks: &[(f64, f32)], top: f32, bottom: f32) -> Vec<(f64, f32)> {
+    let inside: Vec<(f64, f32)> =
+        ticks.iter().copied().filter(|(_, y)| (top + EDGE..=bottom - EDGE).contains(y)).collect();
+    let (Some((first, low)), Some((last, high))) = (ticks.first(), ticks.last()) else { return inside };
+    let within = |y: f32| y.min(bottom - HALF).max(top + HALF);
+    let (low, high) = (within(*low), within(*high));
+    let two = inside.len() < 2 && low - high >= HALF * 2.0;
+    if two { vec![(*first, low), (*last, high)] } else { inside }
+}
+
 fn value_axis(painter: &Painter, theme: &Theme, lane: &Lane, font: &FontId) {
     let axis = lane.axis();
     let rect = lane.rect;
-    for value in axes::ticks(lane.range.0, lane.range.1, lane.step) {
-        let y = axis.y(value).round();
-        painter.hline(rect.x_range(), y, Stroke::new(1.0, theme.palette.line));
-        // Beside its line, or not at all: between two lanes there is space for half of one.
-        if lane.empty || y < rect.top() + 2.0 || y > rect.bottom() - 2.0 {
-            continue;
+    let ticks: Vec<(f64, f32)> =
+        axes::ticks(lane.range.0, lane.range.1, lane.step).map(|value| (value, axis.y(value).round())).collect();
+    for (_, y) in &ticks {
+        painter.hline(rect.x_range(), *y, Stroke::new(1.0, theme.palette.line));
+    }
+    if !lane.empty {
+        for (value, y) in labelled(&ticks, rect.top(), rect.bottom()) {
+            let label = axes::value_label(value, lane.step, theme.language);
+            let place = pos2(rect.left() - 6.0, y);
+            painter.text(place, Align2::RIGHT_CENTER, label, font.clone(), theme.palette.muted.into());
         }
-        let label = axes::value_label(value, lane.step, theme.language);
-        let place = pos2(rect.left() - 6.0, y);
-        painter.text(place, Align2::RIGHT_CENTER, label, font.clone(), theme.palette.muted.into());
     }
     painter.rect_stroke(rect, 0.0, Stroke::new(1.0, theme.palette.line), egui::StrokeKind::Inside);
 }
@@ -217,5 +234,20 @@ fn trigger(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &Fon
             let ends = [pos2(x, layout.chart.top()), pos2(x, layout.chart.bottom())];
             painter.extend(Shape::dashed_line(&ends, Stroke::new(1.0, colour), 2.0, 4.0));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_low_lane_has_labels_at_both_ends() {
+        // Lines at both edges and in the middle; heights grow downwards.
+        let low = [(-5.0, 27.0), (0.0, 13.5), (5.0, 0.0)];
+        assert_eq!(labelled(&low, 0.0, 27.0), [(-5.0, 21.5), (5.0, 5.5)]);
+        let high = [(-5.0, 100.0), (-2.5, 75.0), (0.0, 50.0), (2.5, 25.0), (5.0, 0.0)];
+        assert_eq!(labelled(&high, 0.0, 100.0), [(-2.5, 75.0), (0.0, 50.0), (2.5, 25.0)]);
+        assert_eq!(labelled(&[(0.0, 5.0)], 0.0, 10.0), [(0.0, 5.0)], "too low for two");
     }
 }

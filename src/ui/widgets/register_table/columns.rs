@@ -33,13 +33,13 @@ const BYTES: [Widths; 8] = [
 ];
 /// Those of numbers.
 const NUMBERS: [Widths; 7] = [
-    (Column::Marks, 42.0, 34.0),
-    (Column::Address, 36.0, 34.0),
+    (Column::Marks, 42.0, 38.0),
+    (Column::Address, 36.0, 36.0),
     (Column::Name, 180.0, 124.0),
     (Column::Value, 60.0, 60.0),
-    (Column::Meaning, 110.0, 76.0),
+    (Column::Meaning, 110.0, 64.0),
     (Column::Range, 130.0, 96.0),
-    (Column::Default, 96.0, 72.0),
+    (Column::Default, 96.0, 78.0),
 ];
 /// The columns that are hidden, in this order. Their values move to the tooltip.
 const LEAST: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
@@ -133,10 +133,10 @@ mod tests {
         assert_eq!(shown(BYTES, 477.0), [Marks, Address, Name, Value, Meaning, Access]);
         assert_eq!(shown(BYTES, 425.0), [Marks, Address, Name, Value, Meaning]);
         assert_eq!(shown(BYTES, -1.0), [Marks, Address, Name, Value, Meaning]);
-        // 34 + 34 + 124 + 100 + 76 + 96 + 72 = 536.
+        // 38 + 36 + 124 + 100 + 64 + 96 + 78 = 536.
         assert_eq!(shown(RegisterKind::Numbers, 536.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
         assert_eq!(shown(RegisterKind::Numbers, 535.0), [Marks, Address, Name, Value, Meaning, Range]);
-        assert_eq!(shown(RegisterKind::Numbers, 463.0), [Marks, Address, Name, Value, Meaning]);
+        assert_eq!(shown(RegisterKind::Numbers, 457.0), [Marks, Address, Name, Value, Meaning]);
         let hides = |width| Columns::new(RegisterKind::Numbers, width, 100.0).hides(RegisterKind::Numbers);
         assert!(!hides(536.0) && hides(535.0));
     }
