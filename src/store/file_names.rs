@@ -1,11 +1,11 @@
 //! Names of folders and files made from external texts: serial numbers, names of items.
 
-/// Whether names that differ only in case are distinct; on Windows and macOS they are not.
+/// How a name records the case of its letters, which file names on Windows and macOS do not distinguish.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Case {
-    /// The names differ in more than their case.
+    /// It does not: no two names differ only in case.
     Kept,
-    /// Names that differ only in case are equal.
+    /// As part of the name: names may differ only in case.
     Told,
 }
 

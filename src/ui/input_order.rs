@@ -1,6 +1,6 @@
-//! The order of input within a frame. Whoever types fast, or has a busy computer, clicks an entry and types into it within one
-//! frame, and the entry gets the keyboard only at the end of that frame. Text after such an event is therefore held back until
-//! the next frame.
+//! The order of input within a frame. On a busy computer a click on an entry and the text typed after it can be in the same
+//! frame, but the entry has the keyboard only from the next frame on. Text after such an event is therefore held back for a
+//! frame.
 
 use egui::{Event, Key};
 

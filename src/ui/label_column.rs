@@ -12,7 +12,7 @@ const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
 /// The column of labels of the card that is being drawn.
 #[derive(Clone, Copy, Default)]
 struct LabelColumn {
-    /// Width of the longest label when the card was drawn last.
+    /// Width of the longest label in earlier frames.
     longest: f32,
     /// Width of the longest label until now.
     drawn: f32,
@@ -39,7 +39,8 @@ pub(crate) fn with_label_column<R>(ui: &mut Ui, heading: &str, content: impl FnO
     LabelColumn { longest, drawn: 0.0 }.set(ui);
     let result = content(ui);
     let LabelColumn { drawn, .. } = LabelColumn::of(ui);
-    if drawn != longest {
+    // It never becomes narrower: cards of one heading may alternate, and a line that comes and goes moves nothing.
+    if drawn > longest {
         ui.data_mut(|data| data.insert_temp(id, drawn));
         // Not in the same frame again: input would count twice.
         ui.ctx().request_repaint();

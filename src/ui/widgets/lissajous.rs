@@ -144,7 +144,7 @@ fn grid(painter: &Painter, theme: &Theme, place: &PlotArea) {
     }
 }
 
-/// Draws the labels of the axes over the rings, each on a ground of its own.
+/// Draws the labels of the axes over the rings, each with a background.
 fn labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
     let step = step(place);
     let font = FontId::proportional(theme.sizes.caption);

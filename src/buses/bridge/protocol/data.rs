@@ -58,7 +58,7 @@ pub struct AnalogData {
     pub t0_us: u64,
     /// Samples that the adapter has lost since its last packet.
     pub lost: u16,
-    /// Sine and cosine as fractions of full scale; at most 255.
+    /// Pairs of sine and cosine, each as a fraction of full scale; at most 255 pairs.
     pub samples: Vec<(i16, i16)>,
 }
 

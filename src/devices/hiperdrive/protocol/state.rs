@@ -50,7 +50,7 @@ pub struct Transition {
     pub trigger: Trigger,
     /// Resulting state.
     pub to: State,
-    /// The word that causes the state, if a single word does.
+    /// The control word that causes the transition, if a single word does.
     pub word: Option<ControlWord>,
     /// If set, the manual does not define it.
     pub assumed: bool,

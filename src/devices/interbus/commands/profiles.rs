@@ -9,7 +9,9 @@ use super::run::{Runner, programs, survey};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Unrestored, restore_options, save_profile, say_mounting_left, to_restore, write_restore};
+use crate::cli::profiles::{
+    Unrestored, restore_options, save_profile, say_missing, say_mounting_left, to_restore, write_restore,
+};
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
@@ -37,9 +39,7 @@ impl ProfileCommands for InterbusCommands {
         if let Some(types) = prepared.other_type {
             output.remark(&words::other_type(types).terminal());
         }
-        for item in &prepared.missing {
-            output.remark(&format!("{item} is not restored: the encoder does not have it"));
-        }
+        say_missing(output, &prepared.missing);
         say_mounting_left(output, &prepared.mounting_left);
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
         let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };

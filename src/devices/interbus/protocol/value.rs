@@ -30,7 +30,7 @@ impl Value {
         (self.0 << above) as i32 >> above
     }
 
-    /// Creates the line for a word.
+    /// Returns the value in the lower 25 bits of a word.
     pub const fn of_word(word: u32) -> Self {
         Value(word & Value::MAX.0)
     }

@@ -237,6 +237,6 @@ mod tests {
         own.receive(at(ms + 15), words(CLEAR));
         assert_eq!(own.request(at(ms + 20)), words("77 10 00 00 00 00 00 00"), "the other one in turn");
         own.watch(&[number(119)]);
-        assert!(!own.readings().contains_key(&number(11)), "nobody watches it any more");
+        assert!(!own.readings().contains_key(&number(11)), "it is no longer watched");
     }
 }
