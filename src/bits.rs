@@ -19,7 +19,6 @@ pub fn hex_compact(bytes: &[u8]) -> String {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ByteOrder {
-    /// The highest.
     #[default]
     HighFirst,
     /// The lowest.
@@ -67,7 +66,6 @@ impl MaskedBytes {
         self.0.len()
     }
 
-    /// Returns whether there are no bytes.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -77,7 +75,6 @@ impl MaskedBytes {
         self.0.iter().copied().collect()
     }
 
-    /// Returns the bytes, with `stand_in` for each masked one.
     pub fn filled(&self, stand_in: u8) -> Vec<u8> {
         self.0.iter().map(|byte| byte.unwrap_or(stand_in)).collect()
     }

@@ -18,7 +18,6 @@ pub enum Expected {
     /// A number with its quantity and limits.
     #[error("{quantity} from {low} to {high}")]
     Range {
-        /// The counted quantity.
         quantity: Quantity,
         /// The least.
         low: Limit,
@@ -166,7 +165,6 @@ pub enum Expected {
     /// A frame without error bits.
     #[error("no value, because the frame of this encoder has no error bits")]
     NoErrorBits,
-    /// Any text.
     #[error("a text")]
     Text,
     /// A text of a form.
@@ -296,7 +294,6 @@ pub struct Limit {
 }
 
 impl Expected {
-    /// Creates one of these words.
     pub const fn words(words: &'static [&'static str]) -> Self {
         Expected::Words(Cow::Borrowed(words))
     }

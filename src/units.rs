@@ -149,7 +149,6 @@ impl fmt::Display for CharacterFormat {
 pub struct SupplyVoltage {
     /// The least that it works with.
     pub least: u16,
-    /// The supplied voltage.
     pub given: u16,
     /// The highest allowed voltage.
     pub greatest: u16,

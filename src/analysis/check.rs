@@ -4,7 +4,6 @@
 /// How a step ended. The worse verdict is the greater one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// It was not checked.
     Skipped,
     /// As required.
     Good,

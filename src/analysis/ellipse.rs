@@ -31,7 +31,6 @@ pub enum FitError {
     /// An ellipse has five parameters, and one more point is needed to assess the fit.
     #[error("{points} points where {least} are needed", least = LEAST_POINTS)]
     TooFew {
-        /// Points given.
         points: usize,
     },
     /// A sample is not a finite number.

@@ -44,7 +44,6 @@ const UPRIGHT: f64 = 0.15;
 /// A channel with less than this share of the other's range does not move.
 const DEAD: f64 = 0.05;
 
-/// The result of a search for outliers.
 pub(super) enum OutlierSearch {
     /// None, or too many to count as outliers.
     Nothing,

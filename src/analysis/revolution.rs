@@ -29,7 +29,6 @@ pub enum RevolutionError {
     Periods {
         /// Periods that were counted in a revolution of the reference.
         found: f64,
-        /// Given periods.
         given: u32,
     },
 }

@@ -18,7 +18,6 @@ pub const LARGEST_RESIDUAL: f64 = 0.25;
 /// per period, where noise or an uneven motion easily makes it half a period (U).
 const LARGEST_STEP_DEG: f64 = 90.0;
 
-/// The result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
     pub ellipse: Ellipse,

@@ -12,7 +12,6 @@ pub struct Spectrum {
     amplitudes_v: Vec<f64>,
 }
 
-/// One line of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralLine {
     /// Frequency in hertz.
@@ -27,7 +26,6 @@ pub enum SpectrumError {
     /// A spectrum needs at least eight samples.
     #[error("{samples} samples where 8 are needed")]
     TooFew {
-        /// Given samples.
         samples: usize,
     },
     /// The times do not run on evenly.

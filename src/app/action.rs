@@ -78,7 +78,6 @@ pub enum Action {
     Chosen(FileQuestion, PathBuf),
     /// Close the comparison on display.
     CloseComparison,
-    /// An action of the recorder.
     Recorder(RecorderOwner, recorder::RecorderAction),
     /// Clear a recording; asks first if it is long.
     AskForget(RecorderOwner),
@@ -159,11 +158,8 @@ pub enum Done {
     Diverged(Box<Diverged>),
     /// A user's comments would be lost, and the file was not written: which.
     WouldLose(Box<Saving>, Vec<String>),
-    /// A table was written, or not.
     TableWritten(RecorderOwner, Exported),
-    /// A picture was saved, or not.
     PictureSaved(PathBuf, Result<(), FileError>),
-    /// A report was saved, or not.
     ReportSaved(PathBuf, Result<(), FileError>),
     /// A wait before closing has run out of time.
     Waited(Waited),
@@ -205,7 +201,6 @@ pub struct Attempt {
 
 /// Session on its thread, with the ring for its trace.
 pub struct Opened<D: Kind> {
-    /// The session.
     pub(super) worker: Worker<D>,
     /// The part of the session outside its thread.
     pub(crate) aside: D::SessionHandle,
@@ -253,7 +248,6 @@ pub enum Waited {
 #[derive(Debug)]
 pub enum OpenFailed {
     Link(OpenError),
-    /// No thread for it.
     Thread(String),
     /// The wire is still held by another user.
     Held,
@@ -270,7 +264,6 @@ pub enum ReadError {
     Profile(ProfileError),
 }
 
-/// Owner of a recorder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecorderOwner {
     /// A device's.

@@ -83,7 +83,6 @@ impl DeviceFile {
         DeviceFile { session, title, kind, endings, suggested: Some(suggested), then: Arc::new(then) }
     }
 
-    /// Returns the session whose file it is.
     pub(super) fn session(&self) -> SessionId {
         self.session
     }

@@ -41,7 +41,6 @@ type Open<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send +
 pub struct Opener<D: Device>(Box<Open<D>>);
 
 impl<D: Device> Opener<D> {
-    /// Opens links so.
     pub fn new(open: impl Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync + 'static) -> Self {
         Opener(Box::new(open))
     }

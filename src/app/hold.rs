@@ -52,7 +52,6 @@ pub enum HoldInput {
         /// The first one, on this button.
         on: bool,
     },
-    /// The pointer was moved.
     PointerMoved {
         /// On this button.
         inside: bool,
@@ -68,7 +67,6 @@ pub enum HoldInput {
 /// The effect of a frame on a hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldEvent {
-    /// It starts.
     Press,
     /// It continues: returned in every frame.
     Hold,
@@ -188,7 +186,6 @@ impl HoldState {
         self.holder.is_some()
     }
 
-    /// Returns whether the pointer holds it.
     pub fn is_held_by_pointer(&self) -> bool {
         self.holder == Some(Holder::Pointer)
     }

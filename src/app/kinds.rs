@@ -19,7 +19,6 @@ pub struct Kinds {
 impl Kinds {
     pub const NONE: Kinds = Kinds::new(Formats::new(&[]), &[], &[]);
 
-    /// Creates a list of these.
     pub const fn new(
         formats: Formats,
         devices: &'static [&'static dyn DeviceKind],
@@ -66,7 +65,6 @@ impl Kinds {
         device.or_else(|| self.tools.first().map(|kind| kind.tab())).unwrap_or_default()
     }
 
-    /// Returns whether there is such a tab.
     pub(super) fn has_tab(self, tab: Tab) -> bool {
         self.of_tab(tab).is_some() || self.tools.iter().any(|kind| kind.tab() == tab)
     }

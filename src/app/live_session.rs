@@ -17,7 +17,6 @@ pub struct Running<W> {
     /// Its number in this session.
     pub id: JobId,
     pub title: Text,
-    /// Since when.
     pub since: Zoned,
     pub progress: Option<Progress<W>>,
     /// It changes the device's memory.
@@ -46,7 +45,6 @@ pub struct Progressing {
 }
 
 impl<D: Kind> LiveSession<D> {
-    /// Creates it from an opened session.
     pub(crate) fn new(opened: Opened<D>) -> Self {
         let Opened { worker, trace, is_virtual, .. } = opened;
         LiveSession { worker, trace, running: None, is_virtual }
@@ -69,7 +67,6 @@ impl<D: Kind> LiveSession<D> {
         Ok(id)
     }
 
-    /// Returns the job that runs.
     pub fn running(&self) -> Option<&Running<D::JobStep>> {
         self.running.as_ref()
     }

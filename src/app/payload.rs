@@ -46,7 +46,6 @@ impl fmt::Debug for Payload {
 }
 
 impl Action {
-    /// Returns an action for one device, typed for its kind.
     pub fn device(id: SessionId, action: impl DeviceAction) -> Self {
         Action::Device(id, Payload::of(action))
     }

@@ -7,7 +7,6 @@ pub trait PendingEdits {
     /// Returns the number of edits.
     fn count(&self) -> usize;
 
-    /// Returns whether there is an edit.
     fn is_dirty(&self) -> bool;
 
     /// Returns whether there is a step to undo.
@@ -31,16 +30,13 @@ pub trait PendingEdits {
 
 /// Edits that are whole values beside those of the device or the file, with the steps that led to them.
 pub(crate) trait Stepped {
-    /// All values.
     type Values: Clone + PartialEq;
 
     /// Returns the number of edits.
     fn differences_count(&self) -> usize;
 
-    /// Returns whether there is an edit.
     fn is_edited(&self) -> bool;
 
-    /// Returns the steps.
     fn history(&self) -> &History<Self::Values>;
 
     /// Returns the values of the device or the file, the edited ones, and the steps; `None` where nothing was read.

@@ -255,12 +255,9 @@ pub enum Stage {
 pub trait Reviewed: Kind<Review = Review<Self>> {
     /// The requested change.
     type Change: Clone;
-    /// The result of reading and planning.
     type Prepared: Planned + Clone;
-    /// The result of the write.
     type Written;
 
-    /// Returns the change as text.
     fn change(change: &Self::Change) -> Text;
     /// Returns the flag of a permission; `None` if it is not in question.
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
@@ -291,7 +288,6 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    /// Returns the cost as text.
     fn cost(prepared: &Self::Prepared) -> Text;
 
     /// Returns whether the device counts as worn after it.
@@ -300,7 +296,6 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
     }
 
-    /// Returns the result of the write as text.
     fn written(written: &Self::Written) -> Text;
 
     /// Returns the same for the end of a review, which shows each operation.
@@ -317,7 +312,6 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
 /// An operation of a plan.
 pub(crate) type Op<K> = <<K as Reviewed>::Prepared as Planned>::Op;
 
-/// Returns the result of a write as text, with its severity.
 pub fn written_texts<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
     let text = K::written(&committed.written);
     match &committed.logbook_warning {

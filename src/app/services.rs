@@ -53,7 +53,6 @@ impl Environment {
     }
 }
 
-/// How a job ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobEnd {
     /// It is still running.
@@ -66,12 +65,9 @@ pub enum JobEnd {
     Cancelled,
 }
 
-/// A job, for the list.
 #[derive(Clone, Debug)]
 pub struct JobRecord {
-    /// Since when.
     pub since: Zoned,
-    /// Until when.
     pub until: Option<Zoned>,
     /// Name of the device concerned.
     pub about: String,

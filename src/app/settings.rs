@@ -34,7 +34,6 @@ pub struct Settings {
     links: Links,
     /// Arrangement of the panels, which only the window reads.
     pub layout: Option<String>,
-    /// The open tab.
     pub tab: Tab,
     /// Size of the window in points.
     pub size: Option<(u32, u32)>,
@@ -139,7 +138,6 @@ impl Settings {
         self
     }
 
-    /// Applies the changes to drives from `known` to `ours`.
     pub(super) fn change_drives(&mut self, known: &Settings, ours: &Settings) {
         let none = RememberedDrives::default();
         for (device, own) in &ours.drives {
@@ -156,7 +154,6 @@ impl Settings {
         self.drives = from.drives.clone();
     }
 
-    /// Returns the settings as text.
     pub fn emit(&self) -> String {
         ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default()).unwrap_or_default()
     }

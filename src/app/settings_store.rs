@@ -47,7 +47,6 @@ pub(crate) struct SettingsStore {
     last_failed_read: Option<Zoned>,
 }
 
-/// The result of reading the settings.
 #[derive(Debug)]
 pub enum SettingsRead {
     /// They are as written by the program.
@@ -66,7 +65,6 @@ pub enum SettingsRead {
     Unreadable(FileError),
 }
 
-/// The result of writing the settings.
 #[derive(Debug)]
 pub struct SettingsWritten {
     /// The present content of the file.

@@ -18,9 +18,7 @@ pub struct SineCosineReading {
 /// Sine and cosine, each relative to its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SineCosineVolts {
-    /// Sine in volts.
     pub sine_v: f64,
-    /// Cosine in volts.
     pub cosine_v: f64,
 }
 

@@ -212,7 +212,6 @@ impl Studio {
         &self.devices
     }
 
-    /// Returns an open device.
     pub fn device(&self, id: SessionId) -> Option<&AnyDevice> {
         self.devices.iter().map(Box::as_ref).find(|device| device.id() == id)
     }

@@ -17,7 +17,6 @@ impl Tab {
         Tab(name)
     }
 
-    /// Returns the name in the settings.
     pub fn name(self) -> &'static str {
         self.0
     }

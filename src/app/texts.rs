@@ -56,7 +56,6 @@ impl Argument {
     }
 }
 
-/// A table of texts.
 pub struct Catalogue {
     source: &'static str,
     rows: OnceLock<BTreeMap<String, Row>>,
@@ -75,7 +74,6 @@ struct Row {
     terminal: String,
 }
 
-/// The output that a text is for.
 #[derive(Clone, Copy)]
 enum Output {
     Window(Language),
@@ -221,7 +219,6 @@ impl Catalogue {
         Some(Text { catalogue: self, id, arguments: Vec::new() })
     }
 
-    /// Returns the ids of all texts.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
         self.rows().keys().map(String::as_str)
     }

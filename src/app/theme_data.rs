@@ -18,7 +18,6 @@ pub struct Rgb(pub [u8; 3]);
 pub struct TextSizes {
     /// Captions beside and below widgets.
     pub caption: f32,
-    /// Text.
     pub body: f32,
     /// Headings.
     pub section: f32,
@@ -60,7 +59,6 @@ pub struct Palette {
     pub muted: Rgb,
     /// Focus, selection, the primary button.
     pub accent: Rgb,
-    /// Text on the accent.
     pub on_accent: Rgb,
     /// Edited and not yet written.
     pub staged: Rgb,
@@ -70,7 +68,6 @@ pub struct Palette {
     pub warn: Rgb,
     /// Error; STOP.
     pub bad: Rgb,
-    /// Text on STOP.
     pub on_bad: Rgb,
     /// Plots, fields, cams.
     pub series: [Rgb; 8],

@@ -69,7 +69,6 @@ pub trait Tool: Any {
 
 /// An action of a tool.
 pub trait ToolAction: Any + Send {
-    /// The tab of the tool.
     const TAB: Tab;
 }
 

@@ -33,9 +33,7 @@ pub enum TraceFault {
 /// The meaning of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Explained {
-    /// The meaning as text.
     pub meaning: Vec<Text>,
-    /// The fault, if any.
     pub fault: Option<TraceFault>,
 }
 

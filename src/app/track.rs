@@ -53,7 +53,6 @@ pub struct PositionSample {
 /// Recorder of a device, with the state for filling it; `W` is the type of values that can be watched.
 #[derive(Debug)]
 pub struct Track<W> {
-    /// Position, speed and acceleration as lines.
     pub(crate) recorder: Recorder,
     positions: GroupId,
     /// The lines of position, speed and acceleration.

@@ -260,7 +260,6 @@ impl Commands {
         of_devices.chain(self.further).copied()
     }
 
-    /// Returns the protocol of a name.
     pub(super) fn protocol(self, name: &str) -> Option<&'static dyn ProtocolDecoder> {
         self.protocols.iter().copied().find(|protocol| protocol.name() == name)
     }

@@ -64,7 +64,6 @@ pub enum Invocation {
     Window(Window),
 }
 
-/// The start of the window.
 #[derive(Debug, Default)]
 pub struct Window {
     /// A link to open.

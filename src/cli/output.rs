@@ -19,7 +19,6 @@ pub struct Output {
 pub struct Lines(Vec<(String, String)>);
 
 impl Lines {
-    /// Adds a line.
     pub fn add(&mut self, label: impl Into<String>, value: impl ToString) -> &mut Self {
         self.0.push((label.into(), value.to_string()));
         self
@@ -37,7 +36,6 @@ impl Output {
         Output { json, formats, commands }
     }
 
-    /// Creates the same, with results as text.
     pub(crate) fn as_text(&self) -> Self {
         Output { json: false, formats: self.formats, commands: self.commands }
     }

@@ -49,13 +49,11 @@ pub struct PlanStep {
 }
 
 impl PlanStep {
-    /// Returns the step as JSON.
     pub fn json(&self) -> Json {
         json!({"item": self.item, "old": self.old, "new": self.new, "write_cycles": self.write_cycles})
     }
 }
 
-/// Formats the steps as text, a line each.
 pub fn lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     let mut lines = Lines::default();
     for PlanStep { item, old, new, .. } in steps {

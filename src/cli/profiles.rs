@@ -205,7 +205,6 @@ fn show_dry_run(output: &Output, plan: &PlanReport, left: &Unrestored) -> Result
     Ok(Done::Well)
 }
 
-/// Prints the result of a restore.
 fn show_restored(output: &Output, spent: &WriteSummary, left: &Unrestored) -> Result {
     let json = json!({
         "written": spent.written,

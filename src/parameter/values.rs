@@ -13,7 +13,6 @@ pub trait Values {
     /// Parses a value.
     fn read(&self, text: &str) -> Option<Self::Value>;
 
-    /// Returns the allowed values.
     fn allowed(&self) -> Expected;
 
     /// Prints a value, if it is short enough for an example.

@@ -282,7 +282,6 @@ impl Writer {
         self.line(&format!("{bracket}{comma}"));
     }
 
-    /// Returns the text.
     pub(super) fn finish(self) -> String {
         self.out
     }

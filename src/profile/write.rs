@@ -15,7 +15,6 @@ pub trait Write {
     type Op: Operation + Clone + Hash;
     /// The reason why an operation ended early.
     type Error: OperationError;
-    /// The record of the write.
     type Written: WriteRecord;
     /// The state in which an interrupted write left the device.
     type EndState;

@@ -6,5 +6,4 @@ pub mod views;
 
 use crate::kinds::ToolTab;
 
-/// The tab, for the list of tools.
 pub const TAB: ToolTab = ToolTab { view: &views::SignalsView };

@@ -73,7 +73,6 @@ pub(crate) struct Sent {
 pub(crate) struct Wires {
     pub(crate) faults: Faults,
     pub(crate) rng: Rng,
-    /// Setting of the host's UART.
     pub(crate) host: CharacterFormat,
     pub(crate) now: Moment,
     /// The host's UART has sent everything then.

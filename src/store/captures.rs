@@ -17,7 +17,6 @@ pub enum ReadCaptureError {
     /// The file contains no capture.
     #[error(transparent)]
     Capture(#[from] CaptureError),
-    /// Reading was cancelled.
     #[error("given up")]
     Cancelled,
 }

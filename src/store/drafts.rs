@@ -48,7 +48,6 @@ impl Drafts {
         }
     }
 
-    /// Returns whether there is a draft for a device of this kind.
     pub fn has_any(&self, device: &str) -> bool {
         fs::read_dir(self.folder_of(device)).is_ok_and(|mut files| files.next().is_some())
     }

@@ -17,15 +17,12 @@ pub struct FileError {
 /// An operation on a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileTask {
-    /// A file was read.
     Read,
-    /// A file was written.
     Write,
     /// The files in a folder were listed.
     List,
     /// A folder was made, with those above it.
     CreateFolder,
-    /// A file was removed.
     Remove,
 }
 

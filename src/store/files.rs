@@ -165,7 +165,6 @@ fn through_links(path: &Path) -> io::Result<PathBuf> {
     fs::metadata(path).map(|_| target)
 }
 
-/// Returns the folder that contains a file.
 fn folder_of(path: &Path) -> Result<&Path, FileProblem> {
     match (path.parent(), path.file_name()) {
         (Some(folder), Some(_)) if folder.as_os_str().is_empty() => Ok(Path::new(".")),

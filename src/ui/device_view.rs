@@ -38,7 +38,6 @@ pub trait TabPage: Copy + PartialEq + Default + 'static {
     }
 }
 
-/// Returns all pages of a tab.
 pub(crate) fn infos<P: TabPage>() -> Vec<PageInfo> {
     P::PAGES.iter().map(|(_, info)| *info).collect()
 }
@@ -50,9 +49,7 @@ pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
 
 /// The view of a kind of device, as the device implements it.
 pub trait TypedDeviceView: Sync + 'static {
-    /// The state of the device.
     type Device: DeviceType;
-    /// The pages of the tab.
     type Page: TabPage;
     /// The text buffers and selections of one session; they are dropped when another device replies.
     type Memory: Default + 'static;

@@ -112,7 +112,6 @@ impl Theme {
         egui::Frame::NONE.fill(self.palette.sunken.into()).corner_radius(self.radius).inner_margin(Margin::same(8))
     }
 
-    /// Puts the theme on a context.
     pub fn dress(&self, ctx: &egui::Context) {
         let theme = match self.theme {
             ColorScheme::Dark => egui::Theme::Dark,

@@ -31,7 +31,6 @@ pub struct Window {
 }
 
 impl Window {
-    /// Creates a window on a studio, with these tabs.
     pub fn new(studio: Studio, look: &'static ThemeData, tabs: TabViews) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
         let views = Views::new(tabs);

@@ -30,7 +30,6 @@ pub struct TableHints {
     pub volts_per_unit: Option<f64>,
 }
 
-/// The format of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     pub delimiter: Delimiter,

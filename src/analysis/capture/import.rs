@@ -98,7 +98,6 @@ impl Import {
         }
     }
 
-    /// Returns the format of the table.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }

@@ -61,7 +61,6 @@ pub enum CaptureError {
     ShortRow {
         /// The line in the file, from 1.
         row: u64,
-        /// Columns in this row.
         columns: usize,
         /// Columns needed.
         needed: usize,

@@ -14,7 +14,6 @@ pub enum Severity {
     Fault,
 }
 
-/// Finding of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiagnosisFinding {
     pub severity: Severity,

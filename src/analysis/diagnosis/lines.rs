@@ -64,7 +64,6 @@ struct StrongLine {
     radial_v2: f64,
 }
 
-/// The content of a spectrum.
 pub(super) struct SpectrumContent {
     /// The strongest first.
     pub(super) lines: Vec<Interference>,

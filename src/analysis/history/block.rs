@@ -41,7 +41,6 @@ impl Bucket {
         buckets.iter().fold(Bucket::EMPTY, |all, bucket| all.with(*bucket))
     }
 
-    /// Returns the bucket around the extremes, if any.
     fn around<T: Number>(extremes: Option<(T, T)>, base: T) -> Bucket {
         extremes.map_or(Bucket::EMPTY, |(min, max)| Bucket { low: min.down(base), high: max.up(base) })
     }
@@ -328,9 +327,7 @@ impl<T: Number> Block<T> {
 
 /// A search in a block, and its result.
 struct Search {
-    /// Result of the samples.
     samples: Extent,
-    /// Result of the buckets.
     found: Bucket,
     /// Values within this do not widen the result.
     enough: Bucket,

@@ -110,7 +110,6 @@ pub enum Refused {
 pub struct Sample {
     /// Its number, counted from the very first sample.
     pub index: u64,
-    /// Time of the sample.
     pub time: Time,
     /// The value as it was appended.
     pub value: Value,

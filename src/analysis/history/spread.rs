@@ -7,7 +7,6 @@ use super::number::Number;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spread<T> {
     pub(super) count: u64,
-    /// The base of `mean`.
     pub(super) base: T,
     pub(super) mean: f64,
     pub(super) squares: f64,

@@ -63,7 +63,6 @@ impl ConnectAction {
 
 /// The dialog.
 pub struct Connect {
-    /// The kind of device.
     pub device: Tab,
     kinds: Kinds,
     forms: Vec<(Tab, Box<dyn AnyForm>)>,
@@ -82,7 +81,6 @@ impl Connect {
         Connect { device, kinds, forms, typed: None, ports: None, problem: None }
     }
 
-    /// Returns the form of that type.
     pub fn form<F: Any>(&self) -> Option<&F> {
         self.forms.iter().find_map(|(_, form)| form.form().downcast_ref())
     }

@@ -28,7 +28,6 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Name of its bus, the same in every language.
     const BUS: &'static str;
 
-    /// Type of its profile.
     type Profile: Profile;
 
     /// Type of its form in the connection dialog.

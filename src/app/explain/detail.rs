@@ -101,7 +101,6 @@ fn hex(error: &HexError) -> Text {
     }
 }
 
-/// Returns the text for a file that is no recording.
 pub fn recording(error: &TraceFileError) -> Text {
     match error {
         TraceFileError::Header => Text::new("detail.no_trace").with("header", TRACE_HEADER),

@@ -45,7 +45,6 @@ impl ExportNumber {
     }
 }
 
-/// The result of writing a table.
 #[derive(Debug)]
 pub struct Exported {
     pub(in crate::app) number: ExportNumber,

@@ -71,7 +71,6 @@ impl Series {
         }
     }
 
-    /// Creates the same, hidden.
     #[must_use]
     pub(crate) fn hidden(self) -> Self {
         Series { shown: false, ..self }

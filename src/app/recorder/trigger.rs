@@ -103,7 +103,6 @@ impl Watch {
 }
 
 impl Recorder {
-    /// Returns the trigger with its state.
     pub fn trigger(&self) -> Option<(&Trigger, TriggerState)> {
         self.watch.as_ref().map(|watch| (&watch.trigger, watch.state))
     }

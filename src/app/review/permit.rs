@@ -21,7 +21,6 @@ pub enum Permit {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Toggle {
     pub permit: Permit,
-    /// It is given.
     pub is_on: bool,
 }
 

@@ -22,7 +22,6 @@ pub(super) const DRAFT_BACK: &str = "session.draft_back";
 const PATIENCE: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_millis(20);
 
-/// Owner of a draft.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DraftKey {
     kind: String,
@@ -45,7 +44,6 @@ impl DraftKey {
 pub enum DraftDone {
     /// Edits of an earlier time.
     Looked {
-        /// Key of the draft.
         key: DraftKey,
         /// The claim to store it; `None`: it belongs to another window or session.
         claim: Result<Option<Claim>, FileError>,
@@ -54,7 +52,6 @@ pub enum DraftDone {
     },
     /// A draft was kept or removed.
     Kept {
-        /// Key of the draft.
         key: DraftKey,
         result: Result<(), FileError>,
     },

@@ -49,7 +49,6 @@ pub enum Source {
     Link(LinkUrl),
     /// A profile in a file.
     File {
-        /// The file.
         path: PathBuf,
         /// The same for every path to the file.
         key: String,
@@ -104,7 +103,6 @@ pub(crate) struct Opening {
 pub struct Session<D: Kind> {
     state: SessionState,
     pub(crate) line: Option<LiveSession<D>>,
-    /// The state of the draft of its edits.
     pub(crate) drafting: Drafting<D::Edits>,
     /// Review of a write.
     pub review: Option<D::Review>,
@@ -287,7 +285,6 @@ impl<D: Kind> Session<D> {
         services.leave(line.into_worker(), ClosingSessionInfo { session: self.id, about, url, write }, None);
     }
 
-    /// Notes that the connection is lost.
     pub(in crate::app) fn connection_lost(&mut self, why: Text, services: &mut Services) {
         // It is displayed where the session is shown.
         services.note(Severity::Error, vec![why.clone()], Some(&self.name()));

@@ -14,11 +14,9 @@ use crate::store::{FileError, FileProblem, read_file, write_text_over};
 /// A file with a profile, as it was read or written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileFile {
-    /// The file.
     pub path: PathBuf,
     /// The same for every path to the file.
     pub key: String,
-    /// Text in the file.
     pub text: String,
 }
 

@@ -11,6 +11,5 @@ pub mod views;
 
 use crate::kinds::Kind;
 
-/// The kind, for the list of kinds.
 pub const KIND: Kind =
     Kind { view: &views::BissView, commands: &commands::BissCommands, at_adapter: Some(&sim::AtAdapter) };

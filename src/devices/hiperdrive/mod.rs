@@ -11,5 +11,4 @@ pub mod views;
 
 use crate::kinds::Kind;
 
-/// The kind, for the list of kinds.
 pub const KIND: Kind = Kind { view: &views::HiperdriveView, commands: &commands::HiperdriveCommands, at_adapter: None };

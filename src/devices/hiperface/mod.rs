@@ -11,6 +11,5 @@ pub mod views;
 
 use crate::kinds::Kind;
 
-/// The kind, for the list of kinds.
 pub const KIND: Kind =
     Kind { view: &views::HiperfaceView, commands: &commands::HiperfaceCommands, at_adapter: Some(&sim::AtAdapter) };

@@ -178,7 +178,6 @@ fn one_line(value: &str) -> Option<String> {
     plain.then(|| value.lines().map(str::trim).collect::<Vec<_>>().join(" "))
 }
 
-/// Returns the line ending of a text.
 fn line_end(text: &str) -> &'static str {
     if text.contains("\r\n") { "\r\n" } else { "\n" }
 }

@@ -35,7 +35,6 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Returns the start of the part.
     pub(super) fn start(&self) -> usize {
         self.key.as_ref().map_or(self.value.span.start, |key| key.start)
     }

@@ -101,7 +101,6 @@ fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: 
     revolution.inspect_err(|error| output.remark(&explain::signal::revolution(error).terminal())).ok()
 }
 
-/// Report of a capture.
 struct CaptureReport<'a> {
     family: Family,
     analysis: &'a Analysis,

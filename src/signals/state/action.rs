@@ -79,10 +79,8 @@ pub enum Failed {
     Measure(u32),
 }
 
-/// The result of reading a table.
 pub struct Read {
     /// Its first lines, and the detected format.
     pub(super) table: Table,
-    /// The capture with all results.
     pub(super) result: Result<(Measurement, Scope), ReadCaptureError>,
 }

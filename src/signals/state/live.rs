@@ -169,7 +169,6 @@ impl Source {
         self.window_ms
     }
 
-    /// Returns whether it is running.
     pub fn is_running(&self) -> bool {
         self.live.is_some()
     }

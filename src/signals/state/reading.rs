@@ -18,7 +18,6 @@ pub enum Example {
 }
 
 impl Example {
-    /// All examples.
     pub const ALL: [Example; 2] = [Example::Healthy, Example::WithErrors];
 
     /// Returns the id of its text.
@@ -74,7 +73,6 @@ impl Reading {
         (total > 0).then(|| (done as f64 / total as f64).min(1.0))
     }
 
-    /// Returns whether it was cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.progress.cancel.load(Ordering::Relaxed)
     }

@@ -22,7 +22,6 @@ pub struct Scope {
 /// Why the times of a capture cannot be an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeAxisError {
-    /// They go back.
     GoBack,
     /// They are beyond the range of nanoseconds, 292 years from zero, such as milliseconds read as seconds.
     TooFar,

@@ -17,7 +17,6 @@ pub struct Table {
     pub half_chosen: (Option<usize>, Option<usize>),
 }
 
-/// Column of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
     Time,

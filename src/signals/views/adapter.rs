@@ -72,7 +72,6 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     started || closed
 }
 
-/// Returns the text of the supply of a family.
 fn supply_of(theme: &Theme, family: Family) -> String {
     let voltage = family.supply();
     let volts = |millivolt: u16| f64::from(millivolt) / 1000.0;

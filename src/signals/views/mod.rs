@@ -53,7 +53,6 @@ type Draft = Option<(String, Option<Text>)>;
 /// State of the tab between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct SignalsUiState {
-    /// The open page.
     page: Page,
     source: source::SourceUiState,
     periods: Draft,

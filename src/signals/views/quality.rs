@@ -167,7 +167,6 @@ fn finding_ui(ui: &mut Ui, theme: &Theme, finding: &DiagnosisFinding) {
     line(ui, icon, colour, theme.words(&explain::signal::diagnosis(finding)));
 }
 
-/// Draws the verdict as text.
 fn verdict(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement) {
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
         let findings = signals.findings();

@@ -40,7 +40,6 @@ pub struct DeviceKey {
 }
 
 impl DeviceKey {
-    /// Returns the key of a device of this kind and type.
     pub fn of(kind: &str, device_type: &str, serial_number: &str, is_virtual: bool) -> Self {
         let [kind, device_type, serial_number] = [kind, device_type, serial_number].map(str::to_owned);
         DeviceKey { kind, device_type, serial_number, is_virtual }

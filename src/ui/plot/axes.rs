@@ -59,7 +59,6 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
 /// Ticks of a time axis.
 #[derive(Debug, PartialEq)]
 pub(super) struct TimeTicks {
-    /// Time and label.
     pub(super) ticks: Vec<(Time, String)>,
     /// The reference point of the labels, if they do not count from the beginning.
     pub(super) base: Option<String>,

@@ -52,7 +52,6 @@ pub(super) struct Layout {
 #[derive(Default)]
 pub(super) struct Reduced {
     pictures: Vec<(LineId, Picture)>,
-    /// The inputs of each picture.
     made: Vec<(LineId, PictureInputs)>,
     /// Width of the value labels.
     gutter: f32,

@@ -24,7 +24,6 @@ use crate::app::{Action, RecorderOwner};
 /// The state of a plot between frames.
 #[derive(Default)]
 pub struct PlotUiState {
-    /// Recorder of the plot.
     owner: Option<RecorderOwner>,
     reduced: lanes::Reduced,
     drag: Option<pointer::Drag>,

@@ -17,7 +17,6 @@ const DOTS: f32 = 8.0;
 /// Conversion from time to screen coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TimeAxis {
-    /// The time at `left`.
     pub(super) from: Time,
     pub(super) left: f32,
     /// Points a nanosecond.
@@ -45,7 +44,6 @@ impl TimeAxis {
 /// Conversion from values to screen coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ValueAxis {
-    /// The value at `bottom`.
     pub(super) low: f64,
     pub(super) bottom: f32,
     /// Points a unit, not zero.

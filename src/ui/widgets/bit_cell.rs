@@ -6,7 +6,6 @@ use crate::ui::Theme;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BitCell<'a> {
-    /// Colour of its field.
     pub(crate) ink: Color32,
     /// The bit; `None`: not known.
     pub(crate) bit: Option<bool>,

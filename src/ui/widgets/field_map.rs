@@ -65,7 +65,6 @@ pub struct FieldMap<'a> {
 /// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapEvent {
-    /// A field.
     Select(u8),
     /// Selects the free space.
     SelectFree,

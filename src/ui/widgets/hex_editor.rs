@@ -174,7 +174,6 @@ fn body(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, v
     lines.inner
 }
 
-/// Handles the pointer.
 fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) {
     if response.gained_focus() {
         // The next arrow must move the cursor, not the focus.

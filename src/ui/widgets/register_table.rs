@@ -74,7 +74,6 @@ pub struct RegisterGroup {
     pub title: String,
     /// A note at the end of the heading.
     pub note: String,
-    /// Registers in it.
     pub rows: usize,
 }
 
@@ -113,7 +112,6 @@ pub struct RegisterRow {
     pub fields: Vec<RegisterBits>,
 }
 
-/// A bit field of a register.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterBits {
     /// The bits, such as `b3…b0`.
@@ -132,7 +130,6 @@ pub enum RegisterEvent {
     Revert(RegisterLocation),
 }
 
-/// The result of drawing the table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RegisterOutput {
     pub event: Option<RegisterEvent>,

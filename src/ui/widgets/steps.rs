@@ -41,10 +41,8 @@ pub enum StepState {
     ToCome,
     /// It waits for the operator.
     Waiting,
-    /// It is running.
     Running,
     Done,
-    /// It was skipped.
     Skipped,
     Failed,
 }

@@ -124,7 +124,6 @@ impl Flow {
         })
     }
 
-    /// Returns the kind of stream.
     pub(crate) const fn streamed(&self) -> Streamed {
         self.streamed
     }

@@ -108,7 +108,6 @@ pub enum AdapterError {
         /// The requested operation.
         operation: Operation,
         code: ErrorCode,
-        /// The text of the refusal.
         text: String,
     },
     /// Its reply is not of this version.

@@ -90,7 +90,6 @@ impl Clone for Box<dyn SerialDevice> {
 pub enum Attached {
     /// Device on BiSS.
     Biss(Box<dyn BissDevice>),
-    /// Device on SSI.
     Ssi(Box<dyn SsiDevice>),
     /// Device at the serial line.
     Serial(Box<dyn SerialDevice>),

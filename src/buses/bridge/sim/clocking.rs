@@ -29,7 +29,6 @@ impl BissSetting {
     }
 }
 
-/// The setting of SSI.
 #[derive(Clone, Copy)]
 pub(super) struct SsiSetting {
     pub(super) clock_hz: u32,

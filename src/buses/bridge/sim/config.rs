@@ -9,7 +9,6 @@ use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED};
 parameters! {
     /// Settings of a virtual adapter. By default it has no faults, and the encoder's supply is external.
     pub(super) struct Config: ConfigError {
-        /// The wires to the encoder.
         pub(super) line: EncoderWiring = EncoderWiring::Good,
             "line" => Words(&[("good", EncoderWiring::Good), ("open", EncoderWiring::Open), ("low", EncoderWiring::Low), ("high", EncoderWiring::High)]);
         /// The share of frames with a bit inverted.

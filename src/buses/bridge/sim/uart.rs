@@ -13,7 +13,6 @@ pub(super) struct Uart {
     format: Option<CharacterFormat>,
 }
 
-/// The result of a transfer.
 pub(super) struct Transfer {
     /// Start of the first start bit; without a reply the end of the wait.
     pub(super) start: Moment,

@@ -83,7 +83,6 @@ pub(super) fn crc_errors(runner: &Runner) -> u64 {
     runner.remarks.iter().map(count).sum()
 }
 
-/// Returns the registers of a run.
 pub(super) fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec<u8>> {
     read_registers(runner, range).map(|read| read.bytes)
 }

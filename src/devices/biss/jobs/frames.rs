@@ -9,7 +9,6 @@ use crate::devices::biss::protocol::Layout;
 /// Position frames of BiSS, with their checksums checked.
 #[derive(Clone, Debug)]
 pub struct BissFrames {
-    /// Layout of the frames.
     pub layout: Layout,
     /// Clock in hertz.
     pub clock_hz: u32,

@@ -158,7 +158,6 @@ pub struct Commit {
 pub enum OperatorPresence {
     /// An operator, whose answers arrive here.
     Attended(OperatorChannel),
-    /// No operator.
     Unattended(Unattended),
 }
 
@@ -178,7 +177,6 @@ impl Operator for OperatorPresence {
     }
 }
 
-/// The result of a commit.
 pub type Committed = crate::worker::Committed<Written>;
 
 /// Registers as they were read.

@@ -13,7 +13,6 @@ pub use crate::analysis::check::{Verdict, Wear};
 /// One line of the check.
 pub type BissStepResult = check::StepResult<CheckStep, CheckFinding>;
 
-/// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
     /// Identity, and whether a description matches.
@@ -67,7 +66,6 @@ pub enum CheckFinding {
     OtherFrame {
         /// Of the data sheet.
         sheet: (u8, u8),
-        /// Of the description.
         description: (u8, u8),
     },
     /// Degrees Celsius, and the limits of the data sheet.

@@ -34,7 +34,6 @@ pub enum Error {
     /// The wire.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// No reply.
     #[error("no reply while {requested} (attempts: {tries})")]
     NoReply {
         requested: RequestedItem,
@@ -161,7 +160,6 @@ pub enum Error {
     /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed {
-        /// The item that changed.
         item: String,
     },
     /// The reply belongs to another kind of request.

@@ -89,7 +89,6 @@ pub struct DataSheetBank {
 }
 
 impl Identity {
-    /// Returns the identity as a profile contains it.
     pub fn profile(&self) -> ProfileIdentity {
         ProfileIdentity {
             serial_number: self.serial_number.clone(),

@@ -7,7 +7,6 @@ use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::units::Moment;
 
-/// A position as it was read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionReading {
     /// When the encoder sampled it.

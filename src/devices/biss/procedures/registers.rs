@@ -26,13 +26,11 @@ impl Registers {
         self.run(register.address, register.width)
     }
 
-    /// Returns the number in the register with a role.
     pub fn number(&self, description: &Description, role: Role) -> Option<u64> {
         let register = description.with_role(role)?;
         register.number(&self.bytes(register)?)
     }
 
-    /// Returns the quantity in the register with a role.
     pub fn quantity(&self, description: &Description, role: Role) -> Option<f64> {
         let register = description.with_role(role)?;
         match register.decode(&self.bytes(register)?)? {

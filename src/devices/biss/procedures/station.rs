@@ -29,7 +29,6 @@ parameters! {
         /// Baud rates of serial ports; the port itself may have fewer.
         pub baud: Baud = FORMAT.baud, "baud" => Checked(Expected::BitRate { low: 300, high: 4_000_000 }, read_baud),
             "settings_card.baud" like "115200";
-        /// Parity.
         pub parity: Parity = FORMAT.parity, "parity" => Parity::WORDS;
         /// Byte order of register numbers; `None`: it is detected.
         pub order: Option<ByteOrder> = None, "order" => ORDERS;
@@ -63,9 +62,7 @@ parameters! {
 parameters! {
     /// Parameters in a link for the frame of an encoder that does not report it.
     pub struct FrameParameters: UrlError {
-        /// Bits of turns.
         pub multiturn: Option<u8> = None, "mt" => Maybe(Whole(Quantity::Bits, 0..=32)), "connect.biss_turns" like "16";
-        /// Bits of steps.
         pub singleturn: Option<u8> = None, "st" => Maybe(Whole(Quantity::Bits, 1..=32)), "connect.biss_steps" like "17";
         /// The checksum; `Some(None)`: the frames have none.
         pub crc: Option<Option<Crc>> = None,

@@ -34,7 +34,6 @@ impl Status {
 /// A register of bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bits {
-    /// All bits.
     pub raw: u64,
     /// The bits that are set, lowest first, with their names in the description.
     pub set: Vec<(u8, Option<Name>)>,

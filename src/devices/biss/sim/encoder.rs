@@ -121,7 +121,6 @@ impl Encoder {
         self.shaft.layout()
     }
 
-    /// Returns its device mode.
     pub const fn mode(&self) -> DeviceMode {
         self.mode
     }

@@ -132,7 +132,6 @@ pub(super) struct PresetEntry {
 }
 
 impl PresetEntry {
-    /// Creates an entry with the stored value.
     pub(super) fn new(stored: PresetValue) -> Self {
         PresetEntry { command: 0, status: PresetStatus::Idle, bytes: stored.emit() }
     }

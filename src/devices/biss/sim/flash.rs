@@ -42,7 +42,6 @@ impl Flash {
         &self.oem_data
     }
 
-    /// Returns the preset value.
     pub const fn preset(&self) -> PresetValue {
         self.preset
     }

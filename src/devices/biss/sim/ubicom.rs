@@ -70,7 +70,6 @@ impl Port {
         }
     }
 
-    /// Returns the encoder.
     pub const fn encoder(&self) -> &Encoder {
         &self.encoder
     }

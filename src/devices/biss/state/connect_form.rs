@@ -164,7 +164,6 @@ impl BissForm {
         chosen(&sim::Config::entries(), &["rpm", "fault"])
     }
 
-    /// Returns the entries of the bus that are typed.
     pub fn of_the_bus() -> Vec<Entry> {
         BusParameters::entries()
     }

@@ -85,7 +85,6 @@ impl Encoder {
         }
     }
 
-    /// Returns the profile, if this is one.
     pub fn profile(&self) -> Option<&BissProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         document.body.get::<BissProfile>()

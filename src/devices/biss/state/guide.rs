@@ -46,7 +46,6 @@ pub enum Reached {
     /// It waits for the operator.
     Waits,
     Runs,
-    /// It was skipped.
     Skipped,
     /// It ended the procedure.
     Failed,

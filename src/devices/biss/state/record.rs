@@ -98,7 +98,6 @@ impl Record {
         self.append(&mut batch);
     }
 
-    /// Records a position.
     pub(super) fn add_position(&mut self, reading: PositionReading) {
         let mut batch = Batch::default();
         self.see(&reading, &mut batch);

@@ -35,7 +35,6 @@ pub struct Row {
 /// Row with its value.
 #[derive(Clone, Debug)]
 pub struct RegisterEntry<'a> {
-    /// The register.
     pub row: &'a Row,
     /// Its bytes in the order of addresses, as edited; `None`: not read.
     pub bytes: Option<Vec<u8>>,

@@ -232,7 +232,6 @@ fn number(row: &ParameterRow, raw: u32) -> i64 {
     }
 }
 
-/// Returns the direction as JSON.
 pub(super) fn direction_json(direction: &str) -> Json {
     json!(direction.to_lowercase())
 }

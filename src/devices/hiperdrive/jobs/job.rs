@@ -51,7 +51,6 @@ pub enum HiperdriveJob {
 /// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Restores a profile.
     Restore { profile: Box<HiperdriveProfile>, options: RestoreOptions },
     /// Writes these values and saves them; parameters that are not in the image stay as they are.
     Write(Box<Image>),
@@ -133,7 +132,6 @@ impl Prepared {
 /// Plan with the user's consent.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
-/// The result of a commit.
 pub type Committed = crate::worker::Committed<Written>;
 
 /// A message during a job.
@@ -151,7 +149,6 @@ pub enum DeviceMessage {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
     Parameter(ParameterNumber),
-    /// A step of the check.
     Step(CheckStep),
     /// Operation of a plan, with the item it changes.
     Operation(String),

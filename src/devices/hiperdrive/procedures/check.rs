@@ -21,7 +21,6 @@ pub use crate::analysis::check::Verdict;
 /// One line of the check.
 pub type HiperdriveStepResult = check::StepResult<CheckStep, CheckFinding>;
 
-/// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
     /// Explicit messages are answered.
@@ -92,7 +91,6 @@ pub enum CheckFinding {
     Supply(i64),
     /// Degrees Celsius.
     Temperature(i64),
-    /// Setting of the address switches.
     Switch(AddressSwitch),
     /// The address switches have an undefined setting.
     UnknownSwitch(i64),

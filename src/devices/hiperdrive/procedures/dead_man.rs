@@ -59,13 +59,11 @@ pub struct DeadMan {
     ended: Option<(u64, Ended)>,
 }
 
-/// The running act.
 #[derive(Clone, Copy, Debug)]
 struct Act {
     number: u64,
     /// The latest request of the act: pausing a job counts as one, too.
     request: MotionRequest,
-    /// The motion, if any.
     motion: Option<Motion>,
     /// Supervision of a motion that has begun.
     watch: Option<Watch>,

@@ -57,7 +57,6 @@ impl fmt::Display for RequestedItem {
 /// A reply that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    /// Not a packet.
     #[error(transparent)]
     Packet(#[from] PacketError),
     /// Not a value of its parameter.
@@ -168,7 +167,6 @@ pub enum Error {
     /// The frame was refused.
     #[error("{requested}: {status}")]
     Encapsulation { requested: RequestedItem, status: EncapsulationStatus },
-    /// The request was refused.
     #[error("{requested}: {refusal}")]
     Refused { requested: RequestedItem, refusal: Refusal },
     /// Another master has the cyclic connection.
@@ -268,7 +266,6 @@ pub enum Error {
     /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed {
-        /// The item that changed.
         item: String,
     },
 }

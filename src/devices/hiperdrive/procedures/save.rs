@@ -10,7 +10,6 @@ use crate::devices::hiperdrive::protocol::{PARAMETERS, ParameterNumber};
 use crate::profile::Unknown;
 
 impl Identity {
-    /// Returns the identity as a profile contains it.
     pub fn profile(&self) -> ProfileIdentity {
         let drive = |drive: &DriveIdentity| ProfileDrive {
             variant: Some(drive.variant),

@@ -42,9 +42,7 @@ pub struct Station {
     /// A recording replies: its replies have the recorded request numbers.
     pub recorded: bool,
     pub(super) line: LineState,
-    /// The number of the session at the device.
     pub(super) session: Option<u32>,
-    /// The number of the next request.
     pub(super) next: u64,
     /// Numbers of the last requests that have no reply yet, when they were sent, and whether the device itself takes long.
     open: VecDeque<(u64, Moment, bool)>,

@@ -17,7 +17,6 @@ pub enum Temperature {
 /// A temperature at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TemperatureReading {
-    /// When.
     pub at: Moment,
     pub what: Temperature,
     /// Degrees Celsius; `None` if the device does not provide it.

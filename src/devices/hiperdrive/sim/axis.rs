@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-/// The load of the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleLoad {
     /// Percentage of the nominal torque that the load takes. With less effective torque nothing moves.

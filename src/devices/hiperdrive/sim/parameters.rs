@@ -22,7 +22,6 @@ pub enum Refused {
     ReadOnly,
     /// Value out of range.
     Value,
-    /// Not in this state.
     State,
 }
 

@@ -83,7 +83,6 @@ struct Master {
 const SAVES: Duration = Duration::from_millis(150);
 /// Reset of all drives, unless the settings give another time.
 pub(super) const RESETS: Duration = Duration::from_secs(1);
-/// Reset of one drive.
 const DRIVE_RESETS: Duration = Duration::from_millis(300);
 
 impl Default for Setup {
@@ -120,7 +119,6 @@ impl Station {
         }
     }
 
-    /// Creates a station from settings.
     pub fn of(config: &Config) -> Self {
         let drives = DriveNumber::of(config.topology).map(|number| config.drive(number)).collect();
         let setup = Setup { topology: config.topology, drives, serial_number: config.serial_number };

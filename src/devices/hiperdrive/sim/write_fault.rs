@@ -3,7 +3,6 @@
 use super::parameters::Refused;
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 
-/// The kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WriteFault {
     /// They are refused: not in this state.

@@ -48,7 +48,6 @@ pub enum Motor {
     Lead(Goal),
     /// Acknowledge the fault of a drive.
     Acknowledge,
-    /// A jog is pressed.
     JogPress {
         direction: Direction,
         /// Set for an automatic repetition of the key, which starts nothing.
@@ -64,7 +63,6 @@ pub enum Motor {
     FreeOutward(Direction),
     /// The jog is still held: sent in every frame.
     JogHold,
-    /// The jog was released.
     JogRelease,
     /// Move by this many steps from the present position, to the end.
     Step {
@@ -82,7 +80,6 @@ pub enum Motor {
     Pause,
     /// Resume the job.
     Resume,
-    /// Stops the motion.
     Stop,
     /// Jog like this.
     JogEffort(Effort),

@@ -81,7 +81,6 @@ pub enum Reached {
 /// The end of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// Run to its end.
     Done,
     /// Cancelled by the user.
     Cancelled,
@@ -178,7 +177,6 @@ impl AxisStep {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper)
     }
 
-    /// Returns whether the step may be skipped.
     pub const fn may_be_skipped(self) -> bool {
         matches!(self, AxisStep::Reference | AxisStep::PowerCycle)
     }

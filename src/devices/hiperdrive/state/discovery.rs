@@ -72,7 +72,6 @@ impl Discovery {
 pub struct Discover(Arc<dyn Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync>);
 
 impl Discover {
-    /// Asks so.
     pub fn new(ask: impl Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync + 'static) -> Self {
         Discover(Arc::new(ask))
     }
@@ -101,7 +100,6 @@ pub struct DiscoveryFinder {
     pub discovery: Option<Discovery>,
 }
 
-/// An action on the result.
 pub enum DiscoveryAction {
     /// Broadcast a discovery request.
     Discover,

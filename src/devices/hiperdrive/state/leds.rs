@@ -35,7 +35,6 @@ pub enum Led {
 pub struct LedMeaning {
     pub severity: Severity,
     pub meaning: Text,
-    /// The remedy.
     pub remedy: Text,
 }
 
@@ -113,7 +112,6 @@ impl Leds {
         LedMeaning { severity, meaning: TEXTS.text(meaning), remedy: TEXTS.text(remedy) }
     }
 
-    /// Returns the state of an LED as text.
     pub fn state_text(&self, lamp: Led) -> Text {
         TEXTS.text(match lamp {
             Led::Drives => match self.drives {

@@ -215,7 +215,6 @@ pub fn positions(switch: Option<AddressSwitch>) -> [Position; 5] {
     ]
 }
 
-/// Returns the source of an address as text.
 pub fn source(own: AddressSource) -> Text {
     match own {
         AddressSource::Stored => TEXTS.text("hd_net.source_stored"),

@@ -12,7 +12,6 @@ use crate::devices::hiperdrive::state::TEXTS;
 /// A drive outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutsideSeen {
-    /// How it is outside.
     pub outside: Outside,
     /// In scaled steps.
     pub position: i32,

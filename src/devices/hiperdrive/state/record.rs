@@ -27,7 +27,6 @@ pub(super) enum RecordedValue {
 pub struct Record {
     pub(super) track: Track<RecordedValue>,
     last: Option<DriveReading>,
-    /// The temperatures that are recorded.
     temperatures: Vec<Temperature>,
 }
 

@@ -75,7 +75,6 @@ pub struct Unit {
     pub(super) readings: BTreeMap<DriveNumber, DriveReading>,
     /// Limits and scaling may have changed since they were read: control was taken since.
     pub(super) is_stale: bool,
-    /// The polled drive.
     pub(super) watched: DriveNumber,
     /// Polling has been started automatically since the link was opened.
     pub(super) has_polled: bool,
@@ -118,7 +117,6 @@ impl Unit {
         }
     }
 
-    /// Returns the profile, if this is one.
     pub fn profile(&self) -> Option<&HiperdriveProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         document.body.get::<HiperdriveProfile>()

@@ -22,7 +22,6 @@ pub const WEAR_LIMIT: u64 = 1_000_000;
 pub enum HiperfaceJob {
     /// Reads everything that is displayed: for a window, after connecting.
     Survey,
-    /// Reads the identity.
     Identify,
     /// The whole error queue.
     Status,
@@ -196,7 +195,6 @@ impl Prepared {
 /// Plan with the user's consent.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
-/// The result of a commit.
 pub type Committed = crate::worker::Committed<Written>;
 
 /// A value that was read.

@@ -12,7 +12,6 @@ pub use crate::analysis::check::Verdict;
 /// One line of the check.
 pub type HiperfaceStepResult = crate::analysis::check::StepResult<CheckStep, CheckFinding>;
 
-/// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
     /// 53h and the waits after it.

@@ -12,7 +12,6 @@ pub enum Error {
     /// The wire.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// No reply.
     #[error("no reply from address {address:02X}h to {} (attempts: {tries})", command.row().name)]
     NoReply {
         /// Address of the request.
@@ -93,7 +92,6 @@ pub enum Error {
     /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed {
-        /// The item that changed.
         item: PlanItem,
     },
     /// A value read back differs from the one written.

@@ -9,7 +9,6 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::units::Moment;
 
-/// A position as it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionReading {
     /// When the encoder sampled it: the falling edge of the start bit of the reply's address.
@@ -20,7 +19,6 @@ pub struct PositionReading {
     pub position: Option<Position>,
     /// The position is within the measuring range and no code makes it invalid.
     pub valid: bool,
-    /// Codes read with it.
     pub codes: Vec<StatusCode>,
 }
 
@@ -82,7 +80,6 @@ pub struct WatchedReading {
     pub watch: Watch,
     /// The value, or the encoder's refusal.
     pub value: Result<i64, Error>,
-    /// Codes read with it.
     pub codes: Vec<StatusCode>,
 }
 

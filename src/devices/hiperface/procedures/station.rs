@@ -18,7 +18,6 @@ parameters! {
     pub struct LinkParameters: UrlError {
         /// Speed.
         pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => Bauds;
-        /// Parity.
         pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::WORDS;
         /// Destination of requests: 40h…5Fh or broadcast.
         pub address: u8 = DeviceAddress::FACTORY.byte(),
@@ -29,9 +28,7 @@ parameters! {
         pub long_timeout: bool = true, "timeout" => Checked(Expected::TimeoutBits, read_timeout);
         /// Additional delay allowed for a reply beyond the protocol's worst case; `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
-        /// For a type that is not in the table.
         pub periods: Option<u32> = None, "periods" => Maybe(Checked(Expected::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
-        /// The same.
         pub turns: Option<u32> = None, "turns" => Maybe(Checked(Expected::MostTurns { most: MOST_PERIODS }, read_periods)), "connect.turns" like "4096";
     }
 }

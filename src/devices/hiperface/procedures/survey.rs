@@ -21,7 +21,6 @@ pub struct Survey {
     pub unreadable: Vec<UnreadableField>,
     /// Quality of the line until then.
     pub line: LineQuality,
-    /// The counter, if the type has one.
     pub counter: Option<u32>,
     /// The position, unless the encoder refuses it for another reason than having none at the moment.
     pub position: Option<Sample>,

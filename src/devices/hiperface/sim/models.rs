@@ -76,7 +76,6 @@ const KIT_MOTOR: &[u8] = b"SMK42-08 4500rpm\x11\x94\x00\xB4\x02\x1C\x00\x04\x00\
 const SEL37_LABEL: &[u8] = b"\x53\x00\x00\x00\x00\x10\x00\x00\x10\x00SEL37-HFB0-K02    \x00\x03\x00\x48\x00\x73";
 
 impl Model {
-    /// Returns the model of that name.
     pub fn find(name: &str) -> Option<&'static Model> {
         MODELS.iter().find(|model| model.name == name)
     }

@@ -24,7 +24,6 @@ pub use report::kind_words;
 
 /// An action of the assistant.
 pub enum CommutationAction {
-    /// The form was edited.
     Edit(Box<Form>),
     /// Read the position at rest.
     Read(Slot),
@@ -47,7 +46,6 @@ pub struct Commutation {
     readings: [Option<RestReading>; 3],
     /// The last position read: the shaft is still there, as far as known.
     last: Option<Slot>,
-    /// The running reading.
     asked: Option<PendingReading>,
 }
 

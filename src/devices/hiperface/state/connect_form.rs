@@ -136,7 +136,6 @@ impl LinkForm {
         chosen(&Config::entries(), &["rpm", "fault"])
     }
 
-    /// Returns the entries of the link that are typed.
     pub fn of_the_link() -> Vec<Entry> {
         LinkParameters::entries()
     }

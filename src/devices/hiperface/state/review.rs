@@ -14,7 +14,6 @@ pub type Review = review::Review<Hiperface>;
 pub type ReviewState = review::ReviewState<Hiperface>;
 
 impl Review {
-    /// Returns the options of a restore, if this is one.
     pub fn options(&self) -> Option<RestoreOptions> {
         match &self.change {
             Change::Restore { options, .. } => Some(options.clone()),

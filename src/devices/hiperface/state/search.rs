@@ -25,13 +25,11 @@ use crate::worker::{Event, Progress};
 pub struct Search {
     /// Its number in the studio.
     pub(crate) number: u32,
-    /// The link it searches on.
     pub(crate) url: LinkUrl,
     pub(crate) options: FindOptions,
     pub(crate) line: Option<LiveSession<Hiperface>>,
     /// Disconnects when its link is open or cannot be opened.
     pub(crate) over: crossbeam_channel::Receiver<()>,
-    /// Encoders found so far.
     pub found: Vec<FoundEncoder>,
     /// The end of the search; `None` while it runs.
     pub end: Option<Text>,
@@ -42,12 +40,10 @@ impl Search {
         self.line.as_ref()?.running()?.progress.as_ref()
     }
 
-    /// Returns whether the search is running.
     pub fn is_running(&self) -> bool {
         self.end.is_none()
     }
 
-    /// Returns the link of an encoder that was found.
     pub(crate) fn link_to(&self, found: &FoundEncoder) -> LinkUrl {
         let mut url = self.url.clone();
         url.query.set("baud", &found.format.baud.to_string());

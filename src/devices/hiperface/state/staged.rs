@@ -29,7 +29,6 @@ impl EditBase for Vec<FieldImage> {
 /// Why an edit is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StagedError {
-    /// There is no such field.
     #[error("data field {field} does not exist")]
     NoField {
         /// Number of the field.

@@ -300,7 +300,6 @@ fn size_menu(
     name(menu.response, true, &word);
 }
 
-/// A new field in the free memory.
 fn create(
     ui: &mut Ui,
     theme: &Theme,

@@ -41,7 +41,6 @@ pub(super) fn survey(runner: &mut Runner) -> Result<Box<Survey>> {
     Ok(survey)
 }
 
-/// Returns these programs, and the shift of the window.
 pub(super) fn programs(
     runner: &mut Runner,
     wanted: Vec<ProgramNumber>,

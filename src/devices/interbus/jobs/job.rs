@@ -68,7 +68,6 @@ pub enum InterbusJob {
 /// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Restores a profile.
     Restore { profile: Box<InterbusProfile>, options: RestoreOptions },
     /// Writes these values; items that are not in the image stay as they are, and are not read.
     Write(Box<Image>),
@@ -167,7 +166,6 @@ impl Prepared {
 /// Plan with the user's consent.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
-/// The result of a commit.
 pub type Committed = crate::worker::Committed<Written>;
 
 /// A message during a job.

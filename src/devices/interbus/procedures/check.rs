@@ -14,7 +14,6 @@ pub use crate::analysis::check::{Verdict, Wear};
 /// One line of the check.
 pub type InterbusStepResult = check::StepResult<CheckStep, CheckFinding>;
 
-/// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
     /// The gateway answers.
@@ -46,7 +45,6 @@ pub enum CheckFinding {
     OrderFits,
     /// Words make sense with their halves exchanged only.
     OrderSwapped {
-        /// As read.
         input: u32,
         /// With its halves exchanged.
         swapped: u32,

@@ -66,7 +66,6 @@ impl fmt::Display for RequestedItem {
 pub struct Exception(u8);
 
 impl Exception {
-    /// Creates it from any code.
     pub const fn new(code: u8) -> Self {
         Exception(code)
     }
@@ -135,7 +134,6 @@ pub enum Damage {
     /// A reply to another function.
     #[error("a reply to function {got} instead of {requested}")]
     Function {
-        /// Requested function.
         requested: u8,
         /// Function of the reply.
         got: u8,
@@ -302,7 +300,6 @@ pub enum Error {
     /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed {
-        /// The item that changed.
         item: String,
     },
     /// Something ended early, and the encoder could not be led back.

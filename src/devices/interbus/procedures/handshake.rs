@@ -23,7 +23,6 @@ pub struct Handshake {
 pub enum WordReply {
     /// It runs: a position, a speed or cam outputs.
     Runs,
-    /// It is busy.
     Busy,
     /// The exact echo.
     Echoed,

@@ -60,7 +60,6 @@ impl Survey {
 /// The status of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
-    /// The IN word.
     pub reading: WordReading,
     /// The error that it sends instead of a position.
     pub error: Option<ErrorWord>,

@@ -8,7 +8,6 @@ use crate::devices::interbus::protocol::{Command, Parameter, ProgramNumber, Read
 use crate::profile::Unknown;
 
 impl Identity {
-    /// Returns the identity as a profile contains it.
     pub fn profile(&self) -> ProfileIdentity {
         ProfileIdentity { serial_number: self.serial_number.clone(), flags: Some(self.flags), unknown: Unknown::new() }
     }

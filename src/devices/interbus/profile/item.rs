@@ -68,7 +68,6 @@ pub enum ItemError {
     },
 }
 
-/// All items, as text.
 const ITEMS: &str = "steps, revolutions, direction, preset, zero-shift, shift, cam:P:C (program 1 to 8, cam 0 to 7), \
                      cam-mask:P, temperature and operating-time";
 

@@ -38,7 +38,6 @@ pub enum CamBit {
     Cam(u8),
 }
 
-/// Bits of the window.
 const WINDOW_BITS: u32 = 17;
 /// Bits of the outputs, below the window.
 const OUTPUT_BITS: u32 = 8;

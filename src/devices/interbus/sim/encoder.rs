@@ -72,7 +72,6 @@ enum Activity {
     ReadingOut,
 }
 
-/// The content of the IN word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum InWordContent {
     /// Position, speed or cam output, as they are at the moment.

@@ -177,7 +177,6 @@ impl Eeprom {
     }
 }
 
-/// Returns a cam of a program.
 pub(super) fn cam_mut(program: &mut Program, number: CamNumber) -> Option<&mut Cam> {
     program.cams.get_mut(usize::from(number.get())).and_then(Option::as_mut)
 }

@@ -93,7 +93,6 @@ impl Encoder {
         some(&cams::words::marks(&marks), Text::clone)
     }
 
-    /// Returns the profile, if this is one.
     pub fn profile(&self) -> Option<&InterbusProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         document.body.get::<InterbusProfile>()
@@ -136,7 +135,6 @@ impl Encoder {
         WordContext { mode, read_out: None, shift: self.shift() }
     }
 
-    /// Returns the shift of the window that the encoder has.
     pub fn shift(&self) -> Option<WindowShift> {
         self.staged.device().and_then(|image| image.shift)
     }
@@ -190,12 +188,10 @@ impl Encoder {
         self.session.cycles
     }
 
-    /// Returns whether a parameter is edited.
     pub fn edits_parameters(&self) -> bool {
         self.staged.differences().iter().any(|own| matches!(own.place, ValueId::Parameter(_)))
     }
 
-    /// Returns whether cams are edited.
     pub fn edits_cams(&self) -> bool {
         self.staged.differences().iter().any(|own| !matches!(own.place, ValueId::Parameter(_)))
     }

@@ -20,7 +20,6 @@ pub enum WordSource {
 }
 
 impl WordSource {
-    /// All kinds of words.
     pub const ALL: [WordSource; 4] = [WordSource::In, WordSource::Out, WordSource::K1, WordSource::K2];
 
     pub const fn word(self) -> &'static str {

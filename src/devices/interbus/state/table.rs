@@ -15,7 +15,6 @@ use crate::store::{read_file, write_atomically};
 /// A table that was read and is not taken yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
-    /// Origin of the table.
     pub origin: Text,
     /// Its content, in the present units of the machine.
     pub table: CamTable,

@@ -14,7 +14,6 @@ use crate::link::{Direction, TraceEntry};
 pub(super) struct Meaning {
     /// Order of the halves of a word.
     pub(super) order: WordOrder,
-    /// The shift of the window, if it was read.
     pub(super) shift: Option<WindowShift>,
     mode: Mode,
     read_out: Option<ReadOut>,

@@ -25,7 +25,6 @@ pub(crate) struct Chosen {
     pub(crate) layout: Layout,
     /// The times of its family; `None` if it has none, or an unknown one.
     pub(crate) times: Option<Times>,
-    /// Title of the layout.
     pub(crate) title: String,
 }
 

@@ -17,7 +17,6 @@ const TREMBLES: u64 = 4;
 /// One line of the check.
 pub type SsiStepResult = check::StepResult<CheckStep, CheckFinding>;
 
-/// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
     /// The adapter, and its clock.
@@ -60,7 +59,6 @@ pub enum CheckFinding {
     },
     /// Finding about words, and the number of words with it.
     Said {
-        /// The finding.
         finding: Said,
         /// Number of words.
         count: u64,

@@ -57,7 +57,6 @@ pub struct Coding {
 }
 
 impl Coding {
-    /// A single bit.
     pub(super) const BIT: Coding = Coding { code: Code::Binary, last: 1, bits: 1, offset: 0 };
 
     /// Creates the coding of the positions 0…`last`.

@@ -45,7 +45,6 @@ impl InjectedFault {
             .collect()
     }
 
-    /// Returns the names that there are.
     pub(super) fn names(layout: &Layout) -> Vec<String> {
         let descriptor = layout.descriptor();
         let bits = descriptor.errors.iter().map(|bit| &bit.name);

@@ -178,7 +178,6 @@ impl Designer {
         self.problem.as_ref()
     }
 
-    /// Returns the saved profile.
     pub(super) fn saved(&self) -> &SsiProfile {
         &self.saved
     }

@@ -19,7 +19,6 @@ pub enum Format {
     StructuredText32,
     /// A source file for TIA Portal.
     Scl,
-    /// The format string of LinuxCNC.
     LinuxCnc,
     /// Settings for common SSI modules of controls.
     Sheet,
@@ -32,7 +31,6 @@ pub enum Format {
 }
 
 impl Format {
-    /// All formats.
     pub const ALL: [Format; 9] = [
         Format::C,
         Format::StructuredText,

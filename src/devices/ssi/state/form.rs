@@ -30,7 +30,6 @@ pub enum Entry {
     Frequency(u32),
     /// One of several.
     Choice {
-        /// All options.
         options: Vec<Text>,
         /// Index of the choice.
         chosen: usize,
@@ -187,7 +186,6 @@ impl Designer {
         groups
     }
 
-    /// Returns how it is read, as a form.
     pub fn reading_form(&self) -> Vec<Row> {
         let reading = &self.design().profile.reading;
         let mut rows = vec![

@@ -46,9 +46,7 @@ pub enum Done {
     /// The search is over.
     Found {
         number: u32,
-        /// The state of the search.
         hunt: Box<SearchState>,
     },
-    /// A file was written, or not.
     Written(PathBuf, Result<(), FileError>),
 }

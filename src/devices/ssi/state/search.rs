@@ -39,15 +39,12 @@ pub struct Frames {
     pub are_numbers: bool,
 }
 
-/// The state of the search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum SearchState {
-    /// No search.
     #[default]
     Nothing,
     /// Running, with its number.
     Running(u32),
-    /// A result.
     Found {
         origin: Origin,
         /// Bits of each.

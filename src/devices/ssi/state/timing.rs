@@ -61,7 +61,6 @@ pub enum Lasting {
 /// A moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimingMark {
-    /// The event.
     pub event: TimingEvent,
     /// In seconds.
     pub at: f64,

@@ -27,7 +27,6 @@ pub struct Decoded {
 }
 
 impl Decoded {
-    /// Decodes a frame.
     pub fn of(layout: &Layout, frame: u64) -> Self {
         let reading = layout.decode(frame);
         let is_none = reading.flags.has(Flags::CODE);

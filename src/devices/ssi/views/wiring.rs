@@ -51,7 +51,6 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, family: Option<&Family>) {
     });
 }
 
-/// Returns the limits of a signal as text.
 fn limits(theme: &Theme, signal: &Signal) -> String {
     let volts = |(least, most): (f64, f64)| {
         if (most - least).abs() < 1e-9 {

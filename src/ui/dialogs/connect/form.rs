@@ -37,7 +37,6 @@ pub(in crate::ui) fn begun<F: TypedConnectForm>() -> Box<dyn ConnectForm> {
     Box::new(FormAdapter::<F>(F::Memory::default()))
 }
 
-/// The adapter from [`TypedConnectForm`] to [`ConnectForm`].
 struct FormAdapter<F: TypedConnectForm>(F::Memory);
 
 impl<F: TypedConnectForm> ConnectForm for FormAdapter<F> {

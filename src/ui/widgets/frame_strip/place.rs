@@ -1,6 +1,5 @@
 //! The layout of the fields of a frame: on as few lines as possible, with all bits in cells of one width.
 
-/// The space that a field needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpaceNeeded {
     pub(super) bits: usize,

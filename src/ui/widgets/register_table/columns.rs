@@ -31,7 +31,6 @@ const BYTES: [Widths; 8] = [
     (Column::Access, 48.0, 40.0),
     (Column::Default, 84.0, 52.0),
 ];
-/// Those of numbers.
 const NUMBERS: [Widths; 7] = [
     (Column::Marks, 42.0, 38.0),
     (Column::Address, 36.0, 36.0),

@@ -201,7 +201,6 @@ pub(super) fn begin(table: &RegisterTable<'_>, view: &mut RegisterView, typed: O
     begin_at(table, view, place, typed)
 }
 
-/// The same for a register.
 pub(super) fn begin_at(
     table: &RegisterTable<'_>,
     view: &mut RegisterView,

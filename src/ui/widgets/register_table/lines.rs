@@ -65,7 +65,6 @@ impl Lines {
         Some(LineKind::Row(RegisterLocation { group, row: rest }))
     }
 
-    /// Returns the group that a line belongs to.
     pub(super) fn group_at(&self, line: usize) -> Option<usize> {
         if line >= self.total {
             return None;

@@ -27,7 +27,6 @@ struct Timed {
     at: Moment,
 }
 
-/// The bytes received so far.
 struct ReceivedBytes {
     receiver: Receiver,
     sent: Vec<u8>,
@@ -148,7 +147,6 @@ impl Master<'_> {
         }
     }
 
-    /// Returns the reply in a frame, if it is one.
     fn judge(&self, request: Request, frame: &[u8], received: &mut ReceivedBytes) -> Option<Reply> {
         if frame == received.sent {
             received.echo_heard = true;

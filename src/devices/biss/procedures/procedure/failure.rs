@@ -45,7 +45,6 @@ pub enum Failure {
     #[error("the status of the procedure is 0x{found:02X} where 0x{expected:02X} is needed")]
     Status {
         kind: ProcedureKind,
-        /// The expected status.
         expected: u8,
         /// The reported status.
         found: u8,

@@ -48,7 +48,6 @@ pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
     cycles: u64,
 }
 
-/// The course of a run.
 pub(super) struct RunCourse {
     pub(super) run: Run,
     /// The command that starts it.
@@ -61,7 +60,6 @@ pub(super) struct RunCourse {
     pub(super) done: u8,
     /// Interval of reading its status.
     pub(super) every: Duration,
-    /// Its expected duration, and the limit.
     pub(super) expected: Duration,
     pub(super) limit: Duration,
 }

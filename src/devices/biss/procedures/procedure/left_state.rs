@@ -51,7 +51,6 @@ impl<T: Copy + PartialEq> Possible<T> {
         self.0.contains(&value)
     }
 
-    /// Adds a possible value.
     pub fn or(&mut self, value: T) {
         if !self.may_be(value) {
             self.0.push(value);

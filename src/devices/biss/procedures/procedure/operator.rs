@@ -41,7 +41,6 @@ impl SpeedRange {
         SpeedRange::new(self.least / (1.0 + Self::EXACT), self.greatest / (1.0 - Self::EXACT))
     }
 
-    /// Returns the speed in the middle of the range.
     pub fn middle(self) -> f64 {
         f64::midpoint(self.least, self.greatest)
     }

@@ -19,7 +19,6 @@ pub enum ProcedureStep {
     Open,
     /// Registers are written.
     Write,
-    /// A run of a procedure.
     Run(Run),
     Results,
     /// The flash is written.

@@ -18,7 +18,6 @@ use crate::devices::biss::protocol::{CalibrationStatus, Layout, PresetValue, Wie
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::filter;
 
-/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => Text::new("change.restore").with("serial", &profile.identity.serial_number),

@@ -58,7 +58,6 @@ impl Drives {
         }
     }
 
-    /// Returns the drives' dead-men.
     pub fn dead_men(&self) -> impl Iterator<Item = &DeadMan> {
         self.controlled.iter().map(|man| &man.dead_man)
     }

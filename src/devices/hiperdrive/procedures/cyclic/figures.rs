@@ -38,7 +38,6 @@ pub enum CyclicLost {
     /// Nothing has come for three intervals.
     #[error("nothing has come for {} ms", after.as_millis())]
     Silent {
-        /// Duration of the silence.
         after: Duration,
     },
     /// The port failed.

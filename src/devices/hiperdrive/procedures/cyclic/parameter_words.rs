@@ -23,7 +23,6 @@ pub struct ParameterWords {
 /// The latest reading of each watched parameter.
 pub type ParameterReadings = BTreeMap<ParameterNumber, ParameterReading>;
 
-/// Result of reading a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ParameterReading {
     /// When the reply arrived, or the time limit ended.

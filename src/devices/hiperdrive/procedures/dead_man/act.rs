@@ -59,7 +59,6 @@ pub enum MotionRequest {
         /// Speed and torque.
         effort: Effort,
     },
-    /// Stops the motion.
     Stop,
 }
 
@@ -135,7 +134,6 @@ pub enum Phase {
     Stopping(StopLevel),
 }
 
-/// A motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionKind {
     /// A positioning job.
@@ -167,7 +165,6 @@ pub enum Ended {
     Done,
     /// It is at its target.
     Arrived,
-    /// It stopped at the end of the range.
     RangeEnd,
     /// Released or stopped.
     Stopped,

@@ -122,7 +122,6 @@ impl Motion {
 }
 
 impl Watch {
-    /// Creates the watch at the beginning of a motion.
     pub(super) fn begin(motion: &Motion, actual: Actual, permit: &Permit) -> Self {
         let limits = motion.limits(permit);
         let outside = limits.and_then(|_| permit.outside(actual));

@@ -18,7 +18,6 @@ use crate::buses::ethernet_ip::protocol::{
 use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout};
 use crate::units::Moment;
 
-/// The connections there are.
 #[derive(Debug, Default)]
 pub(super) struct Connections {
     pub(super) cyclic: Option<Cyclic>,

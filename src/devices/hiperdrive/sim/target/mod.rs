@@ -45,7 +45,6 @@ pub struct Target {
     ended: bool,
 }
 
-/// The figures so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Figures {
     /// Whole frames over TCP.
@@ -99,7 +98,6 @@ impl Target {
         self.lock().set_faults(faults);
     }
 
-    /// Returns the figures so far.
     pub fn figures(&self) -> Figures {
         self.lock().figures
     }

@@ -24,7 +24,6 @@ const NOT_GETTABLE: GeneralStatus = GeneralStatus::new(0x2C);
 type Answer = Result<Vec<u8>, GeneralStatus>;
 
 impl Plant {
-    /// Returns the reply of an object.
     pub(super) fn object(&mut self, request: &Request) -> Reply {
         match self.ask(request) {
             Ok(data) => request.done(data),

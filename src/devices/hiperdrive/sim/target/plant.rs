@@ -25,7 +25,6 @@ pub(super) struct Plant {
     pub(super) connections: Connections,
     pub(super) order: ByteOrder,
     pub(super) counted_texts: bool,
-    /// Its address.
     pub(super) listens: SocketAddrV4,
     /// Port of cyclic data.
     pub(super) udp: u16,

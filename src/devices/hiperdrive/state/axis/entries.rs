@@ -28,7 +28,6 @@ pub struct Entries {
 pub struct Preview {
     /// Parameters 154 and 156.
     pub scale: PositionScale,
-    /// The new ruler.
     pub ruler: Ruler,
     /// Limits for the set-up: the travel of the drive.
     pub lower: i32,

@@ -28,7 +28,6 @@ pub(super) struct Preconditions {
     pub(super) lower: Option<i32>,
 }
 
-/// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StepOutcome {
     on: Preconditions,
@@ -52,7 +51,6 @@ impl StepOutcomes {
         AxisStep::ALL.get(self.0.len()).copied()
     }
 
-    /// A step has a result.
     pub(super) fn holds(&self, step: AxisStep) -> bool {
         step.index() < self.0.len()
     }

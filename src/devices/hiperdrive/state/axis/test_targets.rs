@@ -22,7 +22,6 @@ pub struct Outcome {
     pub target: i32,
     /// The position of the drive at its end.
     pub position: i32,
-    /// How it ended.
     pub ended: Ended,
     /// Allowed deviation from the target: 1° in steps (reference 5, repeatability).
     pub allowed: i64,

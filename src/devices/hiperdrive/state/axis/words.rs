@@ -63,7 +63,6 @@ pub fn button(step: AxisStep) -> Text {
     })
 }
 
-/// Returns the findings, if any.
 pub fn found(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Text> {
     let ruler = seen.ruler();
     let mm = |steps: i32| millimetres(ruler, steps.into());

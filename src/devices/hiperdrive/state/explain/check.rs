@@ -98,7 +98,6 @@ fn finding(finding: &CheckFinding) -> Text {
     }
 }
 
-/// Returns the setting of the address switches as text.
 pub fn switch(switch: AddressSwitch) -> Text {
     match switch {
         AddressSwitch::Object => TEXTS.text("hd_switch.object"),
@@ -109,7 +108,6 @@ pub fn switch(switch: AddressSwitch) -> Text {
     }
 }
 
-/// Returns the source of the address as text.
 pub fn source(source: AddressSource) -> Text {
     match source {
         AddressSource::Stored => TEXTS.text("hd_switch.source_stored"),

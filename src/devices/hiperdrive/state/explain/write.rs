@@ -14,7 +14,6 @@ use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, OtherType, 
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::network::refused;
 
-/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => match profile.identity.serial_number.as_str() {

@@ -16,7 +16,6 @@ pub enum Edit {
     Leave(ParameterNumber),
     /// Set both limits of a drive at once, if they cannot be set one after the other.
     Limits {
-        /// Drive of the limits.
         drive: DriveNumber,
         /// In steps of the edited scale.
         lower: i64,
@@ -25,7 +24,6 @@ pub enum Edit {
     },
     /// Another scale of a drive's positions.
     Scale {
-        /// Drive of the scale.
         drive: DriveNumber,
         /// Steps per turn.
         scale: PositionScale,
@@ -58,7 +56,6 @@ pub enum EditError {
     /// Read-only, or an action without a stored value.
     #[error("parameter {0} is not set as a value")]
     NotAValue(ParameterNumber),
-    /// Out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// The upper limit has to be above the lower one.

@@ -35,7 +35,6 @@ pub enum Mark {
     },
     /// The scale has changed and the limits have the same numbers: they mean other positions.
     LimitsMove {
-        /// Drive of the limits.
         drive: DriveNumber,
         /// Turns, from and to.
         lower: (f64, f64),

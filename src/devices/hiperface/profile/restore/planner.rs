@@ -11,7 +11,6 @@ use crate::profile::difference::runs;
 pub(super) struct Planner<'a> {
     pub(super) profile: &'a HiperfaceProfile,
     pub(super) device: &'a DeviceState,
-    /// The fields as they are to be.
     pub(super) wanted: Vec<FieldImage>,
     /// Fields whose bytes of unknown meaning are left alone.
     pub(super) left: Vec<u8>,

@@ -5,7 +5,6 @@ use crate::devices::hiperface::protocol::*;
 
 /// A request with the replies known for it.
 pub(super) struct Vector {
-    /// Address of the request.
     pub(super) address: u8,
     pub(super) request: Request,
     /// Its bytes on the line.

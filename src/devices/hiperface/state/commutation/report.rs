@@ -75,7 +75,6 @@ impl Slot {
 }
 
 impl Vector {
-    /// All vectors.
     pub const ALL: [Vector; 4] = [Vector::UAgainstBoth, Vector::UAgainstV, Vector::UAgainstW, Vector::Other];
 
     /// Returns the id of its text.

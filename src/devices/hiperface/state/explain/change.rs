@@ -5,7 +5,6 @@ use crate::app::Text;
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::state::{StagedError, TEXTS};
 
-/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => Text::new("change.restore").with("serial", &profile.identity.serial_number),

@@ -25,7 +25,6 @@ fn step(step: CheckStep) -> Text {
     })
 }
 
-/// Returns the quality of a line as text.
 pub fn line_quality(quality: &LineQuality) -> Text {
     let [retries, damaged, silent, late] = quality.troubles();
     TEXTS

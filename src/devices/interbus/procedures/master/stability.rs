@@ -76,7 +76,6 @@ impl Held {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CycleResult {
-    /// When.
     pub(super) now: Moment,
     pub(super) word: u32,
     /// For how long it was that.

@@ -17,7 +17,6 @@ use crate::devices::interbus::protocol::{Flags, GearError, Value};
 use crate::devices::interbus::state::TEXTS;
 use crate::worker::NotBegun;
 
-/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => match profile.identity.serial_number.as_str() {

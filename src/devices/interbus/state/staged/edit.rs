@@ -38,7 +38,6 @@ pub enum Edit {
     },
     /// Set both edges of a cam: entered, moved as a whole, or drawn.
     Cam {
-        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         /// Its first position.
@@ -97,7 +96,6 @@ pub enum EditError {
     /// No values of the encoder were read.
     #[error("nothing has been read yet")]
     NothingRead,
-    /// This program was not read.
     #[error("cam program {} has not been read", .0.get())]
     NotRead(ProgramNumber),
     /// The window's shift, which is read with a program, was not read.
@@ -106,7 +104,6 @@ pub enum EditError {
     /// The profile does not contain this cam.
     #[error("cam {} of program {} has no edges", cam.get(), program.get())]
     NoCam {
-        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
     },
@@ -120,7 +117,6 @@ pub enum EditError {
     #[error("{to} is outside the measuring range, which ends at {last}")]
     Edge {
         edge: Edge,
-        /// As given.
         to: u32,
         /// The last position.
         last: u32,

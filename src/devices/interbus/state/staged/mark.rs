@@ -57,7 +57,6 @@ impl Mark {
 }
 
 impl EditedValues {
-    /// Returns all findings.
     pub fn marks(&self) -> Vec<Mark> {
         let parameters = &self.image.parameters;
         let mut marks: Vec<Mark> = parameters.gear().err().map(Mark::Gear).into_iter().collect();

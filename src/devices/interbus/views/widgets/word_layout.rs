@@ -168,14 +168,12 @@ impl Cells {
         Cells { left: origin.x, top: origin.y, ..self }
     }
 
-    /// Returns the cell of a bit of the word.
     fn word(&self, bit: u8) -> Rect {
         let place = BITS - 1 - bit.min(BITS - 1);
         let line = f32::from(place / self.columns) * Cells::line_height() + NUMBERS;
         self.cell_at(place % self.columns, line)
     }
 
-    /// Returns the cell of a bit of the position.
     fn position(&self, bit: u8) -> Rect {
         let lines = self.position_lines() * self.columns;
         let place = lines - 1 - bit.min(lines - 1);

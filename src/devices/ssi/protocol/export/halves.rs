@@ -22,7 +22,6 @@ pub enum WideNumbers {
     RoundAxis,
 }
 
-/// The language of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Language {
     /// IEC 61131-3.

@@ -91,7 +91,6 @@ pub(super) const FAINT: &str = "#555";
 const FONT: &str = "font-family=\"Inter, Arial, sans-serif\"";
 
 impl Picture {
-    /// A picture with its title.
     pub(super) fn titled(width: u32, height: u32, title: &str) -> Self {
         let heading = PictureLabel { is_bold: true, ..PictureLabel::new(PictureLength::Whole(MARGIN), 20, 12, title) };
         Picture { title: title.to_owned(), width, height, shapes: vec![PictureShape::Text(heading)] }

@@ -25,7 +25,6 @@ pub(super) struct FrameSet {
 /// The behaviour of the bit on a clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bit {
-    /// Its usual value.
     pub(super) usual: bool,
     /// Number of frames in which the bit has the opposite value.
     pub(super) unusual: usize,
@@ -106,7 +105,6 @@ impl FrameSet {
         (first ^ second) & ones(repeat.word) == 0
     }
 
-    /// The parity of a word is right.
     pub(super) fn is_right(&self, word: u64, parity: Parity) -> bool {
         (word >> (self.clocks - parity.clock)).count_ones().is_multiple_of(2) == parity.even
     }

@@ -17,7 +17,6 @@ pub(super) struct Trial {
     pub(super) positions: Vec<u64>,
     /// Whether its positions decrease where those of the reading increase.
     pub(super) backwards: bool,
-    /// Whether it has no odd steps.
     pub(super) never_odd: bool,
 }
 

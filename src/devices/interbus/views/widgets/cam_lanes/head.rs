@@ -18,7 +18,6 @@ const NUMBER: f32 = 18.0;
 const LAMP: f32 = 34.0;
 
 impl Lanes<'_> {
-    /// Draws all heads.
     pub(super) fn heads(&self) -> Option<CamEvent> {
         let lamps = self.model.chart.lamps(self.model.position, self.model.own);
         let mut event = None;

@@ -19,7 +19,6 @@ const GRIP: f32 = 9.0;
 /// Heads at the left, the part of the range that is to be seen at the right.
 #[derive(Clone, Debug)]
 pub(super) struct PlotArea {
-    /// Area of the heads.
     pub(super) head: Rect,
     /// The lanes.
     pub(super) plot: Rect,
@@ -37,7 +36,6 @@ impl PlotArea {
         Vec2::new(width, rulers + Program::CAMS as f32 * LANE)
     }
 
-    /// Creates the area in a rectangle.
     pub(super) fn new(outer: Rect, view: VisibleRange, gap: f32) -> Self {
         let top = outer.top() + RULER;
         let bottom = top + Program::CAMS as f32 * LANE;
@@ -73,7 +71,6 @@ impl PlotArea {
         Rect::from_min_size(pos2(self.plot.left(), top), Vec2::new(self.plot.width(), LANE))
     }
 
-    /// Returns the area of the head.
     pub(super) fn head_of(&self, cam: CamNumber) -> Rect {
         let lane = self.lane(cam);
         Rect::from_x_y_ranges(self.head.x_range(), lane.y_range())

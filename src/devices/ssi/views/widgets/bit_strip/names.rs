@@ -100,7 +100,6 @@ impl Tag {
         (self.left, self.left + self.galley.size().x)
     }
 
-    /// Returns the rectangle of its text.
     pub(super) fn rect(&self, rows: &Rows, lane: Rect) -> Rect {
         let top = lane.bottom() + self.level as f32 * NAME;
         Rect::from_min_size(pos2(rows.left() + self.left, top), Vec2::new(self.galley.size().x, NAME))

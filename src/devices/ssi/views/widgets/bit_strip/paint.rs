@@ -23,7 +23,6 @@ pub(crate) fn ink(theme: &Theme, kind: Kind) -> Color32 {
     }
 }
 
-/// Returns the colour of a meaning.
 fn colour(theme: &Theme, meaning: Meaning) -> Color32 {
     controls::verdict(theme, verdict(meaning)).1.into()
 }

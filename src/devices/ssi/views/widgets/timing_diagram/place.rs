@@ -5,7 +5,6 @@
 pub(super) struct Flag {
     /// X coordinate of its line.
     pub(super) x: f32,
-    /// Width of its text.
     pub(super) width: f32,
 }
 
@@ -70,9 +69,7 @@ fn agree((a, at): (&Flag, &Put), (b, bt): (&Flag, &Put)) -> bool {
 /// A time's line and words.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bar {
-    /// Start and end.
     pub(super) ends: (f32, f32),
-    /// Width of its text.
     pub(super) width: f32,
 }
 
