@@ -1,9 +1,7 @@
 //! Cost of keeping samples for hours and of drawing them: appending compared with a pyramid of plain vectors, frames
 //! compared with a full scan, memory, and a soak test in virtual time. Prints figures without a verdict.
 //!
-//! `cargo bench --bench history`
-
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic, missing_docs)]
+//! `cargo bench -- history`
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -17,9 +15,8 @@ const PIXELS: usize = 1000;
 const PERIOD: i64 = 1_000_000;
 const ROUNDS: usize = 7;
 
-fn main() {
-    let wanted = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
-    let is_wanted = |part: &str| wanted.as_ref().is_none_or(|wanted| wanted == part);
+pub(crate) fn run(parts: &[String]) {
+    let is_wanted = |part: &str| parts.is_empty() || parts.iter().any(|wanted| wanted == part);
     if is_wanted("append") {
         [100, 1_000, 10_000].into_iter().for_each(append);
     }

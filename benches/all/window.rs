@@ -2,9 +2,7 @@
 //! the time of a frame with forty million samples in the plot, and whether an adapter's stream of 20 000 frames per second
 //! is shown without loss. Needs a display, or Xvfb; prints a message if there is neither.
 //!
-//! `cargo bench --bench window`
-
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic, missing_docs)]
+//! `cargo bench -- window`
 
 use encoder_studio::app::{DeviceCommand, Recording};
 use std::io::Write as _;
@@ -15,18 +13,13 @@ use std::{fs, thread};
 const STARTS: usize = 9;
 const IDLE: Duration = Duration::from_secs(10);
 
-fn main() {
-    if std::env::args().any(|argument| argument == "minimal") {
-        minimal();
-        return;
-    }
-    if std::env::args().any(|argument| argument == "plot") {
-        plot();
-        return;
-    }
-    if std::env::args().any(|argument| argument == "stream") {
-        stream();
-        return;
+pub(crate) fn run(parts: &[String]) {
+    // Started again as a program of its own.
+    match parts.first().map(String::as_str) {
+        Some("minimal") => return minimal(),
+        Some("plot") => return plot(),
+        Some("stream") => return stream(),
+        _ => {}
     }
     let Some(display) = Display::find() else {
         println!("skipped: there is no display, and Xvfb is not installed");
@@ -45,7 +38,7 @@ fn main() {
         end(&mut child);
         let log = folder.path().join("minimal.log");
         let _ = fs::remove_file(&log);
-        let mut child = display.start(own.to_str().unwrap(), &["minimal"], folder.path());
+        let mut child = display.start(own.to_str().unwrap(), &["window", "minimal"], folder.path());
         least.push(wait_for(|| first_picture(&fs::read_to_string(&log).ok()?)));
         end(&mut child);
     }
@@ -61,14 +54,14 @@ fn main() {
     end(&mut child);
     let capture = folder.path().join("capture.csv");
     write_capture(&capture);
-    let mut child = display.start(own.to_str().unwrap(), &["plot"], folder.path());
+    let mut child = display.start(own.to_str().unwrap(), &["window", "plot"], folder.path());
     let result = folder.path().join("plot.txt");
     wait_for_up_to(Duration::from_secs(300), || {
         fs::read_to_string(&result).ok().filter(|text| text.ends_with('\n')).map(|_| 0)
     });
     print!("{}", fs::read_to_string(&result).unwrap());
     end(&mut child);
-    let mut child = display.start(own.to_str().unwrap(), &["stream"], folder.path());
+    let mut child = display.start(own.to_str().unwrap(), &["window", "stream"], folder.path());
     let result = folder.path().join("stream.txt");
     wait_for_up_to(STREAMED * 4, || fs::read_to_string(&result).ok().filter(|text| text.ends_with('\n')).map(|_| 0));
     print!("{}", fs::read_to_string(&result).unwrap());

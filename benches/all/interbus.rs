@@ -1,7 +1,6 @@
 //! Speed of evaluating 64 cams (goal: 10 million positions per second), compared with a loop over all of them.
 //!
-//! `cargo bench --bench interbus`
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+//! `cargo bench -- interbus`
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -24,7 +23,7 @@ fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     times[ROUNDS / 2]
 }
 
-fn main() {
+pub(crate) fn run() {
     let mut random = fastrand::Rng::with_seed(1);
     let mut any = || Value::new(random.u32(..=Value::MAX.get())).unwrap();
     let mut program = || Program { cams: [(); 8].map(|()| Some(Cam { start: any(), stop: any() })), mask: 0xFF };

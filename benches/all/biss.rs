@@ -2,8 +2,7 @@
 //! calculated bit by bit; and how many times faster than 20 000 frames per second the stream of an adapter is parsed and
 //! recorded.
 //!
-//! `cargo bench --bench biss`
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+//! `cargo bench -- biss`
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -149,7 +148,7 @@ fn stream() {
     println!("{:<32} {:>7.2}", "millions of frames a second", f64::from(SECONDS * 20_000) / seconds / 1e6);
 }
 
-fn main() {
+pub(crate) fn run() {
     decoding();
     stream();
 }

@@ -2,9 +2,8 @@
 //! a cyclic connection while a window is drawn; each compared with a naive solution, a thread that sleeps an interval and
 //! then checks.
 //!
-//! `cargo bench --bench hiperdrive`; `HIPERDRIVE_RELEASES` (200) and `HIPERDRIVE_SECONDS` (20) set number and duration; for
+//! `cargo bench -- hiperdrive`; `HIPERDRIVE_RELEASES` (200) and `HIPERDRIVE_SECONDS` (20) set number and duration; for
 //! the naive solution a minute is enough.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 use std::net::UdpSocket;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -293,7 +292,7 @@ fn setting(name: &str, otherwise: usize) -> usize {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(otherwise)
 }
 
-fn main() {
+pub(crate) fn run() {
     let count = setting("HIPERDRIVE_RELEASES", 200);
     let time = Duration::from_secs(setting("HIPERDRIVE_SECONDS", 20) as u64);
     let ways: [Begin; 2] = [ours, naive];

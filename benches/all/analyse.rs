@@ -1,7 +1,6 @@
 //! Time to fit and analyse a capture of ten million samples (goal: 0.5 s), and to read a table of 100 MB (goal: 100 MB/s),
 //! each compared with a naive solution: a matrix of all samples solved by QR and an arc tangent for every sample; the lines
 //! of a text, split and parsed by the standard library.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -69,7 +68,7 @@ fn naive_read(text: &str) -> Vec<[f64; 3]> {
     text.lines().skip(1).map(fields).map(|row| [row[0], row[1], row[2]]).collect()
 }
 
-fn main() {
+pub(crate) fn run() {
     let (time, sine, cosine) = capture(SAMPLES);
     println!("analysis of {SAMPLES} samples, median of {ROUNDS} in seconds (goal: 0.5)");
     let samples = Samples { time_s: &time, sine_v: &sine, cosine_v: &cosine };

@@ -2,10 +2,9 @@
 //! that reads them bit by bit; time to find the layout of 2000 frames; and how often the result is right for a thousand
 //! recordings of many kinds of encoders.
 //!
-//! `cargo bench --bench ssi`
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+//! `cargo bench -- ssi`
 
-#[path = "../tests/tools/ssi_recordings.rs"]
+#[path = "../../tests/tools/ssi_recordings.rs"]
 mod ssi_recordings;
 
 use std::hint::black_box;
@@ -59,7 +58,7 @@ fn bit_by_bit(frame: u64) -> (u32, u32) {
     (turns, steps)
 }
 
-fn main() {
+pub(crate) fn run() {
     println!("{FRAMES} frames {PASSES} times over, medians of {ROUNDS}\n");
     for text in
         ["atm60,code=gray", "atm60,code=gray,err=fix", "afm60,code=gray", "atm60,steps=3600,code=gray-excess", "ttk70"]

@@ -1,9 +1,7 @@
 //! Cost of a frame of the plot panel: layout, reduction and tessellation of four lines of ten million samples, all visible,
 //! zoomed out and in, still and following; compared with egui_plot on the same samples. Prints figures without a verdict.
 //!
-//! `cargo bench --bench plot`
-
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic, missing_docs)]
+//! `cargo bench -- plot`
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -24,8 +22,8 @@ const ROUNDS: usize = 101;
 /// A plot of a thousand pixels, plus the gutter of the labels.
 const SIZE: Vec2 = Vec2::new(1060.0, 600.0);
 
-fn main() {
-    let naive = std::env::args().any(|argument| argument == "naive");
+pub(crate) fn run(parts: &[String]) {
+    let naive = parts.iter().any(|part| part == "naive");
     let (mut recorder, group) = filled();
     println!(
         "{SIGNALS} × 10 M samples, {} MB, a plot of {} × {} points:",
@@ -75,7 +73,7 @@ fn main() {
     if naive {
         println!("  {:<26} {}", "egui_plot, all visible", egui_plot_frame());
     } else {
-        println!("  (egui_plot on the same samples: cargo bench --bench plot -- naive)");
+        println!("  (egui_plot on the same samples: cargo bench -- plot naive)");
     }
 }
 

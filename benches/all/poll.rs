@@ -1,6 +1,5 @@
 //! Rate of polling the position, compared with the least time that the protocol allows, and with two naive solutions:
 //! waiting for the longest time in the manual, and a fixed 250 ms after each request.
-#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -69,7 +68,7 @@ fn naive(settings: u8, clock: &dyn Clock, owned: Arc<dyn Clock>, wait_ms: f64, c
     median((0..count).map(cycle).collect())
 }
 
-fn main() {
+pub(crate) fn run() {
     println!("polling 42h, median cycle in ms and share of it that the protocol needs (goal: 95 % or more)");
     println!("{:<10} {:<8} {:>9} {:>9} {:>8}", "way", "time", "baud", "cycle", "share");
     for settings in SETTINGS {

@@ -1,0 +1,50 @@
+//! Benchmarks, each beside a naive solution or a physical limit. They print figures without a verdict; docs/performance.md
+//! has a table of them.
+//!
+//! `cargo bench` runs all, `cargo bench -- NAME` one; more words choose a part of it.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
+
+mod analyse;
+mod biss;
+mod hiperdrive;
+mod history;
+mod interbus;
+mod plot;
+mod poll;
+mod ssi;
+mod window;
+
+/// A benchmark with its name; the words are the parts to run.
+type Benchmark = (&'static str, fn(&[String]));
+
+const ALL: &[Benchmark] = &[
+    ("analyse", |_| analyse::run()),
+    ("biss", |_| biss::run()),
+    ("hiperdrive", |_| hiperdrive::run()),
+    ("history", history::run),
+    ("interbus", |_| interbus::run()),
+    ("plot", plot::run),
+    ("poll", |_| poll::run()),
+    ("ssi", |_| ssi::run()),
+    ("window", window::run),
+];
+
+fn main() {
+    // Cargo adds an option.
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let Some((name, parts)) = words.split_first() else {
+        for (name, run) in ALL {
+            println!("── {name}");
+            run(&[]);
+        }
+        return;
+    };
+    match ALL.iter().find(|(own, _)| own == name) {
+        Some((_, run)) => run(parts),
+        None => {
+            let names: Vec<&str> = ALL.iter().map(|(name, _)| *name).collect();
+            eprintln!("No benchmark \"{name}\". Choose one of: {}.", names.join(", "));
+            std::process::exit(2);
+        }
+    }
+}
