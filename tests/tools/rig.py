@@ -16,9 +16,9 @@ FOREIGN = pathlib.Path(__file__).resolve().parent.parent / "foreign"
 SIZE = (1280, 1000)
 # Positions in a window of that size, in English. --points has others.
 POINTS = {
-    "page": (59, 252), "take": (349, 70), "stop": (227, 78), "nowhere": (349, 753), "connect": (931, 25),
-    "torque": (352, 423), "plus": (437, 475), "target": (744, 453), "go": (597, 562), "run": (652, 680),
-    "parameters": (70, 288), "register 24": (470, 534),
+    "page": (59, 252), "take": (349, 70), "stop": (227, 78), "nowhere": (349, 860), "connect": (967, 25),
+    "torque": (707, 429), "plus": (729, 478), "target": (379, 626), "go": (231, 735), "run": (661, 843),
+    "parameters": (70, 288), "register 24": (501, 549),
 }
 Packet = collections.namedtuple("Packet", "at sequence word status position moves")
 MS = 1_000_000
