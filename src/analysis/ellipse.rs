@@ -30,9 +30,7 @@ pub struct Ellipse {
 pub enum FitError {
     /// An ellipse has five parameters, and one more point is needed to assess the fit.
     #[error("{points} points where {least} are needed", least = LEAST_POINTS)]
-    TooFew {
-        points: usize,
-    },
+    TooFew { points: usize },
     /// A sample is not a finite number.
     #[error("sample {index} is not a finite number")]
     NotFinite {

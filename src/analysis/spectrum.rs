@@ -25,9 +25,7 @@ pub struct SpectralLine {
 pub enum SpectrumError {
     /// A spectrum needs at least eight samples.
     #[error("{samples} samples where 8 are needed")]
-    TooFew {
-        samples: usize,
-    },
+    TooFew { samples: usize },
     /// The times do not run on evenly.
     #[error("the time from sample {index} to the next is not that of the others")]
     Uneven {

@@ -146,7 +146,11 @@ pub enum Done {
         open: Option<OpenProfile>,
     },
     /// A profile was read to be compared with a session, or not.
-    Compare { session: SessionId, path: PathBuf, result: Result<Box<Document>, ReadError> },
+    Compare {
+        session: SessionId,
+        path: PathBuf,
+        result: Result<Box<Document>, ReadError>,
+    },
     /// A profile was written.
     Written {
         saving: Box<Saving>,

@@ -69,6 +69,7 @@ pub trait Tool: Any {
 
 /// An action of a tool.
 pub trait ToolAction: Any + Send {
+    /// Tab in which the tool is shown.
     const TAB: Tab;
 }
 

@@ -13,6 +13,7 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// The word for the kind of device, as on the command line and in profiles.
     const KIND: &'static str;
 
+    /// Entry of the format in [`Formats`].
     const FORMAT: &'static dyn ProfileFormat = &FormatOf::<Self>(PhantomData);
 
     /// The formats with only this one: for places where no other kind is possible.

@@ -15,6 +15,7 @@ pub trait Write {
     type Op: Operation + Clone + Hash;
     /// The reason why an operation ended early.
     type Error: OperationError;
+    /// Record of the write that the profile was the backup of.
     type Written: WriteRecord;
     /// The state in which an interrupted write left the device.
     type EndState;

@@ -15,12 +15,12 @@ pub fn page_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec
     if *device.phase() == Phase::Offline {
         return;
     }
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     backups(ui, theme, device, actions);
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     writes(ui, theme, device);
     if !device.statuses().is_empty() {
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         statuses(ui, theme, device);
     }
 }

@@ -4,14 +4,14 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
+pub use super::cards::card;
+pub(crate) use super::cards::{card_with, disclosure, folding_card};
 pub(crate) use super::entries::{forget_secret, labelled_entry, mono_entry, secret_entry};
 pub use super::entries::{settled_entry, text_entry};
 pub(crate) use super::label_column::label_width;
-use super::label_column::with_label_column;
 pub use super::label_column::{entry, row};
 use super::{Theme, icons};
 use crate::analysis::quality::Verdict;
-use crate::app::Text;
 
 /// The least width for words beside an entry; an icon stands for them in less.
 const BESIDE: f32 = 64.0;
@@ -20,34 +20,6 @@ const MODAL: f32 = 240.0;
 /// Takes the whole width; in a very small window it may be negative.
 pub(crate) fn fill(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
-}
-
-/// Draws a card with a heading.
-pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
-    card_with(ui, theme, title, |_| {}, content)
-}
-
-/// Draws a card with a heading; `aside` draws the part at the right of the heading.
-pub(crate) fn card_with<R>(
-    ui: &mut Ui,
-    theme: &Theme,
-    title: impl Into<Text>,
-    aside: impl FnOnce(&mut Ui),
-    content: impl FnOnce(&mut Ui) -> R,
-) -> R {
-    let heading = theme.words(&title.into());
-    theme
-        .card()
-        .show(ui, |ui| {
-            fill(ui);
-            ui.horizontal(|ui| {
-                ui.label(theme.heading(heading.clone()));
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
-            });
-            ui.add_space(theme.space.inside);
-            with_label_column(ui, &heading, content)
-        })
-        .inner
 }
 
 /// Draws words over several lines, beginning at the left.
@@ -198,13 +170,13 @@ pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<eg
 pub(crate) fn empty(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&str, &str, bool)>) -> bool {
     let mut pressed = false;
     ui.vertical_centered(|ui| {
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         ui.add(egui::Label::new(theme.label(words)).wrap());
         if let Some((icon, word, enabled)) = action {
             ui.add_space(theme.space.inside);
             pressed = enabled_button(ui, enabled, icon, word).clicked();
         }
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
     });
     pressed
 }
@@ -344,7 +316,7 @@ pub(crate) fn encoder_page<C>(
     let left = |ui: &mut Ui, context: &mut C| {
         identity(ui, context);
         if !is_profile {
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             check(ui, context);
         }
     };
@@ -362,7 +334,7 @@ pub(crate) fn split<C>(
 ) {
     if ui.available_width() < least {
         left(ui, &mut context);
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         right(ui, &mut context);
         return;
     }

@@ -49,7 +49,9 @@ pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
 
 /// The view of a kind of device, as the device implements it.
 pub trait TypedDeviceView: Sync + 'static {
+    /// Application state of the device, without drawing.
     type Device: DeviceType;
+    /// Pages of the device's tab.
     type Page: TabPage;
     /// The text buffers and selections of one session; they are dropped when another device replies.
     type Memory: Default + 'static;

@@ -2,6 +2,7 @@
 //! actions; it never does I/O, decodes, sorts or blocks.
 
 pub mod backups;
+mod cards;
 pub(crate) mod check;
 mod commands;
 pub mod controls;

@@ -138,7 +138,7 @@ fn buttons(
     close: &'static str,
     primary: impl FnOnce(&mut Ui, &mut Vec<Action>),
 ) {
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     at_the_right(ui, |ui| {
         primary(ui, actions);
         if enabled_button(ui, true, "", &theme.say(close)).clicked() {

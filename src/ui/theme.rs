@@ -78,6 +78,11 @@ impl Theme {
         RichText::new(words).size(self.sizes.caption).color(self.palette.muted)
     }
 
+    /// Leaves the space between two groups: `space.groups`, less the spacing that egui puts before the next widget.
+    pub fn gap(&self, ui: &mut egui::Ui) {
+        ui.add_space((self.space.groups - ui.spacing().item_spacing.y).max(0.0));
+    }
+
     /// Returns the heading of a section or a card.
     pub fn heading(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(self.strong(self.sizes.section))

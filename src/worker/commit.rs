@@ -75,6 +75,7 @@ pub enum NotBegun {
 pub trait Planned {
     /// The values that the plan is based on.
     type Base: Hash;
+    /// A single operation of the plan.
     type Op: Operation + Clone + Hash;
     /// Kinds of change that differ in how an interrupted one is completed.
     type Kind;

@@ -28,6 +28,7 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Name of its bus, the same in every language.
     const BUS: &'static str;
 
+    /// Profile in which a device of this kind is saved.
     type Profile: Profile;
 
     /// Type of its form in the connection dialog.

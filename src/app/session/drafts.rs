@@ -51,10 +51,7 @@ pub enum DraftDone {
         result: Result<Option<String>, FileError>,
     },
     /// A draft was kept or removed.
-    Kept {
-        key: DraftKey,
-        result: Result<(), FileError>,
-    },
+    Kept { key: DraftKey, result: Result<(), FileError> },
 }
 
 /// Persistent edits: a list.

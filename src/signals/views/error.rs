@@ -22,13 +22,13 @@ pub(super) fn page_ui(
     source::settings_ui(ui, theme, signals, &view.source, actions);
     let Ok(analysis) = &measurement.analysis else {
         quality::refused_ui(ui, theme, measurement);
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         octant::card_ui(ui, theme, &mut view.octant);
         return;
     };
     let compared = signals.comparison();
     curves(ui, theme, &analysis.error, compared.map(AsRef::as_ref));
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     split(
         ui,
         theme,
@@ -48,9 +48,9 @@ pub(super) fn page_ui(
         },
         |ui, _| bars(ui, theme, &analysis.error, compared.map(AsRef::as_ref)),
     );
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     nonlinearity::card_ui(ui, theme, measurement, compared.map(AsRef::as_ref));
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     octant::card_ui(ui, theme, &mut view.octant);
 }
 

@@ -29,19 +29,19 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         form,
         |ui, form| {
             entries(ui, theme, form, circuit.as_ref().err());
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             notes(ui, theme);
         },
         |ui, _| {
             if let Ok(circuit) = &circuit {
                 here(ui, theme, circuit);
-                ui.add_space(theme.space.groups);
+                theme.gap(ui);
                 table(ui, theme, circuit);
             }
         },
     );
     if let Ok(circuit) = &circuit {
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         curves(ui, theme, circuit);
     }
 }

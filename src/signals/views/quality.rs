@@ -38,7 +38,7 @@ pub(super) fn page_ui(
         (view, actions),
         |ui, (view, _)| {
             figure(ui, theme, signals, measurement, view);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             verdict(ui, theme, signals, measurement);
         },
         |ui, (view, actions)| {

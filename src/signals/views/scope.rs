@@ -33,10 +33,10 @@ pub(super) fn page_ui(
     source::settings_ui(ui, theme, signals, &view.source, actions);
     trace(ui, theme, signals, &mut view.scope, actions);
     let Some(measurement) = signals.measurement() else { return };
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     spectrum(ui, theme, signals, measurement, &mut view.scope);
     if measurement.analysis.is_err() {
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         quality::refused_ui(ui, theme, measurement);
     }
 }

@@ -307,7 +307,7 @@ fn nothing(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiSta
         if button(ui, icons::PLUGS, &say(theme, "adapter.open")).clicked() {
             view.adapter = true;
         }
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         ui.label(theme.caption(say(theme, "signals.try_example")));
         for example in Example::ALL {
             if button(ui, icons::WAVE_SINE, &say(theme, example.word())).clicked() {

@@ -44,7 +44,7 @@ pub(super) fn page_ui(
             }
         },
     );
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     split(
         ui,
         theme,
@@ -52,9 +52,9 @@ pub(super) fn page_ui(
         (&mut form, &mut *actions),
         |ui, (form, actions)| {
             measured(ui, theme, state, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             captured(ui, theme, signals, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             counter(ui, theme, form);
         },
         |ui, _| order(ui, theme),

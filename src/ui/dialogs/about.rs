@@ -30,7 +30,7 @@ pub(in crate::ui) fn about_ui(ctx: &egui::Context, theme: &Theme) -> bool {
                 }
             });
         });
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         at_the_right(ui, |ui| {
             done = button(ui, "", &theme.say("about.close")).clicked();
         });

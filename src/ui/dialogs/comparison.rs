@@ -36,7 +36,7 @@ pub(in crate::ui) fn comparison_ui(ctx: &egui::Context, theme: &Theme, studio: &
             only_ui(ui, theme, "comparison.only_left", only_left);
             only_ui(ui, theme, "comparison.only_right", only_right);
         });
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         buttons(ui, theme, device, shown, actions);
     });
 }

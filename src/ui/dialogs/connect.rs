@@ -46,7 +46,7 @@ pub(in crate::ui) fn connect_ui(
     modal(ctx, theme, "connect", WIDTH, |ui| {
         ui.horizontal(|ui| {
             ui.label(theme.heading(theme.say("connect.title")));
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             devices(ui, theme, tabs, dialog.device, actions);
         });
         ui.add_space(theme.space.inside);

@@ -29,7 +29,7 @@ pub(in crate::ui) fn diverged_ui(ctx: &egui::Context, theme: &Theme, studio: &St
             }
         });
         problem(ui, theme, diverged.problem().as_ref());
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         buttons(ui, theme, diverged, actions);
     });
 }

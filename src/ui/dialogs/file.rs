@@ -139,7 +139,7 @@ pub(in crate::ui) fn file_ui(
             let rule = Text::new("file.rule").with("folder", working.display());
             ui.label(theme.caption(theme.words(&rule)));
         }
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         at_the_right(ui, |ui| {
             let named = !view.path.trim().is_empty();
             if primary(ui, theme, named, icon, &theme.say(confirm)).clicked() || (enter && named) {

@@ -14,7 +14,7 @@ pub(in crate::ui) fn question_ui(ctx: &egui::Context, theme: &Theme, studio: &St
             ui.label(RichText::new(icons::WARNING).size(theme.sizes.value).color(theme.palette.warn));
             paragraph(ui, theme.words(&question.text));
         });
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         at_the_right(ui, |ui| {
             let word = theme.words(&question.confirm);
             let response = ui.button(RichText::new(&word).color(theme.palette.bad));

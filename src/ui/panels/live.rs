@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand, RecorderOwner, Rgb, Studio, Text};
-use crate::ui::controls::{choice, empty, enabled_button, icon_button, name};
+use crate::ui::controls::{choice, empty, enabled_button, icon_button, label_width, name, row};
 use crate::ui::page::apart;
 use crate::ui::{Theme, Views, icons, plot};
 
@@ -20,6 +20,10 @@ const USUAL: u64 = 50_000;
 
 /// Height in points below which the numbers beside the position are on one line.
 pub(crate) const LOW: f32 = 460.0;
+
+/// Least width of the choice of the rate, and width of the panel from which the first button has a word.
+const RATE: f32 = 64.0;
+const ONE_ROW: f32 = 280.0;
 
 /// Seconds after which an unchanged position is marked.
 const NOTICED: f32 = 0.4;
@@ -95,6 +99,16 @@ pub(crate) fn mark(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
     ui.add(egui::Label::new(RichText::new(theme.say(word)).color(ink)).truncate());
 }
 
+/// Draws the position as the device sent it, smaller if it would not fit on one line.
+pub(crate) fn raw_row(ui: &mut Ui, theme: &Theme, value: String) {
+    let value = theme.mono(value);
+    let room = ui.available_width() - label_width(ui) - ui.spacing().item_spacing.x;
+    let text = egui::WidgetText::from(value.clone());
+    let galley = text.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Monospace);
+    let value = if galley.size().x > room { value.size(theme.sizes.caption) } else { value };
+    row(ui, theme, &theme.say("live.raw"), value);
+}
+
 fn controls(
     ui: &mut Ui,
     theme: &Theme,
@@ -110,11 +124,13 @@ fn controls(
     ui.horizontal_wrapped(|ui| {
         // In the usual width they stand in one row.
         ui.spacing_mut().item_spacing.x = theme.space.inside;
+        ui.spacing_mut().combo_width = RATE;
+        let button = if ui.available_width() < ONE_ROW { icon_button } else { enabled_button };
         if polling {
-            if enabled_button(ui, true, icons::PAUSE, &theme.say("live.pause")).clicked() {
+            if button(ui, true, icons::PAUSE, &theme.say("live.pause")).clicked() {
                 actions.push(device.command(DeviceCommand::Poll(None)));
             }
-        } else if enabled_button(ui, connected, icons::PLAY, &theme.say("live.start")).clicked() {
+        } else if button(ui, connected, icons::PLAY, &theme.say("live.start")).clicked() {
             actions.push(device.command(DeviceCommand::Poll(Some(Duration::from_micros(rate)))));
         }
         if icon_button(ui, device.is_ready(), icons::ARROW_CLOCKWISE, &theme.say("live.once")).clicked() {

@@ -69,7 +69,9 @@ pub enum MapEvent {
     /// Selects the free space.
     SelectFree,
     /// Another size of the last field, different from the present one.
-    ResizeLast { blocks: usize },
+    ResizeLast {
+        blocks: usize,
+    },
 }
 
 /// Draws the map and returns the user's action. One map per `Ui`: another needs its own id (`push_id`).

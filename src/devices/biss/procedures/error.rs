@@ -159,9 +159,7 @@ pub enum Error {
     NotInOperation { mode: DeviceMode },
     /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
-    Changed {
-        item: String,
-    },
+    Changed { item: String },
     /// The reply belongs to another kind of request.
     #[error("{requested}: the reply is of another kind: {reply}")]
     OtherReply { requested: RequestedItem, reply: String },

@@ -26,20 +26,20 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
             |ui, actions| {
                 status(ui, theme, encoder, actions);
                 if let Some(motor) = &encoder.motor {
-                    ui.add_space(theme.space.groups);
+                    theme.gap(ui);
                     motor::card_ui(ui, theme, encoder, motor, actions);
                 }
             },
         ),
     );
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     if encoder.identity().is_some() {
         frame::card_ui(ui, theme, encoder, actions);
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
     }
     if !is_profile {
         wiring::card_ui(ui, theme);
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
     }
     sheet::cards_ui(ui, theme, encoder);
 }

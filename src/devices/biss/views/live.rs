@@ -9,7 +9,7 @@ use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, Mark, TEXTS};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{icon_menu, paragraph, row};
-use crate::ui::panels::live::{LOW, mark as mark_ui};
+use crate::ui::panels::live::{LOW, mark as mark_ui, raw_row};
 use crate::ui::{Theme, icons};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
@@ -41,7 +41,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     } else {
         row(ui, theme, &theme.say("live.turns"), theme.mono(reading.turns.to_string()));
         row(ui, theme, &theme.say("live.step"), theme.mono(reading.steps.to_string()));
-        row(ui, theme, &theme.say("live.raw"), theme.mono(theme.word(reading.raw())));
+        raw_row(ui, theme, theme.word(reading.raw()));
     }
     if let Some(stream) = encoder.streamed() {
         let id = if stream.is_limited { "live.streamed_all" } else { "live.streamed" };

@@ -6,7 +6,7 @@ use crate::app::Action;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS};
 use crate::devices::biss::views::say;
 use crate::sim::Motor;
-use crate::ui::controls::{card, enabled_button, paragraph};
+use crate::ui::controls::{enabled_button, folding_card, paragraph};
 use crate::ui::{Theme, icons};
 
 /// Speeds that the procedures ask for, and rest.
@@ -14,7 +14,7 @@ const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
 
 /// Draws the motor and its speed.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
-    card(ui, theme, "motor_card.title", |ui| {
+    folding_card(ui, theme, "motor_card.title", |ui| {
         paragraph(ui, theme.caption(theme.say("motor_card.words")));
         ui.horizontal_wrapped(|ui| {
             for rpm in SPEEDS {

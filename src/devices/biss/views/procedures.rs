@@ -13,7 +13,8 @@ use crate::devices::biss::state::explain as explained;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, forms::PresetForm, words};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{
-    allowed_button, card, empty, enabled_button, labelled_entry, options, paragraph, problem_below, row, two_columns,
+    allowed_button, card, empty, enabled_button, folding_card, labelled_entry, options, paragraph, problem_below, row,
+    two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -69,10 +70,10 @@ pub(super) fn page_ui(
         },
         |ui, (actions, mounting)| {
             preset_ui(ui, theme, encoder, mounting.form, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             if let Some(motor) = &encoder.motor {
                 motor::card_ui(ui, theme, encoder, motor, actions);
-                ui.add_space(theme.space.groups);
+                theme.gap(ui);
             }
             filter_ui(ui, theme, encoder, actions);
         },
@@ -110,7 +111,7 @@ fn left_behind(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<
         paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
         super::lead_back_ui(ui, theme, encoder, actions);
     });
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
 }
 
 fn mounting_ui(
@@ -140,7 +141,7 @@ fn mounting_ui(
         choice(ui, theme, own.wiegand, "mounting_card.wiegand", &explained::wiegand_needs());
         ui.add_enabled_ui(*own.wiegand, |ui| {
             ui.horizontal(|ui| {
-                ui.add_space(theme.space.groups);
+                theme.gap(ui);
                 ui.checkbox(own.save_result, say(theme, "mounting_card.save"));
             });
         });
@@ -164,7 +165,7 @@ fn mounting_ui(
 fn choice(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
     ui.checkbox(on, say(theme, id));
     ui.horizontal_top(|ui| {
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         paragraph(ui, theme.caption(theme.words(words)));
     });
 }
@@ -260,7 +261,7 @@ fn filter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Ac
     if !has {
         return;
     }
-    card(ui, theme, TEXTS.text("filter_card.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("filter_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "filter_card.words")));
         let own = encoder.status.as_ref().and_then(|status| status.filter);
         for (filter, hint) in [(Filter::Balanced, "filter_card.balanced"), (Filter::Dynamic, "filter_card.dynamic")] {

@@ -25,11 +25,11 @@ pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Gu
     ui.data_mut(|data| data.insert_temp(seen, is_over));
     if let Some(end) = &guide.end {
         end_ui(ui, theme, encoder, guide.ops(), end, actions);
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
     }
     if let Some(motor) = encoder.motor.as_ref().filter(|_| guide.is_running()) {
         motor::card_ui(ui, theme, encoder, motor, actions);
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
     }
     card(ui, theme, TEXTS.text("guide.title"), |ui| {
         let list: Vec<StepRow> =

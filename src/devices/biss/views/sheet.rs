@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use crate::devices::biss::protocol::{Eds, EdsBank, EdsError};
 use crate::devices::biss::state::{Encoder, TEXTS, words};
 use crate::devices::biss::views::say;
-use crate::ui::controls::{card, paragraph, two_columns};
+use crate::ui::controls::{folding_card, paragraph, two_columns};
 use crate::ui::{Theme, icons};
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
@@ -14,9 +14,13 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
         ui,
         theme,
         (),
-        |ui, ()| card(ui, theme, TEXTS.text("sheet_card.common"), |ui| sheet_ui(ui, theme, EdsBank::Common, &common)),
         |ui, ()| {
-            card(ui, theme, TEXTS.text("sheet_card.encoder"), |ui| sheet_ui(ui, theme, EdsBank::Encoder, &encoder))
+            folding_card(ui, theme, TEXTS.text("sheet_card.common"), |ui| sheet_ui(ui, theme, EdsBank::Common, &common))
+        },
+        |ui, ()| {
+            folding_card(ui, theme, TEXTS.text("sheet_card.encoder"), |ui| {
+                sheet_ui(ui, theme, EdsBank::Encoder, &encoder)
+            })
         },
     );
 }

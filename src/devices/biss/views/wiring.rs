@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{card, paragraph, two_columns};
+use crate::ui::controls::{folding_card, paragraph, two_columns};
 use crate::ui::wiring::wires_ui;
 
 /// Width of the column of pins.
@@ -29,7 +29,7 @@ const NOTES: [&str; 3] = ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.
 const BESIDE: f32 = 640.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {
-    card(ui, theme, "wiring.title", |ui| {
+    folding_card(ui, theme, "wiring.title", |ui| {
         if ui.available_width() < BESIDE {
             wires_ui(ui, theme, &TEXTS, PIN, &PINS);
         } else {

@@ -51,7 +51,10 @@ pub enum HiperdriveJob {
 /// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
-    Restore { profile: Box<HiperdriveProfile>, options: RestoreOptions },
+    Restore {
+        profile: Box<HiperdriveProfile>,
+        options: RestoreOptions,
+    },
     /// Writes these values and saves them; parameters that are not in the image stay as they are.
     Write(Box<Image>),
     /// Make it like this, and save nothing.

@@ -265,9 +265,7 @@ pub enum Error {
     },
     /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
-    Changed {
-        item: String,
-    },
+    Changed { item: String },
 }
 
 fn named(number: ParameterNumber) -> &'static str {

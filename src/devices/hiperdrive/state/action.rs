@@ -75,7 +75,10 @@ pub enum Motor {
         target: i32,
     },
     /// Turning in speed mode.
-    Run { direction: Direction, end: RunEnd },
+    Run {
+        direction: Direction,
+        end: RunEnd,
+    },
     /// The job waits.
     Pause,
     /// Resume the job.

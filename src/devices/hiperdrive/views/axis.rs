@@ -72,7 +72,7 @@ const BESIDE: f32 = 640.0;
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUiState, actions: &mut Vec<Action>) {
     let Some(axis) = unit.axis() else {
         intro(ui, theme, unit, actions);
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         notes(ui, theme);
         return;
     };
@@ -81,7 +81,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
     let shown = AxisPicture { unit, axis, seen: &seen, looked_at };
     if let Some(end) = axis.end() {
         end_ui(ui, theme, &shown, end, actions);
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
     }
     let goes_on = axis.end().is_none();
     if ui.available_width() < BESIDE {
@@ -91,7 +91,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
         } else {
             card(ui, theme, TEXTS.text("hd_axis.title"), |ui| list(ui, theme, &shown));
         }
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         notes(ui, theme);
         return;
     }
@@ -104,7 +104,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
         |ui, actions| {
             if goes_on {
                 step_ui(ui, theme, &shown, actions);
-                ui.add_space(theme.space.groups);
+                theme.gap(ui);
             }
             notes(ui, theme);
         },
@@ -195,7 +195,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
         if entries != axis.entries().shown(theme.language) {
             shown.push(actions, Run::Edit(Box::new(entries.clone())));
         }
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         buttons_ui(ui, theme, shown, actions);
         ui.add_space(theme.space.between);
         messages(ui, theme, shown, &entries);

@@ -7,7 +7,7 @@ use crate::app::{Action, Studio};
 use crate::devices::hiperdrive::protocol::{DriveNumber, State};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{allowed_button, name, paragraph};
+use crate::ui::controls::{allowed_button, name, paragraph, two_lines};
 use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 use crate::ui::{Theme, icons};
 
@@ -20,31 +20,42 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, a
         stop(ui, theme, (unit.moves.is_open(), studio.moves_by_hand()), actions);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = theme.space.inside;
-            ui.horizontal_wrapped(|ui| {
+            let is_hub = unit.drives().len() > 1;
+            ui.horizontal(|ui| {
                 drives(ui, theme, unit, actions);
-                if unit.moves.is_open() {
-                    let word = say(theme, "hd_bar.give");
-                    if allowed_button(ui, theme, &unit.can_give(), icons::PLUGS, &word).clicked() {
-                        actions.push(Action::device(id, Hiperdrive::Give));
-                    }
-                    let well = || RichText::new(say(theme, "hd_bar.in_control")).color(theme.palette.good);
-                    ui.label(outside::badge(theme, unit).unwrap_or_else(well));
-                } else {
-                    let word = say(theme, "hd_bar.take");
-                    if allowed_button(ui, theme, &unit.can_take(), icons::PLUGS_CONNECTED, &word).clicked() {
-                        actions.push(Action::device(id, Hiperdrive::Take));
-                    }
-                    let watching = || theme.label(say(theme, "hd_bar.watching"));
-                    ui.label(outside::badge(theme, unit).unwrap_or_else(watching));
+                let (word, allowed, act) = match unit.moves.is_open() {
+                    true => ("hd_bar.give", unit.can_give(), Hiperdrive::Give),
+                    false => ("hd_bar.take", unit.can_take(), Hiperdrive::Take),
+                };
+                let icon = if unit.moves.is_open() { icons::PLUGS } else { icons::PLUGS_CONNECTED };
+                if allowed_button(ui, theme, &allowed, icon, &say(theme, word)).clicked() {
+                    actions.push(Action::device(id, act));
+                }
+                if !is_hub {
+                    control(ui, theme, unit);
                 }
             });
-            if let Some(why) = unit.why_lost() {
-                let words = format!("{}  {}", icons::WARNING_CIRCLE, theme.words(&why));
-                paragraph(ui, RichText::new(words).color(theme.palette.bad));
+            if is_hub {
+                let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
+                let place = egui::Layout::left_to_right(egui::Align::Center);
+                ui.allocate_ui_with_layout(size, place, |ui| control(ui, theme, unit));
             }
             paragraph(ui, theme.caption(format!("{}  {}", icons::WARNING, say(theme, "hd_bar.stop_is_not"))));
         });
     });
+}
+
+/// Draws whether this window has control of the drives, or why it lost control; an alarm comes first. In constant height:
+/// no button moves when control is lost.
+fn control(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+    let palette = theme.palette;
+    let (words, ink) = match (unit.why_lost(), outside::badge(theme, unit)) {
+        (Some(why), _) => (format!("{}  {}", icons::WARNING_CIRCLE, theme.words(&why)), palette.bad),
+        (None, Some(badge)) => (badge.text().to_owned(), palette.bad),
+        (None, None) if unit.moves.is_open() => (say(theme, "hd_bar.in_control"), palette.good),
+        (None, None) => (say(theme, "hd_bar.watching"), palette.muted),
+    };
+    two_lines(ui, theme, words, ink.into());
 }
 
 /// Draws STOP for all drives; also while none is known to move.

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::profile::Service;
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
+use crate::ui::controls::{card, card_with, empty, enabled_button, folding_card, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
 
 /// The services of parameter 47, with their notes.
@@ -29,18 +29,18 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
         |ui, actions| {
             identity(ui, theme, unit, actions);
             if !is_profile {
-                ui.add_space(theme.space.groups);
+                theme.gap(ui);
                 check(ui, theme, unit, actions);
             }
         },
         |ui, _| {
             drives(ui, theme, unit);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             wiring(ui, theme);
         },
     );
     if !is_profile {
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         services(ui, theme, unit, actions);
     }
 }
@@ -116,7 +116,7 @@ fn check(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
 
 /// Draws the services for all stored values of the device.
 fn services(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
-    card(ui, theme, TEXTS.text("hd_services.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("hd_services.title"), |ui| {
         for (service, note) in SERVICES {
             if enabled_button(ui, unit.session.is_ready(), "", &theme.words(&explain::service(service))).clicked() {
                 let change = Change::Do(service);
@@ -132,7 +132,7 @@ fn services(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
 const WIRING: [&str; 4] = ["hd_wiring.bus", "hd_wiring.supply", "hd_wiring.drives", "hd_wiring.manual"];
 
 fn wiring(ui: &mut Ui, theme: &Theme) {
-    card(ui, theme, "wiring.title", |ui| {
+    folding_card(ui, theme, "wiring.title", |ui| {
         for note in WIRING {
             paragraph(ui, theme.label(say(theme, note)));
         }

@@ -20,7 +20,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
         |ui, actions| buffer(ui, theme, unit, actions),
         |ui, _| {
             words(ui, theme, unit);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             figures::card_ui(ui, theme, unit);
         },
     );

@@ -8,12 +8,12 @@ use crate::devices::hiperdrive::protocol::{ControlBit, DriveNumber, StatusBit};
 use crate::devices::hiperdrive::state::{TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{card, empty, paragraph, row};
+use crate::ui::controls::{card, empty, folding_card, paragraph, row};
 use crate::ui::widgets::series;
 
 /// Status and control word with the names of their bits.
 pub(super) fn words_card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: DriveNumber) {
-    card(ui, theme, TEXTS.text("hd_words.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("hd_words.title"), |ui| {
         let Some(actual) = unit.actual(drive) else {
             empty(ui, theme, &say(theme, "hd_words.nothing"), None);
             return;

@@ -14,7 +14,7 @@ use crate::ui::controls::{allowed_button, card, paragraph, problem_below};
 use crate::ui::widgets::{HoldButton, hold_button};
 
 /// Height of the buttons that are held.
-const PAD: f32 = 64.0;
+const PAD: f32 = 56.0;
 
 /// Speeds that a button sets, in percent.
 const PRESETS: [u8; 4] = [1, 10, 50, 100];

@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::leds::{Led, Leds};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{card, entry, name, options, paragraph, severity};
+use crate::ui::controls::{entry, folding_card, name, options, paragraph, severity};
 
 /// The picked LEDs.
 #[derive(Default)]
@@ -18,7 +18,7 @@ const BUTTON: egui::Vec2 = vec2(248.0, 44.0);
 const RADIUS: f32 = 9.0;
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, LedsUiState(leds): &mut LedsUiState) {
-    card(ui, theme, TEXTS.text("hd_led.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("hd_led.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "hd_led.words")));
         device(ui, theme, leds);
         ui.add_space(theme.space.between);

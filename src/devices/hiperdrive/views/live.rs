@@ -5,11 +5,11 @@ use egui::{RichText, TextStyle, TextWrapMode, Ui, WidgetText};
 use super::outside::badge;
 use crate::app::{Action, Rgb};
 use crate::devices::hiperdrive::procedures::Temperature;
-use crate::devices::hiperdrive::protocol::{State, turns};
+use crate::devices::hiperdrive::protocol::{PositionScale, State, turns};
 use crate::devices::hiperdrive::state::{HiperdriveAction, Measure, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{icon_menu, paragraph, row};
-use crate::ui::panels::live::LOW;
+use crate::ui::panels::live::{LOW, raw_row};
 use crate::ui::{Theme, icons};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
@@ -69,13 +69,12 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
             theme.mono(format!("{target} {}", say(theme, unit.measure.unit()))),
         );
     }
-    let whole = if ruler.scale == crate::devices::hiperdrive::protocol::PositionScale::FACTORY {
+    if ruler.scale == PositionScale::FACTORY {
         let (turn, step) = turns(actual.position);
-        format!("{}  {} {turn} · {} {step}", actual.position, theme.say("live.turns"), theme.say("live.step"))
-    } else {
-        actual.position.to_string()
-    };
-    row(ui, theme, &theme.say("live.raw"), theme.mono(whole));
+        row(ui, theme, &theme.say("live.turns"), theme.mono(turn.to_string()));
+        row(ui, theme, &theme.say("live.step"), theme.mono(step.to_string()));
+    }
+    raw_row(ui, theme, actual.position.to_string());
 }
 
 /// Draws the menu of the temperatures that are recorded beside the position.

@@ -21,13 +21,13 @@ use std::collections::BTreeMap;
 
 use crate::devices::hiperdrive::state::TEXTS;
 
-use egui::{ScrollArea, Ui};
+use egui::Ui;
 
 use crate::app::{Action, AnyDevice, Rgb, Studio, Text};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::state::{HiperdriveAction, Unit};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{NamedAction, Theme, backups, edit_bar, icons};
+use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -115,8 +115,8 @@ impl TypedDeviceView for HiperdriveView {
         (page, view): (Page, &mut HiperdriveUiState),
         actions: &mut Vec<Action>,
     ) {
-        let narrow = ui.available_width() < 720.0;
-        let around = if narrow { theme.space.groups } else { theme.space.around } as i8;
+        let around = page::sides(ui, theme);
+        let narrow = f32::from(around) < theme.space.around;
         let sides = |top, bottom| egui::Margin { left: around, right: around, top, bottom };
         let id = egui::Id::unique(unit.session.id);
         if unit.profile().is_none() {
@@ -131,38 +131,35 @@ impl TypedDeviceView for HiperdriveView {
                 .show_separator_line(false)
                 .show(ui, |ui| edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions));
         }
-        let frame = egui::Frame::NONE.inner_margin(sides(16, around.min(16)));
         let drive = unit.drive();
         if page == Page::Parameters {
             // A table scrolls by itself.
-            let frame = frame.inner_margin(sides(if narrow { 8 } else { 16 }, 0));
+            let frame = egui::Frame::NONE.inner_margin(sides(if narrow { 8 } else { 16 }, 0));
             frame.show(ui, |ui| parameters::page_ui(ui, theme, unit, &mut view.parameters, actions));
             return;
         }
-        ScrollArea::vertical().id_salt((unit.session.id, page.place())).auto_shrink(false).show(ui, |ui| {
-            frame.show(ui, |ui| match page {
-                // Each drive has its own entries, with their own undo.
-                Page::Motion => {
-                    let own = &mut view.drives.entry(drive).or_default().motion;
-                    ui.push_id(drive, |ui| motion::page_ui(ui, theme, unit, own, actions));
-                }
-                Page::Parameters => {}
-                Page::Axis => {
-                    let own = &mut view.drives.entry(drive).or_default().axis;
-                    ui.push_id(drive, |ui| axis::page_ui(ui, theme, unit, own, actions));
-                }
-                Page::Diagnosis => {
-                    errors::cards_ui(ui, theme, unit, actions);
-                    ui.add_space(theme.space.groups);
-                    leds::cards_ui(ui, theme, &mut view.leds);
-                }
-                Page::Device => {
-                    device::cards_ui(ui, theme, unit, actions);
-                    ui.add_space(theme.space.groups);
-                    network::card_ui(ui, theme, unit, &mut view.network, actions);
-                }
-                Page::Backups => backups::page_ui(ui, theme, device, actions),
-            });
+        page::scrolling(ui, theme, (unit.session.id, page.place()), |ui| match page {
+            // Each drive has its own entries, with their own undo.
+            Page::Motion => {
+                let own = &mut view.drives.entry(drive).or_default().motion;
+                ui.push_id(drive, |ui| motion::page_ui(ui, theme, unit, own, actions));
+            }
+            Page::Parameters => {}
+            Page::Axis => {
+                let own = &mut view.drives.entry(drive).or_default().axis;
+                ui.push_id(drive, |ui| axis::page_ui(ui, theme, unit, own, actions));
+            }
+            Page::Diagnosis => {
+                errors::cards_ui(ui, theme, unit, actions);
+                theme.gap(ui);
+                leds::cards_ui(ui, theme, &mut view.leds);
+            }
+            Page::Device => {
+                device::cards_ui(ui, theme, unit, actions);
+                theme.gap(ui);
+                network::card_ui(ui, theme, unit, &mut view.network, actions);
+            }
+            Page::Backups => backups::page_ui(ui, theme, device, actions),
         });
     }
 

@@ -10,8 +10,8 @@ use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, empty, enabled_button, entry, options, paragraph, problem_below, row,
-    text_entry, two_columns, two_lines,
+    allowed_button, card, card_with, choice, empty, enabled_button, entry, folding_card, options, paragraph,
+    problem_below, row, text_entry, two_columns, two_lines,
 };
 use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 
@@ -37,6 +37,9 @@ pub(super) struct MotionUiState {
 const NUMBER: f32 = 88.0;
 const PERCENT: f32 = 56.0;
 const MEASURE: f32 = 64.0;
+/// Width from which speed and torque stand in one row, and that of the note between them.
+const ONE_ROW: f32 = 660.0;
+const NOTE: f32 = 112.0;
 /// Height of the message about the drive, and the width from which it is beside a heading.
 const SAID: f32 = 32.0;
 const BESIDE: f32 = 560.0;
@@ -55,16 +58,16 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     locks(ui, theme, unit, actions);
     if !low {
         states(ui, theme, unit, actions);
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
     }
     // A unique id: widgets that appear above do not take the keyboard focus from an entry.
     let id = Id::unique("motion").with((unit.session.id, unit.drive()));
     ui.scope_builder(UiBuilder::new().scope_id(id), |ui| {
         jog::card_ui(ui, theme, unit, view, actions);
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         if low {
             states(ui, theme, unit, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
         }
         two_columns(
             ui,
@@ -76,14 +79,14 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
             },
             |ui, (allowed, view, actions)| {
                 jog::step_card_ui(ui, theme, unit, allowed, view, actions);
-                ui.add_space(theme.space.groups);
-                card(ui, theme, TEXTS.text("hd_run.title"), |ui| at_speed(ui, theme, unit, allowed, actions));
+                theme.gap(ui);
+                folding_card(ui, theme, TEXTS.text("hd_run.title"), |ui| at_speed(ui, theme, unit, allowed, actions));
             },
         );
         // Below: nothing that can be clicked moves away when it comes.
         outside::card_ui(ui, theme, unit, &mut view.outside, actions);
     });
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     figures::words_card_ui(ui, theme, unit, unit.drive());
 }
 
@@ -254,8 +257,9 @@ fn at_speed(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>,
     }
 }
 
-/// Draws speed and torque, in percent, with buttons for the `presets` of the speed. An entry takes effect at once, so that nothing
-/// starts with the old values; a running motion keeps its own, which is shown. A preset begins nothing.
+/// Draws speed and torque, in percent, with buttons for the `presets` of the speed: in one row where there is room. An entry
+/// takes effect at once, so that nothing starts with the old values; a running motion keeps its own, which is shown. A
+/// preset begins nothing.
 ///
 /// # Errors
 /// The entry is not a percentage: nothing may start with it.
@@ -263,62 +267,115 @@ pub(super) fn effort_ui(
     ui: &mut Ui,
     theme: &Theme,
     unit: &Unit,
-    (effort, under_way, drafts): (Effort, Option<Effort>, &mut [Draft; 2]),
+    (effort, under_way, [speed, torque]): (Effort, Option<Effort>, &mut [Draft; 2]),
     presets: &[Percent],
     set: impl Fn(Effort) -> Motor,
     actions: &mut Vec<Action>,
 ) -> Result<(), Text> {
-    let [speed, torque] = drafts;
-    let mut taken = Ok(());
-    let sent = (under_way.map(|own| own.speed), under_way.map(|own| own.torque));
-    for (word, own, sent, draft, is_speed) in [
-        ("hd_effort.speed", effort.speed, sent.0, speed, true),
-        ("hd_effort.torque", effort.torque, sent.1, torque, false),
-    ] {
-        let word = say(theme, word);
-        entry(ui, theme, &word, |ui| {
-            // What was typed gives way where another value counts since: of a preset, or of a new session.
-            let typed = draft.take().filter(|(text, counted)| *counted == own || forms::percent(text) == Ok(own));
-            let mut text = typed.map_or_else(|| own.get().to_string(), |(text, _)| text);
-            let response = text_entry(ui, &mut text, PERCENT, &word, "");
-            let typed = forms::percent(&text);
-            let with = |percent| {
-                if is_speed { Effort { speed: percent, ..effort } } else { Effort { torque: percent, ..effort } }
-            };
-            if let Ok(percent) = &typed
-                && *percent != own
-            {
-                motor(actions, unit.session.id, set(with(*percent)));
-            }
-            let keeps = response.has_focus() || typed.is_err();
-            *draft = keeps.then_some((text, own));
-            ui.label(theme.label("%"));
-            if is_speed && !presets.is_empty() {
-                // None is chosen while what is typed counts for nothing: each of them replaces it.
-                let mut chosen = if typed.is_ok() { own } else { Percent::NONE };
-                let shown = presets.iter().map(|own| (*own, format!("{} %", own.get())));
-                if options(ui, &say(theme, "hd_jog.speed"), &mut chosen, shown) {
-                    *draft = None;
-                    motor(actions, unit.session.id, set(with(chosen)));
-                }
-            }
-            let beside = if is_speed { unit.speed_of(own) } else { unit.torque_of(own) };
-            let waits = sent.filter(|sent| *sent != own && typed.is_ok());
-            if let Some(sent) = waits {
-                let words = TEXTS.text("hd_effort.sent").with("sent", sent.get());
-                let label = ui.label(RichText::new(theme.words(&words)).color(theme.palette.warn));
-                label.on_hover_text(say(theme, "hd_effort.waits"));
-            } else if let Some(beside) = beside.filter(|_| typed.is_ok()) {
-                ui.label(theme.caption(theme.words(&beside)));
-            }
-            if let Err(why) = typed {
-                ui.label(RichText::new(icons::WARNING_CIRCLE).color(theme.palette.bad))
-                    .on_hover_text(theme.words(&why));
-                taken = Err(why);
-            }
+    let words = ["hd_effort.speed", "hd_effort.torque"].map(|word| say(theme, word));
+    let [speed_word, torque_word] = &words;
+    let mut chosen = effort;
+    let mut speed_ui = |ui: &mut Ui| {
+        let sent = under_way.map(|own| own.speed);
+        let typed = percent_ui(ui, theme, (speed_word, effort.speed), speed, presets, &mut chosen.speed);
+        (typed, sent, unit.speed_of(effort.speed))
+    };
+    let mut torque_to = effort.torque;
+    let mut torque_ui = |ui: &mut Ui| {
+        let sent = under_way.map(|own| own.torque);
+        let typed = percent_ui(ui, theme, (torque_word, effort.torque), torque, &[], &mut torque_to);
+        (typed, sent, unit.torque_of(effort.torque))
+    };
+    let note = |ui: &mut Ui, own: Percent, (typed, sent, beside): (Result<(), Text>, Option<Percent>, Option<Text>)| {
+        note_ui(ui, theme, &typed, sent.filter(|sent| *sent != own), beside);
+        typed
+    };
+    let taken = if !presets.is_empty() && ui.available_width() >= ONE_ROW {
+        let row = ui.horizontal(|ui| {
+            ui.label(theme.label(speed_word));
+            let drawn = speed_ui(ui);
+            // Constant width: the entry of the torque does not move when the note changes.
+            let height = ui.spacing().interact_size.y;
+            let place = egui::Layout::left_to_right(egui::Align::Center);
+            let speed = ui.allocate_ui_with_layout(vec2(NOTE, height), place, |ui| {
+                ui.set_min_width(NOTE);
+                note(ui, effort.speed, drawn)
+            });
+            ui.label(theme.label(torque_word));
+            let drawn = torque_ui(ui);
+            speed.inner.and(note(ui, effort.torque, drawn))
         });
+        row.inner
+    } else {
+        let [mut speed, mut torque] = [Ok(()), Ok(())];
+        entry(ui, theme, speed_word, |ui| {
+            let drawn = speed_ui(ui);
+            speed = note(ui, effort.speed, drawn);
+        });
+        entry(ui, theme, torque_word, |ui| {
+            let drawn = torque_ui(ui);
+            torque = note(ui, effort.torque, drawn);
+        });
+        speed.and(torque)
+    };
+    chosen.torque = torque_to;
+    if chosen != effort {
+        motor(actions, unit.session.id, set(chosen));
     }
     taken
+}
+
+/// Draws the entry of a percentage and its presets; `to` becomes the one entered or chosen.
+///
+/// # Errors
+/// The entry is not a percentage.
+fn percent_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    (word, own): (&str, Percent),
+    draft: &mut Draft,
+    presets: &[Percent],
+    to: &mut Percent,
+) -> Result<(), Text> {
+    // What was typed gives way where another value counts since: of a preset, or of a new session.
+    let typed = draft.take().filter(|(text, counted)| *counted == own || forms::percent(text) == Ok(own));
+    let mut text = typed.map_or_else(|| own.get().to_string(), |(text, _)| text);
+    let response = text_entry(ui, &mut text, PERCENT, word, "");
+    let typed = forms::percent(&text);
+    if let Ok(percent) = &typed {
+        *to = *percent;
+    }
+    let keeps = response.has_focus() || typed.is_err();
+    *draft = keeps.then_some((text, own));
+    ui.label(theme.label("%"));
+    if !presets.is_empty() {
+        // None is chosen while what is typed counts for nothing: each of them replaces it.
+        let mut chosen = if typed.is_ok() { own } else { Percent::NONE };
+        let shown = presets.iter().map(|own| (*own, format!("{} %", own.get())));
+        if options(ui, &say(theme, "hd_jog.speed"), &mut chosen, shown) {
+            *draft = None;
+            *to = chosen;
+        }
+    }
+    typed.map(|_| ())
+}
+
+/// Draws, beside a percentage: why it cannot be used, the one that a running motion was started with, or what it is `beside`.
+fn note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Percent>, beside: Option<Text>) {
+    match (typed, sent, beside) {
+        (Err(why), ..) => {
+            ui.label(RichText::new(icons::WARNING_CIRCLE).color(theme.palette.bad)).on_hover_text(theme.words(why));
+        }
+        (Ok(()), Some(sent), _) => {
+            let words = theme.words(&TEXTS.text("hd_effort.sent").with("sent", sent.get()));
+            let label = egui::Label::new(RichText::new(words).color(theme.palette.warn)).truncate();
+            ui.add(label).on_hover_text(say(theme, "hd_effort.waits"));
+        }
+        (Ok(()), None, Some(beside)) => {
+            ui.add(egui::Label::new(theme.caption(theme.words(&beside))).truncate());
+        }
+        (Ok(()), None, None) => {}
+    }
 }
 
 /// Draws a length or a position: a number and its unit.

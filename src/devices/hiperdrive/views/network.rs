@@ -11,8 +11,8 @@ use crate::devices::hiperdrive::state::network::{self, Form};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    allowed_button, card, card_with, empty, enabled_button, entry, mono_entry, options, paragraph, problem, row,
-    severity, split,
+    allowed_button, card_with, empty, enabled_button, entry, folding_card, mono_entry, options, paragraph, problem,
+    row, severity, split,
 };
 use crate::ui::{Theme, icons};
 
@@ -155,7 +155,7 @@ fn line(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
 
 /// Draws the meaning of each position, with the present one highlighted.
 fn switches(ui: &mut Ui, theme: &Theme, unit: &Unit) {
-    card(ui, theme, TEXTS.text("hd_net.switches"), |ui| {
+    folding_card(ui, theme, TEXTS.text("hd_net.switches"), |ui| {
         let switch = unit.address_switch();
         if let Some(own) = switch {
             row(ui, theme, &say(theme, "hd_net.switch_now"), theme.value(own.number().to_string()));

@@ -34,7 +34,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
         *draft = Draft::default();
         return;
     };
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     card(ui, theme, TEXTS.text("hd_outside.short"), |ui| {
         let strong = RichText::new(theme.words(&words)).font(theme.strong(theme.sizes.body)).color(theme.palette.bad);
         ui.horizontal_top(|ui| {

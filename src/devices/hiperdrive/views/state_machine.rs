@@ -30,7 +30,7 @@ pub(crate) struct StateMachine<'a> {
 /// Sizes in points.
 const BOX: f32 = 28.0;
 const GAP: f32 = 28.0;
-const BETWEEN: f32 = 20.0;
+const BETWEEN: f32 = 16.0;
 const MOST: f32 = 128.0;
 /// Places of the arrows' heads, and half of how wide one is.
 const HEAD: f32 = 6.0;

@@ -91,9 +91,7 @@ pub enum Error {
     },
     /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
-    Changed {
-        item: PlanItem,
-    },
+    Changed { item: PlanItem },
     /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified {

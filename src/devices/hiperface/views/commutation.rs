@@ -37,27 +37,27 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         (&mut *actions, &mut form),
         |ui, (_, form)| {
             before(ui, theme, form);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             motor(ui, theme, encoder, form);
             if wide {
-                ui.add_space(theme.space.groups);
+                theme.gap(ui);
                 result::report_ui(ui, theme, encoder);
             }
         },
         |ui, (actions, form)| {
             rest(ui, theme, encoder, form, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             second(ui, theme, encoder, form, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             result::offset_ui(ui, theme, encoder);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             result::field_ui(ui, theme, encoder, form, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             result::position_ui(ui, theme, encoder, form, actions);
         },
     );
     if !wide {
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         result::report_ui(ui, theme, encoder);
     }
     if form != encoder.commutation.form {
@@ -200,10 +200,6 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
         Some(reading) => theme.mono(theme.number(reading.fine_periods, 5)),
         None => theme.mono("–").color(theme.palette.muted),
     };
-    row(ui, theme, &say(theme, slot.word()), shown);
-    if let Some(reading) = reading {
-        ui.label(theme.caption(theme.words(&kind_words(reading))));
-    }
     ui.horizontal_wrapped(|ui| {
         let allowed = may_read(commutation, encoder.session.is_ready());
         // All of the same width, so that the entries form one column.
@@ -221,6 +217,10 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
         let filled = !typed.trim().is_empty();
         if icon_button(ui, filled, icons::CHECK, &say(theme, take)).clicked() || (enter && filled) {
             actions.push(ask(encoder, Assistant::Use(slot)));
+        }
+        ui.label(shown);
+        if let Some(reading) = reading {
+            ui.label(theme.caption(theme.words(&kind_words(reading))));
         }
     });
 }

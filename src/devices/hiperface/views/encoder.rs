@@ -9,7 +9,7 @@ use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
+use crate::ui::controls::{card, card_with, empty, enabled_button, folding_card, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
@@ -19,13 +19,13 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &m
         (actions, restart),
         |ui, (actions, _)| {
             identity(ui, theme, encoder, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             status(ui, theme, encoder, actions);
             extended_label(ui, theme, encoder);
         },
         |ui, (actions, restart)| {
             check(ui, theme, encoder, restart, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             wiring::card_ui(ui, theme);
         },
     );
@@ -139,8 +139,8 @@ fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &mut bool, acti
 
 fn extended_label(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     let Some(bytes) = encoder.identity.as_ref().and_then(|identity| identity.extended_label.as_deref()) else { return };
-    ui.add_space(theme.space.groups);
-    card(ui, theme, TEXTS.text("label_card.title"), |ui| {
+    theme.gap(ui);
+    folding_card(ui, theme, TEXTS.text("label_card.title"), |ui| {
         for part in words::label(bytes) {
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().interact_size.y = 18.0;

@@ -7,7 +7,7 @@ use crate::devices::hiperface::procedures::Watch;
 use crate::devices::hiperface::state::{self, Encoder, HiperfaceAction as Hiperface};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{enabled_button, icon_menu, paragraph, row, text_entry};
-use crate::ui::panels::live::{LOW, mark};
+use crate::ui::panels::live::{LOW, mark, raw_row};
 use crate::ui::{Theme, icons};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
@@ -47,7 +47,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         row(ui, theme, &theme.say("live.turns"), theme.mono(turns.to_string()));
         row(ui, theme, &theme.say("live.step"), theme.mono(steps.to_string()));
     }
-    row(ui, theme, &theme.say("live.raw"), theme.mono(format!("{:08X}h  {}", reading.raw, reading.raw)));
+    raw_row(ui, theme, format!("{:08X}h  {}", reading.raw, reading.raw));
 }
 
 /// Draws the menu of the values read with the position.

@@ -10,8 +10,8 @@ use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS, forms};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    card, choice, enabled_button, entry, forget_secret, paragraph, problem_below, row, secret_entry, text_entry,
-    two_columns,
+    card, choice, enabled_button, entry, folding_card, forget_secret, paragraph, problem_below, row, secret_entry,
+    text_entry, two_columns,
 };
 use crate::ui::{Theme, icons};
 use crate::units::{CharacterFormat, Parity};
@@ -57,14 +57,14 @@ pub(super) fn page_ui(
         (actions, view),
         |ui, (actions, view)| {
             position(ui, theme, encoder, view, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             codes(ui, theme, encoder, view, actions);
         },
         |ui, (actions, view)| {
             address(ui, theme, encoder, view, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             settings(ui, theme, encoder, view, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             restart(ui, theme, encoder, actions);
         },
     );
@@ -166,7 +166,7 @@ fn codes(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState,
 
 fn address(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     let now = encoder.identity.as_ref().map_or_else(|| "–".to_owned(), |own| format!("{:02X}h", own.address));
-    card(ui, theme, TEXTS.text("address_card.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("address_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "address_card.words")));
         entry(ui, theme, &say(theme, "address_card.now"), |ui| ui.label(theme.mono(now)));
         entry(ui, theme, &say(theme, "address_card.new"), |ui| {
@@ -236,7 +236,7 @@ fn chosen_of(stored: LineSettings) -> Chosen {
 }
 
 fn restart(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
-    card(ui, theme, TEXTS.text("restart_card.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("restart_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "restart_card.words")));
         if enabled_button(ui, encoder.session.is_ready(), icons::POWER, &say(theme, "restart_card.run")).clicked() {
             actions.push(Action::device(encoder.session.id, Hiperface::Reset));

@@ -6,7 +6,7 @@ use egui::Ui;
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{card, paragraph};
+use crate::ui::controls::{folding_card, paragraph};
 use crate::ui::wiring::wires_ui;
 
 /// Width of the column of names.
@@ -27,7 +27,7 @@ const WIRES: [(&str, &str); 8] = [
 const NOTES: [&str; 4] = ["wiring.termination", "wiring.bus", "wiring.screen", "wiring.pins"];
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {
-    card(ui, theme, "wiring.title", |ui| {
+    folding_card(ui, theme, "wiring.title", |ui| {
         wires_ui(ui, theme, &TEXTS, WIRE, &WIRES);
         ui.add_space(theme.space.inside);
         for note in NOTES {

@@ -68,7 +68,10 @@ pub enum InterbusJob {
 /// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
-    Restore { profile: Box<InterbusProfile>, options: RestoreOptions },
+    Restore {
+        profile: Box<InterbusProfile>,
+        options: RestoreOptions,
+    },
     /// Writes these values; items that are not in the image stay as they are, and are not read.
     Write(Box<Image>),
     /// Gives one item this value; the others stay as they are.

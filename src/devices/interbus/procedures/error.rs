@@ -299,9 +299,7 @@ pub enum Error {
     },
     /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
-    Changed {
-        item: String,
-    },
+    Changed { item: String },
     /// Something ended early, and the encoder could not be led back.
     #[error("{cause}; the encoder could not be returned to operation: {standing}")]
     NotLedBack {

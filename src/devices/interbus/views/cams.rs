@@ -55,9 +55,9 @@ pub(super) fn page_ui(
         return;
     };
     chart::card_ui(ui, theme, encoder, &chart, &mut view.chart, actions);
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     table::card_ui(ui, theme, encoder, &chart, &mut view.table, actions);
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     two_columns(
         ui,
         theme,

@@ -7,7 +7,9 @@ use crate::devices::interbus::protocol::{ProgramNumber, ReadOutValue, Reply, Sta
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, word_meaning, words};
 use crate::devices::interbus::views::say;
 use crate::ui::check::lines_ui;
-use crate::ui::controls::{card, card_with, choice, empty, enabled_button, encoder_page, entry, paragraph, row};
+use crate::ui::controls::{
+    card, card_with, choice, empty, enabled_button, encoder_page, entry, folding_card, paragraph, row,
+};
 use crate::ui::{Theme, icons, motor};
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -23,7 +25,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
             |ui, actions| {
                 sends(ui, theme, encoder, actions);
                 if let Some(motor) = &encoder.motor {
-                    ui.add_space(theme.space.groups);
+                    theme.gap(ui);
                     motor::card_ui(ui, theme, motor.rpm(), |rpm| {
                         actions.push(Action::device(encoder.session.id, Interbus::Turn(rpm)))
                     });
@@ -32,7 +34,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         ),
     );
     if !is_profile {
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         wiring(ui, theme);
     }
 }
@@ -137,7 +139,7 @@ const WIRING: [&str; 5] =
     ["ib_wiring.bus", "ib_wiring.supply", "ib_wiring.place", "ib_wiring.gateway", "ib_wiring.manual"];
 
 fn wiring(ui: &mut Ui, theme: &Theme) {
-    card(ui, theme, "wiring.title", |ui| {
+    folding_card(ui, theme, "wiring.title", |ui| {
         for note in WIRING {
             paragraph(ui, theme.label(say(theme, note)));
         }

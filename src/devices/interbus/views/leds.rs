@@ -6,7 +6,7 @@ use crate::app::Action;
 use crate::devices::interbus::protocol::{Class, Interface, LedState, Leds, id_code};
 use crate::devices::interbus::state::{TEXTS, words};
 use crate::devices::interbus::views::say;
-use crate::ui::controls::{card, name, paragraph, row, two_columns};
+use crate::ui::controls::{folding_card, name, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
 
 /// The LEDs as entered by the user.
@@ -29,7 +29,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
 }
 
 fn lamps(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
-    card(ui, theme, TEXTS.text("ib_leds.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("ib_leds.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "ib_leds.words")));
         ui.horizontal_wrapped(|ui| {
             let LedsUiState { leds } = view;
@@ -74,7 +74,7 @@ fn lamp_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut LedState, blinks: 
 }
 
 fn codes(ui: &mut Ui, theme: &Theme) {
-    card(ui, theme, TEXTS.text("ib_id.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("ib_id.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "ib_id.words")));
         for class in Class::ALL {
             let codes: Vec<String> = Interface::ALL

@@ -9,7 +9,7 @@ use crate::devices::interbus::state::{Encoder, TEXTS};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{dot, row};
-use crate::ui::panels::live::{LOW, mark};
+use crate::ui::panels::live::{LOW, mark, raw_row};
 
 /// Width that eight outputs need beside each other.
 const LAMPS: f32 = 280.0;
@@ -48,7 +48,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
             row(ui, theme, &theme.say("live.step"), theme.mono(place.steps.to_string()));
             row(ui, theme, &say(theme, "ib_live.angle"), theme.mono(format!("{} °", theme.number(place.degrees, 3))));
         }
-        row(ui, theme, &theme.say("live.raw"), theme.mono(word));
+        raw_row(ui, theme, word);
     }
     if let Some(StartupMode::Cams(program)) = reading.mode
         && let Some(output) = reading.cams()

@@ -125,9 +125,9 @@ impl TypedDeviceView for InterbusView {
                 Page::Cams => cams::page_ui(ui, theme, encoder, &mut view.cams, actions),
                 Page::Diagnosis => {
                     read_outs::cards_ui(ui, theme, encoder, actions);
-                    ui.add_space(theme.space.groups);
+                    theme.gap(ui);
                     reader::card_ui(ui, theme, &mut view.reader);
-                    ui.add_space(theme.space.groups);
+                    theme.gap(ui);
                     leds::cards_ui(ui, theme, &mut view.lamps);
                 }
                 Page::Backups => backups::page_ui(ui, theme, device, actions),

@@ -52,12 +52,12 @@ pub(super) fn page_ui(
                 return;
             }
             preset(ui, theme, encoder, view, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             wear(ui, theme, encoder);
         },
     );
     if !is_profile {
-        ui.add_space(theme.space.groups);
+        theme.gap(ui);
         handshake(ui, theme, encoder);
     }
 }

@@ -6,7 +6,7 @@ use crate::app::Action;
 use crate::devices::interbus::protocol::{READ_OUTS, ReadOut};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, words};
 use crate::devices::interbus::views::say;
-use crate::ui::controls::{card, icon_button, paragraph};
+use crate::ui::controls::{card, folding_card, icon_button, paragraph};
 use crate::ui::{Theme, icons};
 
 /// Width of a column of names, at least and at most.
@@ -44,8 +44,9 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
                 }
             }
         });
-        ui.add_space(theme.space.between);
-        ui.label(theme.heading(say(theme, "ib_values.chip")));
+    });
+    theme.gap(ui);
+    folding_card(ui, theme, TEXTS.text("ib_values.chip"), |ui| {
         paragraph(ui, theme.caption(say(theme, "ib_values.chip_words")));
         ui.horizontal_wrapped(|ui| {
             for what in (0..16).filter_map(ReadOut::chip_register) {

@@ -33,5 +33,5 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mu
         });
         paragraph(ui, theme.caption(say(theme, "ib_stop.words")));
     });
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
 }

@@ -20,7 +20,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         |ui, actions| {
             adapter(ui, theme, encoder, actions);
             if let Some(motor) = &encoder.motor {
-                ui.add_space(theme.space.groups);
+                theme.gap(ui);
                 motor::card_ui(ui, theme, motor.rpm(), |rpm| {
                     actions.push(Action::device(encoder.session.id, Ssi::Turn(rpm)))
                 });
@@ -28,11 +28,11 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         },
         |ui, actions| {
             errors(ui, theme, encoder, actions);
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             check(ui, theme, encoder, actions);
         },
     );
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     wiring::card_ui(ui, theme, encoder.designer.family());
 }
 

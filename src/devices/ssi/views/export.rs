@@ -60,7 +60,7 @@ pub(super) fn page_ui(
         }
         (None, Err(why)) => problem(ui, theme, Some(why)),
     });
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     card(ui, theme, TEXTS.text("ssi_export.profile"), |ui| {
         paragraph(ui, theme.label(say(theme, "ssi_export.profile_words")));
         ui.horizontal(|ui| {

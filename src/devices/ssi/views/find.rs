@@ -35,7 +35,7 @@ pub(super) fn page_ui(
     actions: &mut Vec<Action>,
 ) {
     source(ui, theme, encoder, view, actions);
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     match &encoder.hunt {
         SearchState::Nothing => {}
         SearchState::Running(_) => {
@@ -57,7 +57,7 @@ pub(super) fn page_ui(
                 ui.add_space(theme.space.between);
                 paragraph(ui, theme.caption(theme.words(&text)));
             }
-            ui.add_space(theme.space.groups);
+            theme.gap(ui);
             frames::card_ui(ui, theme, encoder, (*clocks, frames), actions);
         }
     }

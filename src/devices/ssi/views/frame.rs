@@ -36,7 +36,7 @@ pub(super) fn page_ui(
     actions: &mut Vec<Action>,
 ) {
     layout(ui, theme, encoder, &mut view.frame, actions);
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     let form = encoder.designer.form();
     let (left, right) = columns(&form);
     two_columns(
@@ -46,20 +46,20 @@ pub(super) fn page_ui(
         |ui, (view, actions)| {
             trial::card_ui(ui, theme, encoder, &mut view.trial, actions);
             for group in right {
-                ui.add_space(theme.space.groups);
+                theme.gap(ui);
                 group_ui(ui, theme, encoder, group, view, actions);
             }
         },
         |ui, (view, actions)| {
             for (number, group) in left.iter().enumerate() {
                 if number > 0 {
-                    ui.add_space(theme.space.groups);
+                    theme.gap(ui);
                 }
                 group_ui(ui, theme, encoder, group, view, actions);
             }
         },
     );
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     buttons_ui(ui, theme, studio, device, encoder, actions);
 }
 

@@ -8,7 +8,7 @@ use crate::devices::ssi::state::{Encoder, TEXTS};
 use crate::devices::ssi::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::row;
-use crate::ui::panels::live::{LOW, mark as mark_ui};
+use crate::ui::panels::live::{LOW, mark as mark_ui, raw_row};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
     let last = encoder.last();
@@ -53,7 +53,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
             row(ui, theme, &theme.say("live.step"), theme.mono(steps.to_string()));
             row(ui, theme, &say(theme, "ssi_trial.position"), theme.mono(position.to_string()));
         }
-        row(ui, theme, &theme.say("live.raw"), theme.mono(raw));
+        raw_row(ui, theme, raw);
     }
     if let Some(stream) = encoder.streamed() {
         let clock_hz = encoder.identity.as_ref().map_or(0, |identity| identity.clock_hz);

@@ -29,7 +29,7 @@ pub(super) fn page_ui(
         let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.displayed_frame().frame) };
         timing_diagram(ui, theme, &model);
     });
-    ui.add_space(theme.space.groups);
+    theme.gap(ui);
     two_columns(
         ui,
         theme,

@@ -7,7 +7,7 @@ use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{card, paragraph, row};
+use crate::ui::controls::{folding_card, paragraph, row};
 use crate::ui::wiring::wires_ui;
 
 /// Width of the column of wires.
@@ -26,7 +26,7 @@ const WIRES: [(&str, &str); 6] = [
 const NOTES: [&str; 3] = ["ssi_wiring.line", "ssi_wiring.cable", "ssi_wiring.adapter"];
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, family: Option<&Family>) {
-    card(ui, theme, "wiring.title", |ui| {
+    folding_card(ui, theme, "wiring.title", |ui| {
         wires_ui(ui, theme, &TEXTS, WIRE, &WIRES);
         ui.add_space(theme.space.inside);
         for note in NOTES {

@@ -6,7 +6,7 @@ use crate::app::connect::{Connect as Dialog, ConnectAction as Connect, Typed};
 use crate::app::{Action, explain};
 use crate::link::Echo;
 use crate::parameter::Entry;
-use crate::ui::controls::{choice, entry, icon_button, label_width, name, paragraph, text_entry};
+use crate::ui::controls::{choice, disclosure, entry, icon_button, label_width, name, paragraph, text_entry};
 use crate::ui::{Theme, icons};
 use crate::units::Parity;
 
@@ -84,12 +84,7 @@ pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
 
 /// Draws the heading of the rarely needed entries; returns whether they are unfolded.
 pub(crate) fn unfolded(ui: &mut Ui, theme: &Theme, open: &mut bool) -> bool {
-    let icon = if *open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
-    let word = theme.say("connect.more");
-    let response = ui.add(egui::Button::new(format!("{icon}  {word}")).frame(false));
-    if name(response, true, &word).clicked() {
-        *open = !*open;
-    }
+    disclosure(ui, RichText::new(theme.say("connect.more")), open);
     *open
 }
 

@@ -32,12 +32,12 @@ const BYTES: [Widths; 8] = [
     (Column::Default, 84.0, 52.0),
 ];
 const NUMBERS: [Widths; 7] = [
-    (Column::Marks, 42.0, 38.0),
+    (Column::Marks, 42.0, 34.0),
     (Column::Address, 36.0, 36.0),
-    (Column::Name, 180.0, 124.0),
+    (Column::Name, 180.0, 152.0),
     (Column::Value, 60.0, 60.0),
     (Column::Meaning, 110.0, 64.0),
-    (Column::Range, 130.0, 96.0),
+    (Column::Range, 130.0, 88.0),
     (Column::Default, 96.0, 78.0),
 ];
 /// The columns that are hidden, in this order. Their values move to the tooltip.
@@ -132,12 +132,12 @@ mod tests {
         assert_eq!(shown(BYTES, 477.0), [Marks, Address, Name, Value, Meaning, Access]);
         assert_eq!(shown(BYTES, 425.0), [Marks, Address, Name, Value, Meaning]);
         assert_eq!(shown(BYTES, -1.0), [Marks, Address, Name, Value, Meaning]);
-        // 38 + 36 + 124 + 100 + 64 + 96 + 78 = 536.
-        assert_eq!(shown(RegisterKind::Numbers, 536.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
-        assert_eq!(shown(RegisterKind::Numbers, 535.0), [Marks, Address, Name, Value, Meaning, Range]);
-        assert_eq!(shown(RegisterKind::Numbers, 457.0), [Marks, Address, Name, Value, Meaning]);
+        // 34 + 36 + 152 + 100 + 64 + 88 + 78 = 552.
+        assert_eq!(shown(RegisterKind::Numbers, 552.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
+        assert_eq!(shown(RegisterKind::Numbers, 551.0), [Marks, Address, Name, Value, Meaning, Range]);
+        assert_eq!(shown(RegisterKind::Numbers, 473.0), [Marks, Address, Name, Value, Meaning]);
         let hides = |width| Columns::new(RegisterKind::Numbers, width, 100.0).hides(RegisterKind::Numbers);
-        assert!(!hides(536.0) && hides(535.0));
+        assert!(!hides(552.0) && hides(551.0));
     }
 
     /// Usual 694, minimum 550: at 622 each column has half of what it can spare.

@@ -37,9 +37,7 @@ pub struct Histogram {
 pub enum CyclicLost {
     /// Nothing has come for three intervals.
     #[error("nothing has come for {} ms", after.as_millis())]
-    Silent {
-        after: Duration,
-    },
+    Silent { after: Duration },
     /// The port failed.
     #[error(transparent)]
     Port(#[from] LinkError),

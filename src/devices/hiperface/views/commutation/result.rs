@@ -9,7 +9,7 @@ use crate::devices::hiperface::state::commutation::{CommutationAction as Assista
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, entry, icon_button, paragraph, primary, row, verdict_ui,
+    allowed_button, card, choice, enabled_button, entry, folding_card, paragraph, primary, row, verdict_ui,
 };
 use crate::ui::{Theme, icons};
 
@@ -37,7 +37,7 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
 }
 
 pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
-    card(ui, theme, TEXTS.text("commutation.method_one"), |ui| {
+    folding_card(ui, theme, TEXTS.text("commutation.method_one"), |ui| {
         paragraph(ui, theme.label(say(theme, "commutation.method_one_words")));
         entry(ui, theme, &say(theme, "commutation.storage"), |ui| {
             let ways = [(Storage::Record, "commutation.record"), (Storage::Number, "commutation.number")];
@@ -115,7 +115,7 @@ fn found_ui(ui: &mut Ui, theme: &Theme, found: &Stored) {
 }
 
 pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
-    card(ui, theme, TEXTS.text("commutation.method_two"), |ui| {
+    folding_card(ui, theme, TEXTS.text("commutation.method_two"), |ui| {
         paragraph(ui, theme.label(say(theme, "commutation.method_two_words")));
         if let Ok(inputs) = form.inputs(encoder.geometry()) {
             let text = TEXTS
@@ -156,14 +156,12 @@ pub(super) fn report_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
         .iter()
         .map(|line| theme.words(line))
         .collect();
-    let copy = |ui: &mut Ui| {
-        if icon_button(ui, true, icons::COPY, &say(theme, "commutation.copy")).clicked() {
-            ui.ctx().copy_text(lines.join("\n"));
-        }
-    };
-    card_with(ui, theme, TEXTS.text("commutation.report"), copy, |ui| {
+    folding_card(ui, theme, TEXTS.text("commutation.report"), |ui| {
         for line in &lines {
             ui.add(egui::Label::new(line).wrap().selectable(true));
+        }
+        if enabled_button(ui, true, icons::COPY, &say(theme, "commutation.copy")).clicked() {
+            ui.ctx().copy_text(lines.join("\n"));
         }
     });
 }

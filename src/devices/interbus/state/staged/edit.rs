@@ -103,10 +103,7 @@ pub enum EditError {
     ShiftNotRead,
     /// The profile does not contain this cam.
     #[error("cam {} of program {} has no edges", cam.get(), program.get())]
-    NoCam {
-        program: ProgramNumber,
-        cam: CamNumber,
-    },
+    NoCam { program: ProgramNumber, cam: CamNumber },
     /// Steps and turns are not one.
     #[error(transparent)]
     Gear(#[from] GearError),

@@ -7,7 +7,7 @@ use crate::devices::interbus::profile::{Scale, Unit};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{card, choice, entry, paragraph, problem_below, settled_entry};
+use crate::ui::controls::{choice, entry, folding_card, paragraph, problem_below, settled_entry};
 
 /// Entered text that does not take effect yet.
 #[derive(Default)]
@@ -25,7 +25,7 @@ pub(super) fn card_ui(
     view: &mut CamScaleUiState,
     actions: &mut Vec<Action>,
 ) {
-    card(ui, theme, TEXTS.text("ib_scale.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("ib_scale.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "ib_scale.words")));
         let (scale, range) = (&encoder.scale, encoder.range());
         let id = encoder.session.id;

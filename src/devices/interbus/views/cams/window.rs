@@ -8,10 +8,10 @@ use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus,
 use crate::devices::interbus::views::say;
 use crate::devices::interbus::views::widgets::{WordLayout, word_layout};
 use crate::ui::Theme;
-use crate::ui::controls::{card, choice, entry, paragraph};
+use crate::ui::controls::{choice, entry, folding_card, paragraph};
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
-    card(ui, theme, TEXTS.text("ib_window.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("ib_window.title"), |ui| {
         let known = encoder.staged.wanted().and_then(|wanted| wanted.image.shift);
         let own = known.unwrap_or_default();
         let word = say(theme, "ib_cams.shift");

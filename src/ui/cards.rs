@@ -1,0 +1,74 @@
+//! Cards: framed groups with a heading.
+
+use egui::{Button, Id, RichText, Role, Ui, WidgetInfo};
+
+use super::controls::fill;
+use super::label_column::with_label_column;
+use super::{Theme, icons};
+use crate::app::Text;
+
+/// Height of a window in points below which folding cards fold.
+const LOW: f32 = 720.0;
+
+/// Draws a card with a heading.
+pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
+    card_with(ui, theme, title, |_| {}, content)
+}
+
+/// Draws a card with a heading; `aside` draws the part at the right of the heading.
+pub(crate) fn card_with<R>(
+    ui: &mut Ui,
+    theme: &Theme,
+    title: impl Into<Text>,
+    aside: impl FnOnce(&mut Ui),
+    content: impl FnOnce(&mut Ui) -> R,
+) -> R {
+    let heading = theme.words(&title.into());
+    theme
+        .card()
+        .show(ui, |ui| {
+            fill(ui);
+            ui.horizontal(|ui| {
+                ui.label(theme.heading(heading.clone()));
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
+            });
+            ui.add_space(theme.space.inside);
+            with_label_column(ui, &heading, content)
+        })
+        .inner
+}
+
+/// Draws the heading of something that a click opens or closes; returns whether it was clicked.
+pub(crate) fn disclosure(ui: &mut Ui, heading: RichText, is_open: &mut bool) -> bool {
+    let icon = if *is_open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
+    let word = heading.text().to_owned();
+    let response = ui.add(Button::new((icon, heading)).frame(false));
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, *is_open, &word));
+    let is_clicked = response.clicked();
+    if is_clicked {
+        *is_open = !*is_open;
+    }
+    is_clicked
+}
+
+/// Draws a card for reference: in a low window only its heading, until it is opened with a click. It stays open until the
+/// program ends.
+pub(crate) fn folding_card(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui)) {
+    let title = title.into();
+    if ui.ctx().content_rect().height() >= LOW {
+        return card(ui, theme, title, content);
+    }
+    let heading = theme.words(&title);
+    let id = Id::unique("folding_card").with(title.id());
+    theme.card().show(ui, |ui| {
+        fill(ui);
+        let mut is_open = ui.data(|data| data.get_temp(id)).unwrap_or(false);
+        if disclosure(ui, theme.heading(heading.clone()), &mut is_open) {
+            ui.data_mut(|data| data.insert_temp(id, is_open));
+        }
+        if is_open {
+            ui.add_space(theme.space.inside);
+            with_label_column(ui, &heading, content);
+        }
+    });
+}
