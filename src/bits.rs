@@ -1,5 +1,5 @@
-//! Bytes as hexadecimal text: upper case, grouped by bytes, as in the manuals; with secrets masked; and bytes interpreted
-//! as numbers or text.
+//! Bytes as hexadecimal strings: upper case, separated by spaces as in the manuals, with secrets masked. Also
+//! interprets bytes as numbers or text.
 
 use std::fmt;
 use std::str::FromStr;
@@ -21,7 +21,6 @@ pub fn hex_compact(bytes: &[u8]) -> String {
 pub enum ByteOrder {
     #[default]
     HighFirst,
-    /// The lowest.
     LowFirst,
 }
 
@@ -130,7 +129,6 @@ pub enum HexError {
     /// A character that is neither a hex digit nor a separator.
     #[error("{0:?} is not a hexadecimal digit")]
     Digit(char),
-    /// A group with an odd number of digits.
     #[error("{0:?} has an odd number of hexadecimal digits")]
     Odd(String),
 }

@@ -1,5 +1,5 @@
-//! The allowed values of a parameter, a setting or an entry: a fact with its limits, in English here, with its own text in
-//! the window (`app::explain::expected`).
+//! Allowed values of a parameter, a setting or an entry: a fact with its limits, described in English here and with its
+//! own text in the window (`app::explain::expected`).
 
 use std::borrow::Cow;
 use std::fmt;
@@ -12,10 +12,8 @@ pub enum Expected {
     /// One of these words, few enough to be read as a sentence.
     #[error("{}", alternatives(.0))]
     Words(Cow<'static, [&'static str]>),
-    /// One of many names or numbers.
     #[error("one of {}", .0.join(", "))]
     OneOf(Vec<String>),
-    /// A number with its quantity and limits.
     #[error("{quantity} from {low} to {high}")]
     Range {
         quantity: Quantity,
@@ -49,7 +47,6 @@ pub enum Expected {
         /// The greatest.
         high: Limit,
     },
-    /// A speed of a serial line.
     #[error("a bit rate from {low} to {high} bit/s, usually 115200")]
     BitRate {
         /// The least.
@@ -57,19 +54,16 @@ pub enum Expected {
         /// The greatest.
         high: u32,
     },
-    /// Periods in a revolution.
     #[error("1 to {most} periods per revolution")]
     Periods {
         /// The greatest number.
         most: u32,
     },
-    /// Revolutions that are counted.
     #[error("1 to {most} turns")]
     MostTurns {
         /// The greatest number.
         most: u32,
     },
-    /// A gear.
     #[error("a number of steps from {low} to {high}, limited by its number of turns")]
     StepsOfTurns {
         /// The least.
@@ -77,10 +71,8 @@ pub enum Expected {
         /// The greatest.
         high: u32,
     },
-    /// Another parameter is missing.
     #[error("only together with {0}")]
     OnlyWith(&'static str),
-    /// A checksum's polynomial.
     #[error("a polynomial with all terms, such as 0x43, or none")]
     Polynomial,
     /// A frame that is not too long.
@@ -89,7 +81,6 @@ pub enum Expected {
     /// The address of an encoder on a bus, or of the only one.
     #[error("0x40 to 0x5F, or 0xFF if only one encoder is connected")]
     AddressOrOnlyOne,
-    /// The address of an encoder on a bus.
     #[error("an address from 0x40 to {last:#04X}")]
     BusAddress {
         /// The greatest.
@@ -112,7 +103,6 @@ pub enum Expected {
     SettingsByte,
     #[error("one to nine ASCII characters")]
     SerialNumber,
-    /// A name.
     #[error("up to {most} ASCII characters")]
     Ascii {
         /// The greatest number.
@@ -123,40 +113,27 @@ pub enum Expected {
     Steps,
     #[error("NUMBER:HEX for the access codes 0 to 3, separated by commas, such as 0:55,2:66")]
     AccessCodes,
-    /// The release of a firmware.
     #[error("a firmware version such as 1.6.0")]
     Release,
     /// The value of an error register.
     #[error("a value of the error register from 0x00 to 0xFF")]
     ErrorRegister,
-    /// Write cycles of a flash.
     #[error("the number of write cycles of its flash so far")]
     WriteCycles,
-    /// Stores into an EEPROM.
     #[error("the number of write cycles of its EEPROM so far")]
     Stores,
-    /// Voltages of Wiegand pulses.
     #[error("AVERAGE,MINIMUM in volts from 0 to 25.5, such as 6.3,5.8")]
     Pulses,
-    /// The number of a cam program.
     #[error("a cam program from 1 to 8, or 0 for none")]
     Program,
-    /// Places for drives of a hub.
     #[error("4 or 8 ports, or omitted for an adapter with one drive")]
     Hub,
-    /// The setting of an address switch.
     #[error("a two-digit switch setting from 0 to 99")]
     SwitchDigits,
-    /// The variant of a drive.
     #[error("a variant from 1 to 13, or its name, such as HDA30A")]
     Variant,
-    /// The places with a drive.
     #[error("0 or 1 for each of {count} ports, separated by commas, such as 1,0")]
-    Places {
-        /// Number of places.
-        count: u8,
-    },
-    /// A layout of SSI frames.
+    Places { count: u8 },
     #[error("a family of SSI encoders with its settings, such as atm60,code=gray")]
     Family,
     /// Error bits of a frame.
@@ -167,7 +144,6 @@ pub enum Expected {
     NoErrorBits,
     #[error("a text")]
     Text,
-    /// A text of a form.
     #[error("a text such as {0:?}")]
     TextSuchAs(&'static str),
     #[error("a number from 0 to 255 (0x00 to 0xFF)")]
@@ -178,22 +154,16 @@ pub enum Expected {
     /// Bytes in lines.
     #[error("a list of texts with hexadecimal bytes")]
     HexLines,
-    /// A structure of RON.
     #[error("a structure: (name: value, …)")]
     Structure,
-    /// The names of a structure.
     #[error("names before the colons")]
     Names,
-    /// A list of RON.
     #[error("a list: […]")]
     List,
-    /// A map of RON.
     #[error("a map: {{number: value, …}}")]
     Map,
-    /// Voltages of Wiegand pulses.
     #[error("a list of four numbers from 0 to 255, in tenths of a volt")]
     FourTenths,
-    /// Two banks.
     #[error("the first and the last bank, such as (0x24, 0x43)")]
     Banks,
     /// Revolutions, which may be a fraction.
@@ -206,10 +176,8 @@ pub enum Expected {
     Frame,
     #[error("even@CLOCK or odd@CLOCK")]
     ParityBit,
-    /// The repetition of a frame.
     #[error("BITS+ZEROS, such as 25+1")]
     Repetition,
-    /// Clocks of a frame.
     #[error("clocks, such as 1+26")]
     Clocks,
 }
@@ -230,13 +198,10 @@ pub enum Quantity {
     Bits,
     #[error("a position in steps")]
     Steps,
-    /// Revolutions.
     #[error("a number of turns")]
     Turns,
-    /// A position of an encoder.
     #[error("a position")]
     Position,
-    /// A place of a code disc.
     #[error("a position of the code disc")]
     PlaceOfDisc,
     /// Degrees Celsius.
@@ -251,30 +216,22 @@ pub enum Quantity {
     /// Percent of the nominal torque.
     #[error("a torque in percent of the nominal torque")]
     Torque,
-    /// The version of a protocol.
     #[error("a protocol version")]
     Version,
     #[error("an address")]
     Address,
-    /// A TCP or UDP port.
     #[error("a port")]
     Port,
-    /// A unit of Modbus.
     #[error("a unit ID")]
     Unit,
-    /// An input register of Modbus.
     #[error("an input register")]
     InputRegister,
-    /// A holding register of Modbus.
     #[error("a holding register")]
     HoldingRegister,
-    /// A number of cycles.
     #[error("a number of cycles")]
     Cycles,
-    /// A number of encoders.
     #[error("a number of encoders")]
     Encoders,
-    /// A position of a rotary switch.
     #[error("a switch position")]
     SwitchPosition,
     #[error("a voltage in volts")]
@@ -298,7 +255,6 @@ impl Expected {
         Expected::Words(Cow::Borrowed(words))
     }
 
-    /// Creates a number of a range.
     pub fn range(quantity: Quantity, low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
         Expected::Range { quantity, low: low.into(), high: high.into() }
     }

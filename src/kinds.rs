@@ -1,4 +1,4 @@
-//! List of every device kind in the program, one line each. No other file names them all.
+//! All kinds of device in the program, one line each. No other file lists them all.
 
 mod kind;
 
@@ -19,7 +19,6 @@ pub const KINDS: &[Kind] = &[
     crate::devices::hiperdrive::KIND,
 ];
 
-/// Returns the program with all device kinds.
 pub fn program() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| {

@@ -1,6 +1,7 @@
-//! encoder-studio: configure position encoders and small drives at a desk.
+//! encoder-studio: configures position encoders and small drives at a desk.
 //!
-//! ARCHITECTURE.md describes the layers: a module uses only its own layer and the ones below, and the core knows no device.
+//! ARCHITECTURE.md describes the layers: a module uses only its own layer and the ones below, and the core knows no
+//! device.
 
 // all device kinds, and all that the program knows about each
 pub mod kinds;

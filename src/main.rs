@@ -1,4 +1,4 @@
-//! The program: arguments → a command, or the window.
+//! The program: arguments lead to a command or to the window.
 
 use std::process::ExitCode;
 

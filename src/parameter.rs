@@ -1,6 +1,6 @@
-//! Parameters of a link and settings of a virtual device: keys with their values. A struct made by `parameters!` declares
-//! each of them in one line, from which it is parsed, checked, printed and offered in a form. The allowed values are a type
-//! of [`Values`].
+//! Parameters of a link and settings of a virtual device as keys with values. The `parameters!` macro creates a struct
+//! with one line per parameter, from which parameters are parsed, validated, printed and offered in a form. The allowed
+//! values are a type that implements [`Values`].
 
 mod values;
 
@@ -11,11 +11,9 @@ pub use values::{ANY, Checked, Decimal, Maybe, Milliseconds, Millivolts, SWITCH,
 /// A value that a parameter does not take.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused {
-    /// The parameter's key.
     pub key: String,
     /// The value as it was written.
     pub value: String,
-    /// The allowed values.
     pub allowed: Expected,
 }
 
@@ -35,9 +33,7 @@ impl Refused {
 /// A parameter that a user can type into a form.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// The parameter's key.
     pub key: &'static str,
-    /// The text that names it.
     pub label: &'static str,
     /// The symbol of the unit; empty if there is none.
     pub unit: &'static str,

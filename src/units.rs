@@ -1,5 +1,5 @@
-//! Quantities: newtypes wherever two integers could be swapped, a range is limited or arithmetic has a meaning. No clock is
-//! read here: a [`Moment`] is passed in by its owner.
+//! Quantities: newtypes wherever two integers could be confused, a range is limited or arithmetic has a meaning. No
+//! clock is read here: the owner of a [`Moment`] passes it in.
 
 use std::fmt;
 use std::ops::{Add, Sub};
@@ -122,7 +122,6 @@ impl fmt::Display for Parity {
 /// The format of a character on a serial line, on which both ends must agree. One start bit, eight data bits, one stop bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CharacterFormat {
-    /// Speed.
     pub baud: Baud,
     /// Parity bit.
     pub parity: Parity,
@@ -150,7 +149,6 @@ pub struct SupplyVoltage {
     /// The least that it works with.
     pub least: u16,
     pub given: u16,
-    /// The highest allowed voltage.
     pub greatest: u16,
 }
 

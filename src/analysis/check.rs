@@ -7,7 +7,6 @@ pub enum Verdict {
     Skipped,
     /// As required.
     Good,
-    /// Works, but needs attention.
     Attention,
     /// It does not work.
     Bad,
@@ -18,7 +17,6 @@ pub enum Verdict {
 pub struct StepResult<S, F> {
     pub step: S,
     pub verdict: Verdict,
-    /// The findings: values and codes.
     pub findings: Vec<F>,
 }
 
@@ -35,9 +33,7 @@ impl<S, F> StepResult<S, F> {
 pub struct Wear {
     /// Write cycles counted; `None` if not known.
     pub seen: Option<u64>,
-    /// From here on the user is warned.
     pub warning: u64,
-    /// Write cycles that the memory endures.
     pub limit: u64,
 }
 

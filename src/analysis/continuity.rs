@@ -26,10 +26,8 @@ pub struct Continuity {
     pub(super) breaks: Vec<usize>,
 }
 
-/// Samples that are missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Missing {
-    /// Number of gaps.
     pub gaps: usize,
     /// The longest time from one sample to the next, in seconds.
     pub longest_s: f64,

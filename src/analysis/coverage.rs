@@ -64,7 +64,6 @@ impl Angle {
 
 /// The path of an angle: its total length, and its reversals.
 struct AnglePath {
-    /// Highest and lowest of all.
     top: Angle,
     bottom: Angle,
     /// Highest and lowest since it turned back last.
@@ -261,7 +260,6 @@ mod tests {
         Coverage::of(&sine, &cosine, &ELLIPSE).unwrap()
     }
 
-    /// From, to in periods; samples; octants.
     #[test]
     fn periods_are_counted_with_their_fraction_in_both_directions() {
         let cases = [

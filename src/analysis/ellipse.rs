@@ -10,7 +10,6 @@ use nalgebra::{SMatrix, SVector};
 
 use super::moments::Moments;
 
-/// Parameters of the ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse {
     /// R: amplitude of the cosine channel, peak, in the unit of the samples (volts).
@@ -40,7 +39,6 @@ pub enum FitError {
     /// Both channels are constant.
     #[error("all points are equal")]
     Constant,
-    /// One channel is constant.
     #[error("the {} channel does not change", .0.word())]
     Dead(Channel),
     /// Both channels do the same, or their opposite.
@@ -86,15 +84,10 @@ impl Channel {
 /// Coefficients of A·x² + B·y² + C·xy + D·x + E·y = 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conic {
-    /// Of x².
     pub a: f64,
-    /// Of y².
     pub b: f64,
-    /// Of x·y.
     pub c: f64,
-    /// Of x.
     pub d: f64,
-    /// Of y.
     pub e: f64,
 }
 

@@ -10,9 +10,7 @@ pub const BANDWIDTH_HZ: f64 = 150_000.0;
 /// A filter of first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputFilter {
-    /// The resistor across the capacitor, in ohms.
     pub resistance_ohm: f64,
-    /// The capacitor, in farads.
     pub capacitance_f: f64,
 }
 

@@ -32,9 +32,7 @@ pub struct Density {
 /// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts; (∞, 0) if there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lengths {
-    /// The shortest.
     pub least_v: f64,
-    /// The longest.
     pub most_v: f64,
 }
 
@@ -127,12 +125,10 @@ impl Density {
         (self.outside, self.bad) = (0, 0);
     }
 
-    /// Returns the square of the cells.
     pub fn square(&self) -> Square {
         self.square
     }
 
-    /// Returns the number of cells of a side.
     pub fn side(&self) -> usize {
         self.side
     }
@@ -147,7 +143,6 @@ impl Density {
         self.counts.iter().copied().max().unwrap_or(0)
     }
 
-    /// Returns the samples outside the square.
     pub fn outside(&self) -> u64 {
         self.outside
     }

@@ -121,7 +121,6 @@ impl Moments {
         [self.least.0, self.least.1, self.most.0, self.most.1].into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 
-    /// Returns the same samples seen from their mean.
     pub(super) fn moved_to_mean(&self) -> Moments {
         let count = self.sum(0, 0).max(1.0);
         self.moved_by(self.sum(1, 0) / count, self.sum(0, 1) / count)
@@ -196,7 +195,6 @@ impl Moments {
 }
 
 impl Extremes {
-    /// Ignores NaN values, which show in the sums.
     fn of(sine: &[f64], cosine: &[f64]) -> Self {
         let ((least_x, most_x), (least_y, most_y)) = (extremes(cosine), extremes(sine));
         Extremes { least: (least_x, least_y), most: (most_x, most_y) }

@@ -13,9 +13,7 @@ use super::moments::{Moments, Scale};
 pub struct Outliers {
     /// The samples, by index from 0, in order; no two ranges touch.
     pub stretches: Vec<Range<usize>>,
-    /// Number of samples.
     pub count: usize,
-    /// The longest stretch.
     pub longest: usize,
     /// Largest distance from the ellipse, in volts.
     pub farthest_v: f64,
@@ -47,7 +45,6 @@ const DEAD: f64 = 0.05;
 pub(super) enum OutlierSearch {
     /// None, or too many to count as outliers.
     Nothing,
-    /// These, and the ellipse through the others.
     Outliers(Ellipse, Outliers),
 }
 

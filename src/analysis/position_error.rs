@@ -66,7 +66,6 @@ const STEADY: f64 = 3.0;
 type Normal = SMatrix<f64, TERMS, TERMS>;
 type Terms = SVector<f64, TERMS>;
 
-/// Capture on its ellipse.
 #[derive(Clone, Copy, Debug)]
 pub struct Samples<'a> {
     /// Times in seconds; if they do not grow, they are ignored and the samples count as evenly spaced.

@@ -1,6 +1,6 @@
-//! Whether a sine/cosine signal is good enough: the length of the amplitude vector √(sin² + cos²), offsets, gain ratio and
-//! phase error against their limits. SICK 8010701 for the amplitudes; section 2 of the project's sine/cosine reference,
-//! whose other limits are assumptions (U) and can be changed here.
+//! Signal quality of sine and cosine: the length of the amplitude vector √(sin² + cos²), the offsets, the gain ratio
+//! and the phase error, each compared with its limits. Amplitude limits are from SICK 8010701; all other limits are
+//! assumptions (U) from section 2 of the project's sine/cosine reference and can be changed here.
 
 use super::ellipse::Ellipse;
 use crate::units::SupplyVoltage;
@@ -8,7 +8,6 @@ use crate::units::SupplyVoltage;
 /// A verdict, from good to bad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// Within the limits.
     Ok,
     /// Outside; the position is still right.
     Warn,
@@ -38,7 +37,6 @@ pub struct Limits {
 /// Family of encoders with known limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Family {
-    /// HIPERFACE motor feedback.
     #[default]
     Hiperface,
     /// AFS60 and AFM60 with sine and cosine.
@@ -51,7 +49,6 @@ impl Family {
     /// Every family.
     pub const ALL: [Family; 3] = [Family::Hiperface, Family::AfsAfm60, Family::Ttk70];
 
-    /// Returns the manufacturer's spelling.
     pub const fn name(self) -> &'static str {
         match self {
             Family::Hiperface => "HIPERFACE",

@@ -1,6 +1,6 @@
-//! A capture compared with a reference encoder: non-linearity over the revolution, as measured and after the correction.
-//! The measured angle is the one that a drive interpolates from sine and cosine (section 6 of the project's sine/cosine
-//! reference).
+//! Comparison of a capture with a reference encoder: the non-linearity over one revolution, as measured and after
+//! correction. The measured angle is the one that a drive interpolates from sine and cosine (section 6 of the project's
+//! sine/cosine reference).
 
 use std::f64::consts::TAU;
 use std::ops::Range;

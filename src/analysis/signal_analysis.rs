@@ -1,6 +1,6 @@
-//! All results about a capture of sine and cosine: the ellipse (Heydemann 1981), how well it fits, how much of the period
-//! it covers, and the resulting position error. Sections 2, 6 and 7 of the project's sine/cosine reference. Single outliers
-//! are left out of all of it, and reported.
+//! Complete analysis of a sine/cosine capture: the ellipse (Heydemann 1981), the quality of its fit, its coverage of
+//! the period, and the resulting position error. See sections 2, 6 and 7 of the project's sine/cosine reference. Single
+//! outliers are excluded throughout and reported.
 
 use super::continuity::Continuity;
 use super::coverage::Coverage;
@@ -21,9 +21,7 @@ const LARGEST_STEP_DEG: f64 = 90.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
     pub ellipse: Ellipse,
-    /// How the samples cover the ellipse.
     pub coverage: Coverage,
-    /// Continuity of the times.
     pub continuity: Continuity,
     /// Median angle from one sample to the next, in degrees, 0 to 180.
     pub step_deg: f64,
@@ -45,10 +43,7 @@ pub enum AnalysisError {
     Fit(#[from] FitError),
     /// The capture covers too little of a period for a reliable ellipse.
     #[error("samples in {octants} of 8 octants where {least} are needed", least = LEAST_OCTANTS)]
-    Coverage {
-        /// Octants that hold samples.
-        octants: u32,
-    },
+    Coverage { octants: u32 },
     /// All samples are around one point, away from zero: the signal is present, and the shaft stands still.
     #[error("all samples lie around one point")]
     AtRest,

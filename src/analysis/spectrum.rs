@@ -1,11 +1,10 @@
-//! The amplitude spectrum of a signal by the fast Fourier transform of the crate realfft, in a Hann window: interference,
-//! harmonics and noise of a sine/cosine channel. The window's gain is compensated, so that a sine reads its peak amplitude.
+//! Amplitude spectrum of a sine/cosine channel, computed with realfft and a Hann window; it shows interference,
+//! harmonics and noise. The gain of the window is compensated, so a sine appears with its peak amplitude.
 
 use std::f64::consts::TAU;
 
 use realfft::RealFftPlanner;
 
-/// Amplitudes over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     spacing_hz: f64,

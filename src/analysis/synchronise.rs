@@ -1,9 +1,9 @@
-//! The absolute position of the parameter channel and the angle of the analogue signals, combined to one fine position.
-//! SICK 8010701, forming the absolute position; section 4 of the project's sine/cosine reference.
+//! Combines the absolute position of the parameter channel with the angle of the analogue signals into one fine
+//! position. See SICK 8010701, forming the absolute position, and section 4 of the project's sine/cosine reference.
 //!
-//! Both contain the last 1/32 of a period; the coarse value is corrected by one period towards the smaller difference,
-//! which tolerates half a period of drift and delay. The manual does not define the offset between their zeros (U): it can
-//! be set or [measured](measure_offset).
+//! Both positions resolve 1/32 of a period. The coarse value is corrected by at most one period towards the smaller
+//! difference, which tolerates half a period of drift and delay. The manual does not define the offset between the two
+//! zero points (U): set it or [measure](measure_offset) it.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,6 @@ use super::quality::Verdict;
 /// Steps of the absolute position in one period.
 pub const STEPS: u64 = 32;
 
-/// Combines two positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchroniser {
     /// Periods in the whole range: periods per revolution times revolutions, at least 1.
@@ -24,16 +23,13 @@ pub struct Synchroniser {
     pub half_step: bool,
 }
 
-/// A fine position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchronised {
     /// Whole periods, below the range.
     pub period: u64,
-    /// Position inside the period.
     pub phase: Phase,
     /// Periods by which the absolute position was corrected: −1, 0 or 1.
     pub correction: i8,
-    /// Absolute minus fine position, in periods, within ±½.
     pub residual_periods: f64,
     /// Warns beyond 8/32 (the encoder's own drift is up to 4/32), a fault beyond 14/32 (U).
     pub verdict: Verdict,
@@ -90,7 +86,6 @@ impl Synchroniser {
 }
 
 impl Synchronised {
-    /// Returns the fine position in periods.
     pub fn periods(&self) -> f64 {
         self.period as f64 + self.phase.periods()
     }

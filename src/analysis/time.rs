@@ -1,4 +1,4 @@
-//! The time of a sample: whole nanoseconds, so that differences stay exact after days. Independent of clocks.
+//! Time stamps of samples in whole nanoseconds, so that differences stay exact after days. Independent of any clock.
 
 use crate::units::Moment;
 

@@ -1,7 +1,6 @@
-//! Unwrapped positions: a rotary encoder counts from 0 to its range and starts again, which in a plot would be a spike of
-//! thousands of turns. Only for display and speed; values written to a device never come from here.
+//! Unwrapping of positions: a rotary encoder wraps from the end of its range to 0, which a plot would show as a spike
+//! of thousands of turns. Used for display and speed only, never for values written to a device.
 
-/// Unwraps position words.
 #[derive(Clone, Copy, Debug)]
 pub struct Unwrap {
     range: Option<i64>,
@@ -10,7 +9,6 @@ pub struct Unwrap {
     gap: bool,
 }
 
-/// Unwrapped position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unwrapped {
     /// Steps; beyond the range after a wrap, negative below zero.

@@ -1,5 +1,5 @@
-//! The four wires of a sine/cosine signal against ground, as named by SICK 8010701: SIN, REFSIN, COS, REFCOS. The samples
-//! of an analogue source, without their times.
+//! The four wires of a sine/cosine signal against ground, named as in SICK 8010701: SIN, REFSIN, COS and REFCOS.
+//! Contains the samples of an analogue source without their times.
 
 /// Voltages of the four wires, all columns equally long.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,7 +42,6 @@ impl Wire {
 }
 
 impl Wires {
-    /// Returns the number of samples.
     pub fn len(&self) -> usize {
         self.sin_v.len()
     }

@@ -1,4 +1,4 @@
-//! The actions of the studio: from the user, a view or a finished task.
+//! Actions of the studio, triggered by the user, a view or a finished task.
 
 use std::any::Any;
 use std::path::PathBuf;
@@ -21,14 +21,10 @@ use crate::profile::{Document, PlanId, ProfileError};
 use crate::store::{DeviceKey, FileError};
 use crate::worker::{OpenError, Worker};
 
-/// Something to be done.
 pub enum Action {
     ShowTab(Tab),
-    /// Dark or light.
     SetTheme(ColorScheme),
-    /// Another language.
     SetLanguage(Language),
-    /// The arrangement of the panels has changed.
     KeepLayout(String),
     /// Open the lower panel, or close it to one line.
     OpenLowerPanel(bool),
@@ -36,11 +32,9 @@ pub enum Action {
     ShowValuesAlone(bool),
     /// The window has another size, in points.
     KeepSize(u32, u32),
-    /// Show another session.
     Select(SessionId),
     /// End a session; asks first if it has edits.
     CloseSession(SessionId),
-    /// End everything that runs, in all sessions.
     Stop,
     /// Stop all drives of all sessions, and nothing else.
     StopMotion,
@@ -52,13 +46,9 @@ pub enum Action {
     Close,
     /// The system ends the program: close the window without questions.
     Quit,
-    /// The answer to the open question: continue.
     Confirm,
-    /// Dismiss the notice displayed in the window.
     Dismiss,
-    /// The connection dialog.
     Connect(connect::ConnectAction),
-    /// Connect the virtual device of the open tab.
     OpenVirtual,
     /// Save a profile: to the open file, else to one that is asked for.
     Save(SessionId),
@@ -68,7 +58,6 @@ pub enum Action {
     AskOpen,
     /// Open a capture (`.csv`), or else a profile.
     Open(PathBuf),
-    /// The file dialog was cancelled.
     FileNotChosen,
     /// The system has no file dialog: the path must be typed.
     TypePath(FileQuestion),
@@ -76,23 +65,19 @@ pub enum Action {
     Typed(FileQuestion, PathBuf),
     /// A file was chosen, which may be replaced if it exists.
     Chosen(FileQuestion, PathBuf),
-    /// Close the comparison on display.
     CloseComparison,
     Recorder(RecorderOwner, recorder::RecorderAction),
     /// Clear a recording; asks first if it is long.
     AskForget(RecorderOwner),
     /// Ask where to write a table of a recording: of the visible part, or of everything.
     AskTable {
-        /// Recorder to export.
         owner: RecorderOwner,
         /// Only the visible part.
         visible: bool,
     },
-    /// Ask where to save a picture.
     AskPicture(Picture),
     /// A picture was requested of something that is not visible as a whole.
     PictureCut,
-    /// The review of a write, about one session.
     Review(SessionId, ReviewAction),
     /// Something that every kind of device can be asked for, about one session, whichever is shown by then.
     Command(SessionId, DeviceCommand),
@@ -102,7 +87,6 @@ pub enum Action {
     New(Tab),
     /// An action of a tab that needs no device; see [`Action::tool`].
     Tool(Tab, Payload),
-    /// A task has ended with a result.
     Done(Done),
     /// The system has no thread left for a task.
     NoThread(String),
@@ -120,12 +104,10 @@ pub enum ReviewAction {
     Close,
 }
 
-/// The results of tasks.
 pub enum Done {
     /// The target of a save was checked for an existing file.
     Looked {
         question: FileQuestion,
-        /// The place.
         path: PathBuf,
         exists: bool,
     },
@@ -135,11 +117,8 @@ pub enum Done {
     Finder(Tab, Payload),
     /// A task whose result belongs to no particular session, and the handler of the result.
     Shared(SharedResult),
-    /// The serial ports of this machine.
     Ports(Result<Vec<connect::Offer>, LinkError>),
-    /// A profile was read.
     Read {
-        /// The file with its content.
         file: ProfileFile,
         result: Result<Box<Document>, ReadError>,
         /// Opens the profile, with the tables that its kind needs; `None` for a kind that the window does not support.
@@ -151,10 +130,8 @@ pub enum Done {
         path: PathBuf,
         result: Result<Box<Document>, ReadError>,
     },
-    /// A profile was written.
     Written {
         saving: Box<Saving>,
-        /// The file, with its intended content.
         file: ProfileFile,
         result: Result<(), FileError>,
     },
@@ -167,23 +144,18 @@ pub enum Done {
     ReportSaved(PathBuf, Result<(), FileError>),
     /// A wait before closing has run out of time.
     Waited(Waited),
-    /// A session that was let go has ended.
     Left,
     /// The settings were read, later than the start could wait for them.
     SettingsRead(SettingsRead),
-    /// The settings were kept.
     SettingsKept(Result<SettingsWritten, FileError>),
     /// The settings were read while drives are under control; `None` if there are none to read.
     SettingsSeen(Result<Option<Box<Settings>>, FileError>),
-    /// About the draft of a session.
     Draft(SessionId, DraftDone),
-    /// Backups and writes of a device were listed.
     Listed(SessionId, DeviceKey, Box<DeviceHistory>),
     /// A backup was read, or not.
     Backup {
         session: SessionId,
         of: DeviceKey,
-        /// The file.
         path: PathBuf,
         result: Result<Box<Document>, ReadError>,
     },
@@ -195,7 +167,6 @@ pub enum Done {
 
 /// The result of opening a link for a session.
 pub struct Attempt {
-    /// The session to connect.
     pub session: SessionId,
     /// Number of the attempt within its session: only the latest counts.
     pub attempt: u32,
@@ -210,9 +181,7 @@ pub struct Opened<D: Kind> {
     pub(crate) aside: D::SessionHandle,
     pub(super) url: crate::link::LinkUrl,
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
-    /// The device lives in this process.
     pub(super) is_virtual: bool,
-    /// Start of its clock.
     pub began: jiff::Zoned,
     /// Dropping it lets the next attempt use the wire.
     pub(super) turn: crossbeam_channel::Sender<()>,
@@ -264,13 +233,11 @@ pub(crate) type SharedResult = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice
 #[derive(Debug)]
 pub enum ReadError {
     File(FileError),
-    /// Invalid content.
     Profile(ProfileError),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecorderOwner {
-    /// A device's.
     Device(SessionId),
     /// A tab that needs no device.
     Tool(Tab),

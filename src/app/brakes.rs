@@ -1,5 +1,6 @@
-//! The drives of all sessions, for the end of the program: a closed window, a signal, a lost display. They stop, are
-//! switched off and their connections are closed, whether the window still draws or not.
+//! Stops the drives of all sessions when the program ends: when the window is closed, on a signal, or when the display
+//! is lost. Drives are stopped and switched off and their connections are closed, whether or not the window still
+//! draws.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -36,7 +37,6 @@ struct Shared {
     sessions: Mutex<Vec<Session>>,
     /// Set once nothing is allowed to move.
     released: AtomicBool,
-    /// The window closes.
     closing: AtomicBool,
 }
 
@@ -47,7 +47,6 @@ impl Brakes {
     /// Time that drives have to stop and connections to close before the program ends regardless.
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
-    /// Adds the drives of a session that begins.
     pub(crate) fn add(&self, brake: Box<dyn Brake>, stopper: Stopper) {
         let mut sessions = self.sessions();
         sessions.retain(|(own, _)| !own.is_left_over());
@@ -83,7 +82,6 @@ impl Brakes {
         wait_for(patience, || self.is_done())
     }
 
-    /// Notes that the window has begun to close.
     pub(super) fn note_closing(&self) {
         self.0.closing.store(true, Ordering::SeqCst);
     }

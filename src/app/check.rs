@@ -1,4 +1,4 @@
-//! A device check as text, for every kind of device.
+//! Device check results as text, for every kind of device.
 
 use super::Text;
 use crate::analysis::check::{StepResult, Verdict};

@@ -1,4 +1,5 @@
-//! Closing a session or the window: asks once about losses and interruptions, and waits for the rest.
+//! Closing a session or the window: asks once whether losses and interruptions are acceptable, then waits for
+//! everything else.
 
 use super::action::{Action, Done, Waited};
 use super::brakes::Brakes;

@@ -1,4 +1,4 @@
-//! Requests to one device: actions of its kind, or commands that every device has.
+//! Dispatch of requests to one device: actions of its kind, and commands that every device supports.
 
 use std::time::Duration;
 

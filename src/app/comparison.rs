@@ -1,5 +1,5 @@
-//! A device or an open profile compared with a profile on disk. Nothing is read from the device for it: what was read last
-//! counts.
+//! Comparison of a device or an open profile with a profile on disk. The comparison uses the last reading and does not
+//! access the device.
 
 use std::path::{Path, PathBuf};
 
@@ -28,7 +28,6 @@ impl ProfileComparison {
         &self.path
     }
 
-    /// Returns the differences.
     pub fn comparison(&self) -> &Comparison {
         &self.comparison
     }
@@ -40,7 +39,6 @@ impl Studio {
         self.comparison.as_ref().filter(|shown| self.device(shown.session).is_some())
     }
 
-    /// Closes the comparison. Returns whether one was open.
     pub(super) fn close_comparison(&mut self) -> bool {
         self.comparison.take().is_some()
     }

@@ -1,5 +1,5 @@
-//! A profile that others have changed in its file since it was opened: the differences, entry by entry, and their
-//! resolution.
+//! Resolution of conflicts when a profile has been changed on disk since it was opened: the differences, entry by
+//! entry.
 
 use super::Kinds;
 use super::action::ReadError;
@@ -14,20 +14,16 @@ use crate::profile::{Change, Changed, Document, ProfileError, divergence};
 #[derive(Debug)]
 pub struct Diverged {
     saving: Saving,
-    /// The present content of the file.
     theirs: Result<Box<Document>, ReadError>,
-    /// Text in the file.
     text: String,
     rows: Vec<Row>,
     /// Why the last choice is not possible.
     problem: Option<Text>,
 }
 
-/// An entry that differs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     change: Change,
-    /// Which side changed it.
     pub changed: Changed,
     /// The selected version; `None` until one is selected.
     pub take: Option<Side>,
@@ -36,9 +32,7 @@ pub struct Row {
 /// One of both versions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The present content of the file.
     Theirs,
-    /// The edited profile.
     Mine,
 }
 
@@ -47,9 +41,7 @@ pub enum Side {
 pub enum Resolve {
     /// Takes the file and discards the edits.
     Reload,
-    /// Takes the edited profile, whatever the file contains.
     KeepMine,
-    /// Takes an entry from one version.
     Take(usize, Side),
     /// Each entry from the version that was chosen.
     Merge,
@@ -99,17 +91,14 @@ impl Diverged {
         Diverged { saving, theirs: document, text, rows, problem }
     }
 
-    /// Returns the session that the file belongs to.
     pub fn session(&self) -> SessionId {
         self.saving.session
     }
 
-    /// Returns the file.
     pub fn path(&self) -> &std::path::Path {
         &self.saving.path
     }
 
-    /// Returns the differences.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }
@@ -135,7 +124,6 @@ impl Diverged {
         self.theirs.is_ok() && self.rows.iter().all(|row| row.take.is_some())
     }
 
-    /// Returns the versions brought together.
     fn merged(&self, kinds: Kinds) -> Result<Document, Text> {
         let Ok(theirs) = &self.theirs else { return Err(Text::new("diverged.unfit")) };
         let mine = self.rows.iter().filter(|row| row.take == Some(Side::Mine));

@@ -1,4 +1,4 @@
-//! Opening profiles: read as a task, and added to the open devices.
+//! Opening of profiles, which are read as a task and added to the open devices.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,6 @@ use crate::profile::{Body, Document, Formats, ProfileError};
 use crate::store::{Store, read_file};
 
 impl Studio {
-    /// Handles the end of reading a profile.
     pub(super) fn read(
         &mut self,
         file: ProfileFile,

@@ -1,8 +1,8 @@
-//! The settings' data about drives that the drives do not store themselves: their spindles, the unit of their positions,
-//! limits not confirmed since the scaling was changed, and values not saved.
+//! Data about drives that the drives do not store themselves and that the settings keep: spindle pitch, position unit,
+//! limits not confirmed since the scaling changed, and values not saved.
 //!
-//! A drive may be open in another session or another window too. An entry in one of them does not change the others. Limits
-//! marked as unconfirmed in one of them lock all of them, and are confirmed in each.
+//! A drive may also be open in another session or window; entries in one do not change the others. Limits marked as
+//! unconfirmed in one of them lock all of them, and are confirmed in each.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +14,6 @@ pub enum Measure {
     /// Transmitted steps.
     #[default]
     Steps,
-    /// Turns of the shaft.
     Turns,
     /// Its angle, also beyond a turn.
     Degrees,
@@ -26,7 +25,6 @@ impl Measure {
     /// All units.
     pub const ALL: [Measure; 4] = [Measure::Steps, Measure::Turns, Measure::Degrees, Measure::Millimetres];
 
-    /// Returns the text id of its unit.
     pub const fn unit(self) -> &'static str {
         match self {
             Measure::Steps => "unit.steps",
@@ -43,9 +41,7 @@ impl Measure {
 pub struct RememberedDrives {
     /// Nanometres a turn, by the numbers of the drives.
     pub pitches: BTreeMap<u8, u64>,
-    /// Unit of the positions.
     pub measure: Measure,
-    /// Drives with unconfirmed limits.
     unconfirmed: Vec<u8>,
     /// Number of marks of each drive, which distinguishes a mark from an earlier one.
     marks: BTreeMap<u8, u64>,
@@ -66,9 +62,7 @@ pub(crate) struct LocksOnly {
 pub enum SettingsReadState {
     /// Not yet, or too long ago.
     Unread,
-    /// They are being read.
     Reading,
-    /// Yes.
     Read,
 }
 

@@ -1,5 +1,5 @@
-//! Edited values of a device by location, with steps that can be undone. The underlying memory knows the device's values
-//! and which may be edited.
+//! Edited values of a device by location, with undo. The underlying memory supplies the device's values and determines
+//! which may be edited.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Files that the user is asked for.
+//! Questions to the user for a file.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -12,37 +12,25 @@ use super::{DeviceAction, Language, Picture, Text};
 /// File that the user is asked for, by a dialog of the system or an entry for the path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileQuestion {
-    /// Opens a profile.
     Open,
-    /// A profile to restore to this session's device.
     Restore(SessionId),
-    /// A profile to compare with this session.
     Compare(SessionId),
     OpenCapture,
-    /// Opens a recorded trace to connect to.
     Recording,
-    /// Saves under a name, with a suggestion.
     Save {
-        /// Session of the profile.
         session: SessionId,
-        /// A name to begin with.
         suggested: PathBuf,
     },
     /// A file that one kind of device reads or writes.
     OfDevice(DeviceFile),
-    /// Saves a table of samples.
     Table {
-        /// Recorder of the samples.
         owner: RecorderOwner,
         /// Only the visible part.
         visible: bool,
-        /// A name to begin with.
         suggested: PathBuf,
     },
-    /// Saves a picture.
     Picture {
         picture: Picture,
-        /// A name to begin with.
         suggested: PathBuf,
     },
 }
@@ -87,12 +75,10 @@ impl DeviceFile {
         self.session
     }
 
-    /// Returns the title of the dialog.
     pub fn title(&self) -> &Text {
         &self.title
     }
 
-    /// Returns the name of such files.
     pub fn kind(&self) -> &Text {
         &self.kind
     }
@@ -119,7 +105,6 @@ impl fmt::Debug for DeviceFile {
 }
 
 impl FileQuestion {
-    /// Returns the extensions of such files.
     pub fn endings(&self) -> &'static [&'static str] {
         match self {
             FileQuestion::Open | FileQuestion::Restore(_) | FileQuestion::Compare(_) | FileQuestion::Save { .. } => {

@@ -1,4 +1,4 @@
-//! Files chosen by the user, and what is done with them. All disk access runs as a task.
+//! Processing of files chosen by the user. All disk access runs as a task.
 
 use std::path::{Path, PathBuf};
 
@@ -48,7 +48,6 @@ impl Studio {
         });
     }
 
-    /// Handles the choice of a file.
     pub(super) fn chosen(&mut self, question: FileQuestion, path: PathBuf) {
         match question {
             FileQuestion::Open => self.act(Action::Open(path)),

@@ -1,5 +1,5 @@
-//! Values for one kind of device that are given from outside: options at the start, or a test's substitutes. The core
-//! passes them on without knowing them.
+//! Values for one kind of device that are passed in from outside: start options, or substitutes in a test. The core
+//! passes them on without knowing their types.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;
@@ -22,7 +22,6 @@ impl Given {
         self
     }
 
-    /// Returns the value of a type.
     pub fn get<T: Send + Sync + 'static>(&self) -> Option<&T> {
         self.0.get(&TypeId::of::<T>())?.downcast_ref()
     }

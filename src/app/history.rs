@@ -1,4 +1,4 @@
-//! Steps that can be undone and redone, for any kind of state. The owner holds the present state.
+//! Undo and redo for any kind of state. The owner holds the current state.
 
 /// The states before the last steps, and those undone.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -22,9 +22,7 @@ use super::press::{FreshKeys, PressKey};
 pub struct HoldScene {
     /// Whether it may be pressed.
     pub enabled: bool,
-    /// The window has the keyboard.
     pub window: bool,
-    /// The button has the keyboard.
     pub keyboard: bool,
     /// Something moves that this button does not hold, or was stopped just now: a key press then stops motion.
     pub moving: bool,
@@ -35,28 +33,21 @@ pub struct HoldScene {
 pub enum HoldInput {
     /// The window got or lost the keyboard.
     WindowFocus(bool),
-    /// A key was pressed, or repeats.
     Down {
         key: PressKey,
         /// Without modifiers.
         plain: bool,
     },
-    /// A key was released.
     Up(PressKey),
-    /// Another key was pressed.
     OtherKey,
-    /// A modifier was pressed or released.
     Modifiers,
-    /// A button of the pointer was pressed.
     PointerDown {
         /// The first one, on this button.
         on: bool,
     },
     PointerMoved {
-        /// On this button.
         inside: bool,
     },
-    /// A button of the pointer was released.
     PointerUp,
     /// The pointer has left.
     PointerGone,
@@ -68,9 +59,7 @@ pub enum HoldInput {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldEvent {
     Press,
-    /// It continues: returned in every frame.
     Hold,
-    /// It has ended.
     Release,
     /// A key that holds nothing was pressed while something moves: everything must stop.
     Stop,
@@ -88,7 +77,6 @@ pub struct HoldState {
     scene: Option<HoldScene>,
     holder: Option<Holder>,
     keys: FreshKeys,
-    /// A button of the pointer is pressed anywhere.
     pointer: bool,
     was_held: bool,
     /// A hold has begun since the last picture.

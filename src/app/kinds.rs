@@ -1,4 +1,4 @@
-//! The kinds of devices and the tools of a program, as used by the studio. The list is an argument: nothing here names one.
+//! The kinds of devices and the tools of a program. The studio receives the list as an argument and names none of them.
 
 use super::devices::DeviceKind;
 use super::tab::Tab;
@@ -10,7 +10,6 @@ use crate::profile::{Cause, Formats};
 /// The kinds of devices and the tools, in the order of the navigation.
 #[derive(Clone, Copy)]
 pub struct Kinds {
-    /// The formats of profiles that can be read.
     pub formats: Formats,
     devices: &'static [&'static dyn DeviceKind],
     tools: &'static [&'static dyn ToolKind],

@@ -1,5 +1,5 @@
-//! A session on its thread, as seen from the window: the running job, the trace, the samples. Independent of the kind of
-//! device.
+//! A session on its own thread, as seen from the window: the running job, the trace and the samples. Independent of the
+//! kind of device.
 
 use std::time::Duration;
 
@@ -11,17 +11,13 @@ use super::session::Kind;
 use crate::link::TraceEntry;
 use crate::worker::{Device, Event, JobId, Progress, Ring, Stopper, SubmitError, Worker};
 
-/// A job that runs.
 #[derive(Clone, Debug)]
 pub struct Running<W> {
-    /// Its number in this session.
     pub id: JobId,
     pub title: Text,
     pub since: Zoned,
     pub progress: Option<Progress<W>>,
-    /// It changes the device's memory.
     pub writes: bool,
-    /// Its end was requested.
     pub stopping: bool,
 }
 
@@ -30,7 +26,6 @@ pub struct LiveSession<D: Device> {
     worker: Worker<D>,
     trace: Ring<TraceEntry>,
     running: Option<Running<D::JobStep>>,
-    /// The device lives in this process.
     pub is_virtual: bool,
 }
 
@@ -40,7 +35,6 @@ pub struct Progressing {
     pub title: Text,
     /// Steps done, total steps, and the present step.
     pub progress: Option<(u64, u64, Text)>,
-    /// Its end was requested.
     pub stopping: bool,
 }
 
@@ -76,7 +70,6 @@ impl<D: Kind> LiveSession<D> {
         self.worker.polling()
     }
 
-    /// Starts or stops polling.
     pub(crate) fn poll(&mut self, interval: Option<Duration>) {
         self.worker.poll(interval);
     }
@@ -86,7 +79,6 @@ impl<D: Kind> LiveSession<D> {
         self.worker.watch(watched);
     }
 
-    /// Stops the running job and polling.
     pub(crate) fn stop(&mut self) {
         self.worker.stop();
         if let Some(running) = &mut self.running {
@@ -94,7 +86,6 @@ impl<D: Kind> LiveSession<D> {
         }
     }
 
-    /// Stops the running job; polling continues.
     pub(super) fn stop_job(&mut self) {
         let pace = self.polling();
         self.stop();

@@ -1,5 +1,4 @@
-//! The state and logic of the program, without drawing: the state of the window and its actions, the texts, the theme as
-//! data.
+//! State and logic of the program without drawing: window state and actions, texts, and theme data.
 
 pub(crate) mod action;
 mod brakes;

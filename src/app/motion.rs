@@ -1,4 +1,4 @@
-//! Motion in all sessions: stopped and let go here, for every kind of device.
+//! Stop and release of motion in all sessions, for every kind of device.
 
 use super::devices::MotionControl;
 use super::studio::Studio;

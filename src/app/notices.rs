@@ -1,4 +1,4 @@
-//! Messages to the user: the latest is shown in the window until it is read, all of them are in the log.
+//! Notices to the user. The latest one is displayed until it has been read; all of them are in the log.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -11,11 +11,8 @@ use super::Text;
 /// The severity of a notice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Something was done.
     Note,
-    /// A success, verified.
     Good,
-    /// Needs attention.
     Warning,
     /// Something was not done.
     Error,
@@ -33,17 +30,12 @@ impl Severity {
     }
 }
 
-/// One thing that happened.
 #[derive(Clone, Debug)]
 pub struct Notice {
-    /// Time of the notice.
     pub at: Zoned,
     pub severity: Severity,
-    /// What happened, and what to do.
     pub texts: Vec<Text>,
-    /// Name of the session concerned.
     pub about: Option<String>,
-    /// The part concerned: a drive of a hub.
     pub part: Option<Text>,
 }
 
@@ -96,7 +88,6 @@ impl Log {
         self.notices.iter()
     }
 
-    /// Returns the displayed notice.
     pub fn standing(&self) -> Option<&Notice> {
         self.standing.as_ref()
     }
@@ -118,7 +109,6 @@ impl Log {
         self.standing.take_if(|notice| is_it(notice));
     }
 
-    /// Dismisses the notice: the user has read it.
     pub fn dismiss(&mut self) {
         self.standing = None;
     }

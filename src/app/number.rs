@@ -1,5 +1,4 @@
-//! Parsing of entered numbers: with a decimal point or comma, without words, always finite; within a range that an error
-//! names.
+//! Parsing of numbers typed by the user: decimal point or comma, always finite, within a range that the error names.
 
 use super::Text;
 

@@ -1,5 +1,5 @@
-//! Opening links: on a thread, after the present user of the connection has released it, and in the session that already
-//! has it.
+//! Opening of links: on a thread, after the present user of the connection has released it, and in the session that
+//! already owns the connection.
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
@@ -155,7 +155,6 @@ impl Studio {
         *device.opening_mut() = Some(Opening { attempt: Some(attempt), over, is_sole_master });
     }
 
-    /// Handles the end of opening a link.
     pub(super) fn opened(&mut self, done: Attempt) {
         let Attempt { session, attempt, result } = done;
         let own = |device: &&mut Box<AnyDevice>| device.id() == session && device.is_attempt(attempt);

@@ -1,4 +1,4 @@
-//! The command palette: which names of actions fit a typed text, and which of them fits best.
+//! The command palette: matching and ranking of action names against a typed text.
 
 /// Returns how well a name fits a typed text, 0 being best; `None` if one of the typed words is not in it. Case does not
 /// matter, nor does the order of the words.

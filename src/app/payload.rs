@@ -1,5 +1,5 @@
-//! Typed actions of one kind of device on their way through untyped code. [`Payload::open`] is the only place that can
-//! find another kind's.
+//! Typed actions of one kind of device on their way through untyped code. Only [`Payload::open`] can encounter an
+//! action of another kind.
 
 use std::any::Any;
 use std::fmt;
@@ -25,7 +25,6 @@ impl Payload {
         Payload(Box::new(content))
     }
 
-    /// Returns whether it holds this type.
     pub(in crate::app) fn is<T: Any>(&self) -> bool {
         self.0.is::<T>()
     }

@@ -1,10 +1,9 @@
-//! Edits that are not written, as far as they are the same for every kind of device.
+//! Edits that have not been written, as far as they are common to every kind of device.
 
 use super::history::History;
 
 /// Edited values that differ from the device or the file, with undo.
 pub trait PendingEdits {
-    /// Returns the number of edits.
     fn count(&self) -> usize;
 
     fn is_dirty(&self) -> bool;
@@ -32,7 +31,6 @@ pub trait PendingEdits {
 pub(crate) trait Stepped {
     type Values: Clone + PartialEq;
 
-    /// Returns the number of edits.
     fn differences_count(&self) -> usize;
 
     fn is_edited(&self) -> bool;

@@ -1,4 +1,4 @@
-//! A picture of a part of the window, to be saved as PNG.
+//! Export of a part of the window as a PNG image.
 
 use std::fmt;
 use std::path::Path;
@@ -42,7 +42,6 @@ impl Picture {
         write_atomically(path, &self.png().map_err(refused)?)
     }
 
-    /// Returns the file's content.
     fn png(&self) -> Result<Vec<u8>, std::io::Error> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.width, self.height);

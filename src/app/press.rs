@@ -1,15 +1,14 @@
-//! Fresh presses: whether a key press is an act of the user just now, or the repetition of a held key.
+//! Fresh key presses: whether a press is a new action of the user or the repetition of a held key.
 //!
-//! A press alone proves nothing. A toolkit forgets which keys are down when the window loses the keyboard focus, so that
-//! the next repetition of a held key looks like a first press; and the release that it reports at that moment is
-//! artificial. A release received while the window had the focus does prove something, once a later frame has seen the key
-//! still up: a release and a press made at the same time may arrive in two frames, however far apart. Pure: the inputs are
-//! arguments, in order, with the time of their frame in seconds.
+//! A press alone proves nothing. A toolkit forgets which keys are down when the window loses the keyboard focus, so the
+//! next repetition of a held key looks like a first press, and the release reported at that moment is artificial. A
+//! release received while the window has the focus does prove something, once a later frame has still seen the key up:
+//! a release and a press made at the same time may arrive in two frames, however far apart. This module is pure: inputs
+//! are arguments, in order, with the time of their frame in seconds.
 
 /// A key that presses a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PressKey {
-    /// The space bar.
     Space,
     /// Enter, of the numeric pad as well.
     Enter,

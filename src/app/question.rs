@@ -1,4 +1,4 @@
-//! A question that is asked before something is lost, interrupted, or sent to a line with a drive on it.
+//! A question asked before data are lost, a job is interrupted, or bytes are sent to a line with a drive on it.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,6 @@ use super::tab::Tab;
 pub struct Question {
     /// What would be lost or interrupted.
     pub text: Text,
-    /// The word for continuing.
     pub confirm: Text,
     /// The word for not continuing.
     pub decline: Text,

@@ -1,5 +1,5 @@
-//! Names in users' files: settings and changes of a present-day text are read and written unchanged. Tests of drafts are
-//! with their kinds.
+//! Names stored in users' files: settings and edits written with today's names are read and written unchanged. Tests of
+//! drafts are in the folders of their devices.
 
 use std::fmt::Debug;
 

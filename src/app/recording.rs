@@ -6,7 +6,6 @@ use super::recorder::Recorder;
 
 /// The recording of a device while it is read.
 pub trait Recording {
-    /// Returns its lines.
     fn recorder(&self) -> &Recorder;
 
     #[doc(hidden)]

@@ -1,4 +1,4 @@
-//! Exchange of stored values between the settings and the drives; other windows write the same file.
+//! Exchange of stored values between the settings and the drives. Other windows write to the same file.
 
 use std::time::Duration;
 
@@ -41,7 +41,6 @@ impl Studio {
         }
     }
 
-    /// Handles the settings that were read.
     pub(super) fn settings_read(&mut self, found: Option<Settings>) {
         if let Some(found) = self.settings_store.read_done(found, &mut self.settings) {
             for drives in self.devices.iter_mut().filter_map(|device| device.remembers_drives()) {

@@ -1,4 +1,4 @@
-//! The review of a write, for every kind of device: its effect, the consent, its progress, and its result.
+//! The review of a write, for every kind of device: its effect, the consent, the progress and the result.
 
 mod permit;
 
@@ -12,13 +12,11 @@ use crate::profile::{Plan, PlanId};
 use crate::worker::commit::Planned;
 use crate::worker::{Committed, is_uncounted};
 
-/// Review of a write.
 pub struct Review<K: Reviewed> {
     pub title: Text,
     pub state: ReviewState<K>,
     /// Write although the device counts as worn.
     pub force_wear: bool,
-    /// The change was made for another device.
     pub is_for_another: bool,
     /// The change was made for another type of device.
     pub is_for_another_type: bool,
@@ -29,9 +27,7 @@ pub struct Review<K: Reviewed> {
 
 /// The state of a write.
 pub enum ReviewState<K: Reviewed> {
-    /// The device is read and the plan made.
     Planning,
-    /// The plan is shown.
     Ready(Box<K::Prepared>),
     /// The plan is being carried out.
     Writing(Box<K::Prepared>),
@@ -79,7 +75,6 @@ impl<K: Reviewed> Review<K> {
         self.prepared().filter(|_| self.is_writing())
     }
 
-    /// Returns whether the plan is being made.
     pub fn is_planning(&self) -> bool {
         matches!(self.state, ReviewState::Planning)
     }
@@ -139,7 +134,6 @@ pub struct ChangeWords {
 }
 
 impl OpWords {
-    /// Creates an operation that changes one thing.
     pub fn one(item: Text, old: Text, new: Text) -> Self {
         OpWords { item, changes: vec![ChangeWords { part: None, old, new }] }
     }
@@ -156,18 +150,14 @@ pub struct Question {
     pub title: Text,
     /// The answer that allows nothing.
     pub no: Text,
-    /// The answer that allows it.
     pub yes: Text,
-    /// The permit that a positive answer gives.
     pub permit: Permit,
-    /// The answer.
     pub is_on: bool,
 }
 
 /// How a plan is carried out, and what starts it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutionMode {
-    /// From start to end.
     Writes,
     /// Step by step, with the user at the device.
     Leads,
@@ -200,9 +190,7 @@ impl ExecutionMode {
 pub struct ReviewSheet {
     pub title: Text,
     pub stage: Stage,
-    /// The operations.
     pub lines: Vec<OpWords>,
-    /// Warnings that need attention.
     pub warnings: Vec<Text>,
     /// What the plan requires of the user at the device.
     pub needs: Vec<Text>,
@@ -223,17 +211,14 @@ pub struct ReviewSheet {
 /// The stage of a review.
 #[derive(Clone, Debug)]
 pub enum Stage {
-    /// The device is read and the plan made.
     Planning,
     /// There is nothing to do.
     Nothing,
-    /// The plan is shown.
     Ready(PlanId),
     /// The plan is being carried out: number of operations done.
     Writing(usize),
     /// The plan was carried out.
     Done {
-        /// Confirmation that it was read back.
         verified: Text,
         /// The before-image.
         backup: Option<PathBuf>,
@@ -242,18 +227,15 @@ pub enum Stage {
     },
     /// It is not possible, or ended early.
     Failed {
-        /// What happened, and what to do.
         texts: Vec<Text>,
         /// Something was written before it ended.
         begun: bool,
-        /// Number of operations known to be done.
         done: usize,
     },
 }
 
 /// Kind of device with a memory: the texts of its writes.
 pub trait Reviewed: Kind<Review = Review<Self>> {
-    /// The requested change.
     type Change: Clone;
     type Prepared: Planned + Clone;
     type Written;
@@ -261,7 +243,6 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     fn change(change: &Self::Change) -> Text;
     /// Returns the flag of a permission; `None` if it is not in question.
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
-    /// Returns the text of an operation of it.
     fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OpWords;
     /// Returns whether values of the mounting differ and are left alone.
     fn leaves_mounting(_prepared: &Self::Prepared) -> bool {
@@ -278,7 +259,6 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    /// Returns warnings that need attention.
     fn warnings(_prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }

@@ -1,4 +1,4 @@
-//! The services of the studio for sessions: the outside world, threads for blocking tasks, the log, the list of jobs.
+//! Services of the studio for sessions: the environment, threads for blocking tasks, the log, and the job list.
 
 use std::any::{Any, TypeId};
 use std::collections::{HashMap, VecDeque};
@@ -22,17 +22,14 @@ use crate::worker::JobId;
 /// The studio's access to the outside world; a test has its own.
 #[derive(Clone)]
 pub struct Environment {
-    /// Backups, logbook, drafts, settings.
     pub store: Store,
     /// The configuration that kinds of device receive from outside.
     pub given: Given,
     /// The kinds of devices and the tools that there are.
     pub kinds: Kinds,
-    /// Lists the serial ports.
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// The folders that relative paths start from.
     pub folders: Folders,
-    /// The time of day.
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
     /// Maximum waiting times of closing.
     pub patience: GracePeriods,
@@ -57,11 +54,8 @@ impl Environment {
 pub enum JobEnd {
     /// It is still running.
     Running,
-    /// Successfully.
     Done,
-    /// It failed: why.
     Failed(Text),
-    /// The user ended it.
     Cancelled,
 }
 
@@ -69,7 +63,6 @@ pub enum JobEnd {
 pub struct JobRecord {
     pub since: Zoned,
     pub until: Option<Zoned>,
-    /// Name of the device concerned.
     pub about: String,
     pub title: Text,
     pub end: JobEnd,
@@ -78,22 +71,16 @@ pub struct JobRecord {
 
 /// The services that sessions share.
 pub struct Services {
-    /// The world outside.
     pub(crate) world: Environment,
-    /// Threads.
     pub(crate) tasks: Tasks,
     pub log: Log,
     /// Jobs, the newest last.
     jobs: VecDeque<JobRecord>,
-    /// A file that the user is asked for.
     pub(crate) file_question: Option<FileQuestion>,
-    /// The drives of all sessions.
     pub(crate) brakes: Brakes,
     /// Sessions that were let go and have not ended.
     pub(super) closing_sessions: Vec<ClosingSession>,
-    /// Profiles that are being read.
     pub(super) opening_files: Vec<std::path::PathBuf>,
-    /// Number of drafts being written to disk.
     pub(super) drafts_on_their_way: usize,
     /// Data shared by the sessions of one kind of device.
     shared: HashMap<TypeId, Box<dyn Any>>,
@@ -130,7 +117,6 @@ impl Services {
         }
     }
 
-    /// Returns the time of day.
     pub(crate) fn now(&self) -> Zoned {
         (self.world.now)()
     }

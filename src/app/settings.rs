@@ -1,5 +1,5 @@
-//! The settings that are stored between runs: appearance, language, links, arrangement of the panels. If they cannot be
-//! read, the defaults apply. File access is elsewhere.
+//! Settings stored between runs: appearance, language, links and panel layout. Defaults apply if they cannot be read.
+//! This module does not access files.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -12,23 +12,17 @@ use super::drives::{LocksOnly, RememberedDrives};
 use super::kinds::Kinds;
 use super::tab::Tab;
 
-/// Dark or light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ColorScheme {
-    /// Light text on dark surfaces.
     #[default]
     Dark,
-    /// Dark text on light surfaces.
     Light,
 }
 
-/// Everything that is remembered.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Dark or light.
     pub theme: ColorScheme,
-    /// Language of the window.
     pub language: Language,
     /// Links used, the latest first, by the tab of the device; never with access codes, which are not part of a link.
     links: Links,
@@ -149,7 +143,6 @@ impl Settings {
         }
     }
 
-    /// Takes over the remembered drives.
     pub(super) fn take_drives(&mut self, from: &Settings) {
         self.drives = from.drives.clone();
     }
@@ -163,7 +156,6 @@ impl Settings {
         self.drives.get(device).cloned().unwrap_or_default()
     }
 
-    /// Stores data of the drives behind a device.
     pub(crate) fn remember_drives(&mut self, device: String, what: RememberedDrives) {
         self.drives.insert(device, what);
     }
@@ -181,7 +173,6 @@ impl Settings {
         self.links.settle(kinds.first_tab());
     }
 
-    /// Notes that a link was used.
     pub fn use_link(&mut self, tab: Tab, link: &str) {
         self.links.change(tab, |links| {
             links.retain(|known| known != link);

@@ -1,8 +1,8 @@
-//! Storing the settings: written on a thread when they have changed, one write at a time.
+//! Storage of the settings: changes are written on a thread, one write at a time.
 //!
-//! Other windows write the same file. A write merges the present content of the file with the changes made here since the
-//! last read or write, and no window writes in between. Changes by others enter this window only if they lock drives, or
-//! concern devices that are not open.
+//! Other windows write to the same file. A write merges the present content of the file with the changes made in this
+//! window since the last read or write, under a lock. Changes by others are adopted only if they lock drives or concern
+//! devices that are not open.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,6 @@ pub(crate) struct SettingsStore {
     known: Settings,
     /// Settings that could not be written.
     failed: Option<Settings>,
-    /// Settings that are being written.
     writing: Option<Settings>,
     /// The file has been read, or put aside: nothing is written over it before that.
     may_write: bool,
@@ -56,7 +55,6 @@ pub enum SettingsRead {
     /// The file is broken: its readable part, and the copy that was made.
     Broken {
         settings: Box<Settings>,
-        /// The file.
         path: PathBuf,
         /// Path of the copy that was set aside, or why there is none.
         aside: Result<PathBuf, String>,
@@ -67,7 +65,6 @@ pub enum SettingsRead {
 
 #[derive(Debug)]
 pub struct SettingsWritten {
-    /// The present content of the file.
     settings: Box<Settings>,
     /// It was broken, and this copy was made of it.
     aside: Option<(PathBuf, PathBuf)>,

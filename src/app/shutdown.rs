@@ -1,4 +1,4 @@
-//! Released sessions: their end is still reported, and neither the window nor the connection is free before.
+//! Released sessions whose end is still to be reported. The window and the connection are not free before.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -18,7 +18,6 @@ use crate::worker::{Ending, JobId, Worker};
 /// Maximum waiting times of closing, and of opening while a connection is still held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GracePeriods {
-    /// For drives: they stop and are released.
     pub drives: Duration,
     pub disk: Duration,
     /// For a job that writes nothing.
@@ -40,12 +39,9 @@ impl Default for GracePeriods {
 
 /// Session whose thread was released.
 pub(crate) struct ClosingSessionInfo {
-    /// Its number.
     pub(crate) session: SessionId,
-    /// Its name.
     pub(crate) about: String,
     pub(crate) url: LinkUrl,
-    /// The write that runs there.
     pub(crate) write: Option<JobId>,
 }
 
@@ -127,7 +123,6 @@ impl Services {
         self.closing_sessions.push(ClosingSession { info, ending });
     }
 
-    /// Takes the events of sessions that are ending.
     pub(super) fn poll_closing_sessions(&mut self) {
         let mut endings = Vec::new();
         self.closing_sessions.retain_mut(|closing| {

@@ -1,4 +1,4 @@
-//! The capability used by Signals: a device that provides sine and cosine in addition to its absolute position.
+//! Capability used by Signals: a device that provides sine and cosine in addition to its absolute position.
 
 use super::action::Action;
 use super::studio::SessionId;
@@ -9,7 +9,6 @@ use super::texts::Text;
 pub struct SineCosineReading {
     /// The absolute position, in steps of 1/32 period.
     pub position: u32,
-    /// The position can be used.
     pub valid: bool,
     /// Sine and cosine in volts, if the device provides them.
     pub signals: Option<SineCosineVolts>,
@@ -27,7 +26,6 @@ pub struct SineCosineVolts {
 pub struct SineCosineRange {
     /// Signal periods per revolution.
     pub periods: u32,
-    /// Revolutions.
     pub turns: u32,
 }
 
@@ -43,12 +41,10 @@ pub struct SineCosineOrigin {
 
 /// Device whose sine and cosine can be read at rest.
 pub trait SineCosineSource {
-    /// Returns whether it can be read now.
     fn is_ready(&self) -> bool;
 
     fn read_action(&self) -> Action;
 
-    /// Returns the identity of the device.
     fn origin(&self) -> SineCosineOrigin;
 
     /// Takes the requested reading, or why there is none.

@@ -1,6 +1,6 @@
-//! The meaning of a press that closely follows a stop: a user who stops a machine presses twice, holds the key, or releases
-//! the button after the machine has stopped. Such presses apply to nothing else that runs. They still stop motion, as
-//! something may have started meanwhile. Pure: times are those of the frames, in seconds.
+//! Presses that closely follow a stop. A user who stops a machine presses twice, holds the key, or releases the button
+//! after the machine has stopped; such presses must not affect anything else. They still stop motion, which may have
+//! started in the meantime. This module is pure: times are those of the frames, in seconds.
 
 /// Time after a stop, in seconds, in which another press has the same meaning.
 const FRIGHT: f64 = 0.5;
@@ -27,7 +27,6 @@ impl StopPresses {
         self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
     }
 
-    /// Handles a pointer press on a stop button.
     pub fn goes_down(&mut self, now: f64) {
         self.pressed = Some(now);
     }

@@ -1,4 +1,4 @@
-//! The complete state of the window, and its actions. It needs no window: a test sends actions and reads the state.
+//! Complete state of the window and its actions. It does not require a window: tests send actions and read the state.
 
 use std::path::{Path, PathBuf};
 
@@ -25,15 +25,12 @@ pub struct SessionId(pub(crate) u32);
 
 /// Complete state of the window.
 pub struct Studio {
-    /// The settings that are kept between starts.
     pub settings: Settings,
-    /// The open connection dialog.
     pub connect: Option<Connect>,
     /// A question that must be answered.
     pub question: Option<Question>,
     /// A profile that others have changed in its file since it was opened.
     pub diverged: Option<Diverged>,
-    /// The log, the jobs.
     pub services: Services,
     pub(super) tools: Vec<(Tab, Box<dyn Tool>)>,
     pub(crate) devices: Vec<Box<AnyDevice>>,
@@ -264,7 +261,6 @@ impl Studio {
         kinds.into_iter().find_map(|kind| self.device(self.shown.of(kind.tab())?)?.sine_cosine())
     }
 
-    /// Shows a device in its tab.
     pub(crate) fn show(&mut self, tab: Tab, id: SessionId) {
         self.settings.tab = tab;
         self.shown.set(tab, id);

@@ -1,4 +1,5 @@
-//! Blocking tasks: files, opening links, system dialogs. Each runs on its own thread and returns as an action.
+//! Blocking tasks such as file access, opening links and system dialogs. Each runs on its own thread and returns its
+//! result as an action.
 
 use std::sync::Arc;
 use std::thread;
@@ -51,21 +52,18 @@ impl Tasks {
         self.wake.clone()
     }
 
-    /// Returns the next thing that is done.
     pub(crate) fn next(&self) -> Option<Action> {
         self.receiver.try_recv().ok()
     }
 }
 
 impl Mailbox {
-    /// Hands an action over and wakes the window.
     pub fn send(&self, action: Action) {
         // The studio has ended: the action is not needed.
         let _ = self.sender.send(action);
         self.wake();
     }
 
-    /// Wakes the window.
     pub(super) fn wake(&self) {
         (self.wake)();
     }

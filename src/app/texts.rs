@@ -1,5 +1,5 @@
-//! Texts in English and German from catalogues (`assets/texts`): a common one, and one for each device, the adapter and
-//! Signals. A text knows its catalogue.
+//! Texts in English and German, read from catalogues in `assets/texts`: a common one, and one each for every device,
+//! the adapter and Signals. A text refers to its catalogue.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -28,7 +28,6 @@ enum Argument {
     Words(String),
     /// In English format, with a decimal point.
     Number(String),
-    /// In English and in German.
     Name(String, String),
     Text(Text),
     List(Vec<Text>),
@@ -81,7 +80,6 @@ enum Output {
 }
 
 impl Text {
-    /// Creates the common text of that name.
     pub fn new(id: &'static str) -> Self {
         COMMON.text(id)
     }
@@ -128,7 +126,6 @@ impl Text {
         self
     }
 
-    /// Returns whether it is about this file.
     pub(super) fn is_about(&self, path: &Path) -> bool {
         let name = path.display().to_string();
         let is_it = |(argument, value): &(&str, Argument)| {
@@ -143,12 +140,10 @@ impl Text {
         size_of::<Self>() + arguments.sum::<usize>()
     }
 
-    /// Returns the text's id in its catalogue.
     pub fn id(&self) -> &'static str {
         self.id
     }
 
-    /// Returns the words for the window.
     pub fn words(&self, language: Language) -> String {
         self.text_for(Output::Window(language))
     }
@@ -199,7 +194,6 @@ impl From<&'static str> for Text {
 }
 
 impl Catalogue {
-    /// Creates the catalogue from RON.
     pub const fn new(source: &'static str) -> Self {
         Catalogue { source, rows: OnceLock::new() }
     }
@@ -223,7 +217,6 @@ impl Catalogue {
         self.rows().keys().map(String::as_str)
     }
 
-    /// Returns the RON.
     pub fn source(&self) -> &'static str {
         self.source
     }
@@ -260,7 +253,6 @@ mod tests {
         places
     }
 
-    /// Returns the files of texts by their names.
     fn catalogues() -> BTreeMap<String, String> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/texts");
         let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());

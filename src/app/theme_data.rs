@@ -1,5 +1,5 @@
-//! The appearance of the window as data (`assets/theme.ron`): colours by meaning, sizes, distances. Drawing reads them from
-//! here; this module draws nothing.
+//! Theme data from `assets/theme.ron`: colours by meaning, sizes and spacing. Drawing code reads them; this module
+//! draws nothing.
 
 use std::sync::LazyLock;
 
@@ -16,14 +16,10 @@ pub struct Rgb(pub [u8; 3]);
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TextSizes {
-    /// Captions beside and below widgets.
     pub caption: f32,
     pub body: f32,
-    /// Headings.
     pub section: f32,
-    /// The main value of a card.
     pub value: f32,
-    /// The live position.
     pub live: f32,
 }
 
@@ -31,45 +27,30 @@ pub struct TextSizes {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spaces {
-    /// Inside a control.
     pub inside: f32,
-    /// Between controls.
     pub between: f32,
-    /// Between groups.
     pub groups: f32,
-    /// Around a tab's content.
     pub around: f32,
 }
 
-/// Colours by meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Palette {
-    /// The window.
     pub surface: Rgb,
-    /// Cards and panels.
     pub raised: Rgb,
-    /// Plots, hex, trace.
     pub sunken: Rgb,
-    /// Borders and grids.
     pub line: Rgb,
-    /// Values.
     pub text: Rgb,
-    /// Labels and units.
     pub muted: Rgb,
-    /// Focus, selection, the primary button.
     pub accent: Rgb,
     pub on_accent: Rgb,
     /// Edited and not yet written.
     pub staged: Rgb,
-    /// Verified, connected.
     pub good: Rgb,
-    /// Warning; a virtual device.
     pub warn: Rgb,
     /// Error; STOP.
     pub bad: Rgb,
     pub on_bad: Rgb,
-    /// Plots, fields, cams.
     pub series: [Rgb; 8],
 }
 
@@ -78,9 +59,7 @@ pub struct Palette {
 #[serde(deny_unknown_fields)]
 pub struct ThemeData {
     pub text: TextSizes,
-    /// Distances.
     pub space: Spaces,
-    /// Corners of cards.
     pub radius: f32,
     dark: Palette,
     light: Palette,
@@ -101,7 +80,6 @@ impl ThemeData {
         BUILT_IN.as_ref().map_err(String::as_str)
     }
 
-    /// Returns the colours of a theme.
     pub fn palette(&self, theme: ColorScheme) -> &Palette {
         match theme {
             ColorScheme::Dark => &self.dark,

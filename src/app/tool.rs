@@ -1,4 +1,4 @@
-//! A tab that needs no device. The studio knows no particular tool: it treats all of them alike.
+//! A tab that does not require a device. The studio treats all tools alike and names none of them.
 
 #![warn(missing_docs)]
 
@@ -16,72 +16,72 @@ use super::tab::Tab;
 use super::{Action, Text};
 use crate::link::LinkUrl;
 
-/// A tool, before the window is open.
+/// A tool before the window is open.
 pub trait ToolKind: Sync {
-    /// Returns the tab that shows it.
+    /// Returns the tab in which the tool is shown.
     fn tab(&self) -> Tab;
 
-    /// Begins it, with the links that were used in it, the latest first.
+    /// Creates the tool. `links` are the links used in it before, the latest first.
     fn begin(&self, links: &[String]) -> Box<dyn Tool>;
 }
 
-/// A tab that needs no device.
+/// A tab that does not require a device.
 pub trait Tool: Any {
-    /// Carries out an action.
+    /// Executes an action.
     ///
     /// # Errors
-    /// The action is for another tool.
+    /// The action belongs to another tool.
     fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), WrongKind>;
 
     /// Handles the result of a task.
     ///
     /// # Errors
-    /// The result is of another tool.
+    /// The result belongs to another tool.
     fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), WrongKind>;
 
-    /// Takes in all events since the last call.
+    /// Processes the events received since the last call.
     fn pump(&mut self, services: &mut Services);
 
-    /// Returns whether there is something to stop.
+    /// Returns whether the tool has a running job.
     fn can_stop(&self) -> bool;
 
-    /// Stops all that runs.
+    /// Stops all running jobs of the tool.
     fn stop(&mut self, services: &mut Services);
 
-    /// Returns its recorder.
+    /// Returns the recorder of the tool.
     fn recorder(&self) -> &Recorder;
 
-    /// Returns its recorder, to be changed.
+    /// Returns the recorder of the tool, mutably.
     fn recorder_mut(&mut self) -> &mut Recorder;
 
-    /// Takes a device's reading at rest.
+    /// Adopts a reading that the device took at standstill.
     fn follow(&mut self, source: &mut dyn SineCosineSource);
 
-    /// Gives up a wire that is needed elsewhere.
+    /// Releases a wire that is needed elsewhere.
     fn free_wire(&mut self, url: &LinkUrl, services: &mut Services);
 
-    /// Returns whether a file is one that it opens.
+    /// Returns whether the tool can open a file.
     fn takes(&self, path: &Path) -> bool;
 
     /// Opens a file.
     fn open(&mut self, path: PathBuf, services: &mut Services);
 }
 
-/// An action of a tool.
+/// An action of a tool, boxed as a payload.
 pub trait ToolAction: Any + Send {
     /// Tab in which the tool is shown.
     const TAB: Tab;
 }
 
 impl Action {
-    /// Returns an action for a tool.
+    /// Wraps an action for a tool.
     pub fn tool<A: ToolAction>(action: A) -> Self {
         Action::Tool(A::TAB, Payload::of(action))
     }
 }
 
 impl dyn Tool {
-    /// Returns the tool as its type; `None` if it is another one.
+    /// Returns the tool as `T`, or `None` if it has another type.
     pub fn get<T: Any>(&self) -> Option<&T> {
         (self as &dyn Any).downcast_ref()
     }
@@ -94,28 +94,28 @@ pub struct ToolContext<'a> {
 }
 
 impl ToolContext<'_> {
-    /// Returns the log, tasks, the world outside.
+    /// Returns the shared services of the studio.
     pub fn services(&mut self) -> &mut Services {
         &mut self.studio.services
     }
 
-    /// Releases the session on this connection, unless it writes: `why` is reported there. The channel, if any, closes when
-    /// the connection is free.
+    /// Releases the session on a connection, unless the session is writing; `why` is reported there. The returned
+    /// channel, if any, closes when the connection is free.
     ///
     /// # Errors
-    /// The session that writes.
+    /// Returns the session that is writing.
     pub fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         self.studio.free_wire(url, why)
     }
 
-    /// Remembers a link that was used.
+    /// Adds a link to those used before.
     pub fn use_link(&mut self, link: &str) {
         self.studio.settings.use_link(self.tab, link);
     }
 }
 
 impl Studio {
-    /// Returns the tool of that type.
+    /// Returns the tool of the given type.
     pub fn tool<T: Any>(&self) -> Option<&T> {
         self.tools.iter().find_map(|(_, tool)| tool.get())
     }

@@ -1,4 +1,4 @@
-//! The traffic on a line, decoded for the trace panel. Frames are decoded on arrival, not when they are drawn.
+//! Traffic on a line, decoded for the trace panel. Frames are decoded on arrival, not when drawn.
 
 use std::collections::VecDeque;
 
@@ -8,7 +8,6 @@ use super::{Language, Text};
 use crate::link::{Direction, TraceEntry};
 use crate::units::Moment;
 
-/// Frame with its meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceLine {
     /// When its first byte was sent or received, on the session's clock.
@@ -38,7 +37,6 @@ pub struct Explained {
 }
 
 impl Explained {
-    /// Creates a frame that is broken, and why.
     pub fn broken(why: Text) -> Self {
         Explained { meaning: vec![why], fault: Some(TraceFault::Broken) }
     }
@@ -56,7 +54,6 @@ impl TraceLine {
         size_of::<Self>() + self.bytes.len() + self.meaning.iter().map(Text::size).sum::<usize>()
     }
 
-    /// Returns the meaning in one line.
     pub fn words(&self, language: Language) -> String {
         self.meaning.iter().map(|text| text.words(language)).collect::<Vec<_>>().join(" · ")
     }
@@ -66,9 +63,7 @@ impl TraceLine {
 #[derive(Debug, Default)]
 pub struct TraceLog {
     lines: VecDeque<TraceLine>,
-    /// Memory that they take.
     size: usize,
-    /// Lines that had to go for newer ones.
     gone: u64,
     dropped: u64,
     began: Option<Zoned>,
@@ -110,12 +105,10 @@ impl TraceLog {
         self.dropped
     }
 
-    /// Returns the time of day of a frame.
     pub fn time_of(&self, line: &TraceLine) -> Option<Zoned> {
         self.began.as_ref()?.checked_add(line.at.since_start()).ok()
     }
 
-    /// Begins a session, whose clock started then.
     pub(super) fn begin(&mut self, began: Zoned) {
         *self = TraceLog { began: Some(began), ..TraceLog::default() };
     }

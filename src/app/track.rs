@@ -1,5 +1,5 @@
-//! The recording of a device while it is read: unwrapped position, speed and acceleration, and watched values. Independent
-//! of the kind of device, which supplies the meaning of positions and values.
+//! Recording of a device that is being read: unwrapped position, speed, acceleration and watched values. Independent of
+//! the kind of device, which supplies the meaning of positions and values.
 
 use std::time::Duration;
 
@@ -40,13 +40,11 @@ const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 /// A position, or that there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionSample {
-    /// Time of the sample.
     pub at: Moment,
     /// Steps, within the range; `None`: the device has none.
     pub position: Option<i64>,
     /// The device reports it as invalid.
     pub is_bad: bool,
-    /// The device warned with it.
     pub is_warned: bool,
 }
 
@@ -55,7 +53,6 @@ pub struct PositionSample {
 pub struct Track<W> {
     pub(crate) recorder: Recorder,
     positions: GroupId,
-    /// The lines of position, speed and acceleration.
     lines: [LineId; 3],
     watched: Vec<Watched<W>>,
     /// The meaning of positions; `None` until the first.
@@ -99,7 +96,6 @@ impl<W: Watchable> Recording for Track<W> {
     }
 }
 
-/// Positions to be recorded.
 #[derive(Debug, Default)]
 struct Columns {
     times: Vec<Time>,
@@ -265,12 +261,10 @@ impl<W: Watchable> Track<W> {
         self.recorder.rescale(own.line, line.scales().to_vec());
     }
 
-    /// Returns the values recorded with the position.
     pub fn watched(&self) -> Vec<W> {
         self.watched.iter().filter(|own| own.active).map(|own| own.value.clone()).collect()
     }
 
-    /// Records a watched value.
     pub fn add_watched(&mut self, what: &W, watching: &Watching) {
         let Some(own) = self.watched.iter().find(|own| own.active && own.value == *what) else { return };
         let (group, line) = (own.group, own.line);
@@ -295,7 +289,6 @@ impl<W: Watchable> Track<W> {
         self.dropped
     }
 
-    /// Returns the number of recorded positions.
     pub fn positions(&self) -> u64 {
         let [line, ..] = self.lines;
         let all = self.recorder.line(line).and_then(|line| self.recorder.history(line)).map(|history| history.all());

@@ -1,4 +1,4 @@
-//! Protocols that several devices use.
+//! Protocols shared by several devices.
 
 pub mod bridge;
 pub mod ethernet_ip;

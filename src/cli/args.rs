@@ -1,4 +1,4 @@
-//! The arguments of the command line, for any kind of device.
+//! Command line arguments for any kind of device.
 
 mod act;
 pub(crate) mod build;

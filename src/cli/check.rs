@@ -1,4 +1,4 @@
-//! Output of `do DEVICE check`: the lines of a device check.
+//! Output of `do DEVICE check`: one line for each item of a device check.
 
 use serde_json::{Value as Json, json};
 

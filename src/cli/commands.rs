@@ -1,5 +1,5 @@
-//! Commands that devices, buses and Signals add to the command line. `kinds.rs` supplies the list as a value; no device is
-//! named here.
+//! Commands that devices, buses and Signals add to the command line. `kinds.rs` supplies the list as a value; this
+//! module names no device.
 
 #![warn(missing_docs)]
 
@@ -13,34 +13,34 @@ use super::{Failure, Result};
 use crate::app::{Given, Text};
 use crate::profile::Body;
 
-/// The commands that a kind of device may take part in.
+/// The commands that a kind of device may support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CommandId {
-    /// Looks for devices.
+    /// Search for devices.
     Find,
-    /// Determines which device answers.
+    /// Read the identity of a device.
     Identify,
-    /// Prints what the device reports about itself.
+    /// Read errors and warnings.
     Status,
-    /// Reads the position.
+    /// Read the position.
     Position,
-    /// Reads the memory.
+    /// Read a value from the memory.
     Read,
-    /// Saves a profile.
+    /// Save a profile.
     Save,
-    /// Compares two profiles, or a profile with the device.
+    /// Compare two profiles, or a profile with a device.
     Diff,
-    /// Checks the device against a profile.
+    /// Compare a device with a profile.
     Verify,
-    /// Writes a profile into the device.
+    /// Write a profile to a device.
     Restore,
-    /// Writes values.
+    /// Write values.
     Write,
-    /// Runs another action of the device.
+    /// Execute another action of the device.
     Do,
-    /// Explains captured bytes.
+    /// Explain captured bytes.
     Decode,
-    /// Serves a virtual device.
+    /// Serve a virtual device.
     Simulate,
 }
 
@@ -61,7 +61,6 @@ impl CommandId {
         CommandId::Simulate,
     ];
 
-    /// Returns the word on the command line.
     pub(super) const fn name(self) -> &'static str {
         match self {
             CommandId::Find => "find",
@@ -81,64 +80,63 @@ impl CommandId {
     }
 }
 
-/// A kind of device on the command line. A command that the kind does not have is refused as wrong usage.
+/// A kind of device on the command line. A command that the kind does not support is refused as incorrect usage.
 pub trait DeviceCommands: ProfileCommands {
-    /// Returns the kind as written on the command line and in profiles.
+    /// Returns the name of the kind on the command line and in profiles.
     fn name(&self) -> &'static str;
 
-    /// Returns one sentence about the kind, for the help.
+    /// Returns a one-sentence description for the help.
     fn about(&self) -> &'static str;
 
-    /// Returns additional sentences for the help of the program.
+    /// Returns additional sentences for the program's help.
     fn note(&self) -> Option<&'static str> {
         None
     }
 
-    /// Returns the help of a command for this kind: items, values, forms.
+    /// Returns the help of a command for this kind: items, values and formats.
     fn help(&self, _command: CommandId) -> Option<String> {
         None
     }
 
-    /// Returns the options that the kind adds to a command. An option that several kinds add is the same option.
+    /// Returns the options that the kind adds to a command. Several kinds may share an option.
     fn options(&self, _command: CommandId) -> Vec<Arg> {
         Vec::new()
     }
 
-    /// Returns the options that the kind adds to every command and to the window. An option that several kinds add is the
-    /// same option.
+    /// Returns the options that the kind adds to every command and to the window. Several kinds may share an option.
     fn common_options(&self) -> Vec<Arg> {
         Vec::new()
     }
 
-    /// Adds the values of those options for the kind, and the values from the environment that replace them.
+    /// Adds the values of these options, and values from the environment that replace them.
     ///
     /// # Errors
-    /// One of them is invalid.
+    /// A value is invalid.
     fn given(&self, _options: &OwnOptions, given: Given) -> Result<Given> {
         Ok(given)
     }
 
-    /// Returns the actions of `do`, with their help. An action that several kinds have is the same word.
+    /// Returns the actions of `do` with their help. Several kinds may share an action.
     fn actions(&self) -> Vec<PossibleValue> {
         Vec::new()
     }
 
-    /// Returns the actions of `do` that run several others: they are listed after those.
+    /// Returns the actions of `do` that combine several others; they are listed last.
     fn combined_actions(&self) -> Vec<PossibleValue> {
         Vec::new()
     }
 
-    /// Returns the options of `simulate` that are short for `--set` of the same name.
+    /// Returns the options of `simulate` that abbreviate `--set` with the same name.
     fn setting_options(&self) -> Vec<Arg> {
         Vec::new()
     }
 
-    /// Returns why an option of this kind is refused for another one; `None` without a special reason.
+    /// Returns why an option of this kind is refused for another kind, or `None` without a special reason.
     fn refused_option(&self, _option: &str) -> Option<String> {
         None
     }
 
-    /// Commands that only this kind has.
+    /// Returns the commands that only this kind provides.
     fn own_commands(&self) -> &'static [&'static dyn OwnCommand] {
         &[]
     }
@@ -148,58 +146,58 @@ pub trait DeviceCommands: ProfileCommands {
         false
     }
 
-    /// Runs a command that names this kind: find, identify, status, position, read, save, write, do, decode. Returns `None`
-    /// if the kind does not have the command.
+    /// Runs a command for this kind: find, identify, status, position, read, save, write, do or decode. Returns `None`
+    /// if the kind does not support it.
     fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result>;
 
-    /// Builds the virtual device that is to be served.
+    /// Creates the virtual device to serve.
     fn simulated(&self, output: &Output, simulate: &Simulate) -> Result<Box<dyn Simulated>>;
 }
 
-/// Restores profiles of a kind of device and reads the device for a comparison; part of its commands.
+/// Restoring profiles, and reading a device for comparison.
 pub trait ProfileCommands: Sync {
-    /// Writes a profile into the device, after a review and consent.
+    /// Writes a profile to a device after review and consent.
     fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result;
 
-    /// Reads the device for a comparison: all of it, or at least the items that the profile contains.
+    /// Reads a device for comparison: everything, or at least the items in the profile.
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
-    /// Returns a remark about a profile that applies to every use of it.
+    /// Returns a note that applies to every use of a profile.
     fn remark(&self, _profile: &Body) -> Option<Text> {
         None
     }
 
-    /// Returns a message if two profiles are not of the same device.
+    /// Returns a message if two profiles belong to different devices.
     fn other_device(&self, _profile: &Body, _device: &Body) -> Option<String> {
         None
     }
 }
 
-/// A command that belongs to one kind of device, or to another part of the program.
+/// A command that belongs to one kind of device or to another part of the program.
 pub trait OwnCommand: Sync {
-    /// Returns the name, options and help.
+    /// Returns the command with its options and help.
     fn command(&self) -> clap::Command;
 
     /// Runs the command with its arguments.
     fn run(&self, common: &Common, output: &Output, matches: &ArgMatches) -> Result;
 }
 
-/// A protocol that several kinds of device may use, whose captured bytes `decode` explains.
+/// A protocol that several kinds of device may share, and whose captured bytes `decode` explains.
 pub trait ProtocolDecoder: Sync {
-    /// Returns the word on the command line.
+    /// Returns the name of the protocol on the command line.
     fn name(&self) -> &'static str;
 
-    /// Returns one sentence about the protocol, for the help.
+    /// Returns a one-sentence description for the help.
     fn about(&self) -> &'static str;
 
-    /// Returns the help of `decode` for these bytes.
+    /// Returns the help of `decode` for this protocol.
     fn help(&self) -> &'static str;
 
     /// Explains captured bytes.
     fn decode(&self, output: &Output, decode: &Decode) -> Result;
 }
 
-/// The parts of the command line: kinds of device, protocols, and further commands.
+/// All commands of the command line: kinds of device, protocols and further commands.
 #[derive(Clone, Copy)]
 pub struct Commands {
     devices: &'static [&'static dyn DeviceCommands],
@@ -217,7 +215,7 @@ impl Commands {
     /// The core alone.
     pub(super) const NONE: Commands = Commands::new(&[], &[], &[]);
 
-    /// Creates a list of these.
+    /// Creates the list of commands.
     pub const fn new(
         devices: &'static [&'static dyn DeviceCommands],
         protocols: &'static [&'static dyn ProtocolDecoder],
@@ -264,10 +262,10 @@ impl Commands {
         self.protocols.iter().copied().find(|protocol| protocol.name() == name)
     }
 
-    /// Returns the kind of device of a name.
+    /// Returns the kind of device with this name.
     ///
     /// # Errors
-    /// Returns an error if there is no such kind.
+    /// The name is unknown.
     pub fn device(self, name: &str) -> Result<&'static dyn DeviceCommands> {
         let named = self.devices.iter().copied().find(|device| device.name() == name);
         named.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {name} devices.")]))
@@ -293,7 +291,7 @@ impl Commands {
     }
 }
 
-/// The options that kinds of device add to a command, as given by the user.
+/// Values of the options that kinds of device add to a command.
 #[derive(Clone)]
 pub struct OwnOptions(ArgMatches);
 
@@ -314,17 +312,14 @@ impl OwnOptions {
     }
 }
 
-/// Reads the arguments of a command.
 pub(crate) fn parse<O: FromArgMatches>(matches: &ArgMatches) -> Result<O> {
     O::from_arg_matches(matches).map_err(|error| Failure::Usage(error.to_string()))
 }
 
-/// Returns the options of a derived structure.
 pub(crate) fn options_of<O: clap::Args>() -> Vec<Arg> {
     O::augment_args(clap::Command::new("options")).get_arguments().cloned().collect()
 }
 
-/// Returns the values of a derived enumeration.
 pub(crate) fn values_of<V: ValueEnum>() -> Vec<PossibleValue> {
     V::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect()
 }

@@ -86,7 +86,6 @@ impl Replaces {
     }
 }
 
-/// Asks for a yes.
 pub(crate) fn ask(question: &str) -> bool {
     matches!(answer(question).as_str(), "y" | "Y" | "yes")
 }

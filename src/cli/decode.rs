@@ -1,4 +1,5 @@
-//! Shared parts of `decode` for all kinds of device: captured bytes from the arguments, printed with their meaning.
+//! Parts of `decode` shared by all kinds of device: reading captured bytes from the arguments and printing their
+//! meaning.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -14,7 +15,6 @@ pub(crate) struct Explained {
     pub(crate) compact: String,
     /// The meaning, one line each; or why the bytes are not a frame.
     pub(crate) meaning: std::result::Result<Vec<String>, String>,
-    /// Further keys for a script.
     pub(crate) more: Map<String, Json>,
 }
 

@@ -1,4 +1,5 @@
-//! The command line: the same jobs without a window. It parses, asks for consent and prints; the worker does the work.
+//! The command line: the same jobs as in the window. It parses arguments, asks for consent and prints results; the
+//! worker executes the jobs.
 
 pub(crate) mod args;
 pub(crate) mod check;
@@ -59,16 +60,13 @@ pub type Result<T = Done> = std::result::Result<T, Failure>;
 
 /// The request in the arguments.
 pub enum Invocation {
-    /// A command, which has ended with this status.
     Command(u8),
     Window(Window),
 }
 
 #[derive(Debug, Default)]
 pub struct Window {
-    /// A link to open.
     pub link: Option<LinkUrl>,
-    /// A profile to open.
     pub profile: Option<PathBuf>,
     /// The values of the options for kinds of device.
     pub given: Given,

@@ -1,4 +1,4 @@
-//! Numbers of the command line.
+//! Parsing and formatting of numbers for the command line.
 
 use super::Failure;
 

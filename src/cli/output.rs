@@ -55,7 +55,6 @@ impl Output {
         if self.json { self.print(&format!("{json}\n")) } else { self.print(&visible(text)) }
     }
 
-    /// Prints lines unchanged and flushes them.
     pub fn print(&self, printed: &str) -> Result<(), Failure> {
         let mut out = io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {

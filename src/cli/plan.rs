@@ -1,4 +1,4 @@
-//! A plan on the command line, for every kind of device: old → new line by line, its cost, and its result.
+//! Plans on the command line, for every kind of device: old → new line by line, cost and result.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,6 @@ use crate::worker::Committed;
 
 /// A plan as text and as JSON.
 pub struct PlanReport {
-    /// The operations, for a script.
     pub operations: Vec<Json>,
     /// The plan as text, with its cost.
     pub text: String,
@@ -38,11 +37,8 @@ impl PlanReport {
 
 /// A line of a plan.
 pub struct PlanStep {
-    /// The item that changes.
     pub item: String,
-    /// The old value.
     pub old: Option<String>,
-    /// The new value.
     pub new: Option<String>,
     /// Zero for an operation that is saved together with others.
     pub write_cycles: u64,
@@ -88,9 +84,7 @@ pub(super) const NOTHING: &str = "nothing to write: the device already has these
 
 #[derive(Default)]
 pub struct WriteSummary {
-    /// Number of items that were changed.
     pub written: u64,
-    /// Number of changed items that were read back.
     pub verified: u64,
     pub write_cycles: u64,
     /// `None` if there was nothing to write.

@@ -1,4 +1,4 @@
-//! `position`: repeated readings for every kind of device, with their number, interval and end.
+//! `position`: repeated readings for every kind of device, with count, interval and end.
 
 use std::time::{Duration, Instant};
 

@@ -1,5 +1,5 @@
-//! Commands about profiles for every kind of device, which the file names: `diff`, `verify`, and the common parts of save
-//! and restore.
+//! Profile commands for every kind of device: `diff`, `verify`, and the common parts of `save` and `restore`. The file
+//! determines the kind.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -32,7 +32,6 @@ pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
     Ok(document.body)
 }
 
-/// Reports notes about the document.
 fn remark(output: &Output, path: &Path, document: &Document) -> Result<()> {
     explain::profile_remarks(path, document).iter().for_each(|words| say(&format!("{}\n", words.terminal())));
     if let Some(words) = output.commands().device(document.body.kind())?.remark(&document.body) {
@@ -46,7 +45,6 @@ fn read_document(output: &Output, path: &Path) -> Result<Document> {
     Document::parse(&text, output.formats()).map_err(|error| failed(&explain::profile(path, &error, Kinds::NONE)))
 }
 
-/// Writes a profile that was read just now.
 pub fn save_profile(path: &Path, body: Body) -> Result<()> {
     let now = Timestamp::now();
     let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
@@ -242,7 +240,6 @@ pub(crate) fn show_changed(
     show_done(output, item, operations, spent, &[], changes)
 }
 
-/// Prints the result of an action.
 pub(crate) fn show_done(
     output: &Output,
     item: &str,

@@ -1,4 +1,4 @@
-//! Opens a link and runs jobs on it: progress and codes go to stderr, Ctrl-C to the worker.
+//! Opening a link and running jobs: progress and codes go to stderr, Ctrl-C goes to the worker.
 
 use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write, stderr};
@@ -77,11 +77,8 @@ pub struct Runner<D: Runs> {
 /// A job that ended early.
 pub enum JobFailure<D: Runs> {
     Job(Box<D::Error>),
-    /// Ctrl-C, between two jobs.
     Interrupted,
-    /// Loss of the connection, found between two jobs.
     Lost(LinkError),
-    /// End of the worker itself.
     Worker,
 }
 
@@ -97,7 +94,6 @@ impl<D: Runs> Drop for Runner<D> {
 }
 
 impl<D: Runs> Runner<D> {
-    /// Opens the link of the command line.
     pub fn open(common: &Common) -> Result<Self> {
         let Some(url) = &common.link else {
             return Err(Failure::Usage("this command needs --link URL; without hardware, use --link sim:".to_owned()));
@@ -140,7 +136,6 @@ impl<D: Runs> Runner<D> {
         Ok(Runner { worker, interrupted, patience, remarks: Vec::new(), kept })
     }
 
-    /// Runs a job to its end.
     pub fn run(&mut self, job: D::Job) -> Result<D::Output> {
         self.try_run(job).map_err(JobFailure::into_failure)
     }
@@ -214,7 +209,6 @@ impl<D: Runs> Runner<D> {
         }
     }
 
-    /// Returns whether Ctrl-C was pressed.
     pub(crate) fn is_interrupted(&self) -> bool {
         self.interrupted.load(Ordering::SeqCst)
     }
@@ -225,7 +219,6 @@ impl<D: Runs> Runner<D> {
 }
 
 impl<D: Runs> JobFailure<D> {
-    /// Converts it to the failure of a command.
     pub fn into_failure(self) -> Failure {
         match self {
             JobFailure::Job(error) => {

@@ -1,5 +1,5 @@
-//! `simulate`: a virtual device for other programs, on a pseudo-terminal or a TCP port, with UDP for the devices that use
-//! it. Only this module runs a virtual device by the clock of the computer.
+//! `simulate`: serves a virtual device to other programs, on a pseudo-terminal or a TCP port, with UDP for devices that
+//! require it. Only this module runs virtual devices by the clock of the computer.
 
 mod datagrams;
 
@@ -39,10 +39,8 @@ pub trait Simulated: ByteDevice {
         None
     }
 
-    /// Sets the address of a device with datagrams.
     fn listens(&self, _at: SocketAddrV4) {}
 
-    /// Returns whether the device has closed the connection.
     fn has_ended(&self) -> bool {
         false
     }
@@ -92,12 +90,10 @@ struct Device {
 enum ReadOutcome {
     Bytes(usize),
     Nothing,
-    /// The client has disconnected.
     End,
 }
 
 impl Device {
-    /// Returns the device for another client.
     fn another(&self, peer: SocketAddr) -> Option<Device> {
         let address = match peer {
             SocketAddr::V4(peer) => *peer.ip(),
@@ -259,8 +255,8 @@ fn attend(device: &mut Device, mut client: TcpStream, ended: &AtomicBool) {
 
 #[cfg(unix)]
 mod terminal {
-    //! Pseudo-terminals. Only the client opens the other side: when the client closes it, this side sees a hang-up, and the
-    //! virtual device is powered again with the next client.
+    //! Pseudo-terminals. Only the client opens the other end: when it closes that end, this end detects a hang-up, and
+    //! the virtual device is powered again for the next client.
 
     use std::io::{ErrorKind, Read, Write};
     use std::os::unix::fs::symlink;
@@ -364,7 +360,7 @@ mod terminal {
 
 #[cfg(not(unix))]
 mod terminal {
-    //! Pseudo-terminals do not exist on this system.
+    //! Fallback for systems without pseudo-terminals.
 
     use std::path::Path;
     use std::sync::atomic::AtomicBool;

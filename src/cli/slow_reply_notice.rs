@@ -1,4 +1,4 @@
-//! The message at a terminal while a device answers slowly, so that a slow network is not mistaken for a hang.
+//! Notice on a terminal while a device replies slowly, so that a slow network is not mistaken for a hang.
 
 use std::time::{Duration, Instant};
 
@@ -13,7 +13,6 @@ const SLOW: Duration = Duration::from_millis(100);
 
 /// The measured and the allowed reply time of a device.
 pub struct Pace {
-    /// The measured times.
     pub(crate) replies: Replies,
     /// The allowed reply time, as `timeout=` in the link sets it.
     pub(crate) timeout: Duration,

@@ -1,4 +1,4 @@
-//! The devices: one folder each, with all that the program knows about it.
+//! The devices: one folder each, with everything that the program knows about it.
 
 pub mod biss;
 pub mod hiperdrive;

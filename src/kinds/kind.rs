@@ -1,4 +1,4 @@
-//! Kinds of devices and tools, and the program built from them.
+//! Kinds of devices and tools, and the assembly of a program from them.
 
 use crate::app::{DeviceKind, Kinds, ToolKind};
 use crate::buses::bridge::sim::Attachable;

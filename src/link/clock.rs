@@ -1,25 +1,25 @@
-//! Clocks: the real one for hardware and for the virtual devices of the window, and a virtual one for tests.
+//! Clocks: a real one for hardware and for virtual devices in the window, and a virtual one for tests.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::units::Moment;
 
-/// A source of time that can wait.
+/// A source of time on which threads can wait.
 pub trait Clock: Send + Sync {
     /// Returns the current time.
     fn now(&self) -> Moment;
 
-    /// Returns when `moment` has come.
+    /// Blocks until `moment`.
     fn sleep_until(&self, moment: Moment);
 }
 
-/// The machine's monotonic clock, counted from when it was made.
+/// The monotonic clock of the computer, counted from its creation.
 #[derive(Debug)]
 pub struct RealClock(Instant);
 
 impl RealClock {
-    /// Creates a clock that starts now.
+    /// Creates a clock that starts at zero now.
     pub fn start() -> Self {
         RealClock(Instant::now())
     }
@@ -38,7 +38,7 @@ impl Clock for RealClock {
     }
 }
 
-/// A clock that advances only while a thread waits on it, so that an hour takes no real time.
+/// A clock that only advances while a thread waits on it, so an hour takes no real time.
 #[derive(Debug, Default)]
 pub struct VirtualClock {
     nanoseconds: AtomicU64,

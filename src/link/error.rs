@@ -1,39 +1,39 @@
-//! Errors of a wire.
+//! Errors of connections.
 
 use std::io;
 
-/// An error of a connection that cannot be opened or is lost.
+/// A connection cannot be opened, or was lost.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{target}: {kind}")]
 pub struct LinkError {
-    /// Port, host or file, as the user named it.
+    /// Port, host or file as given by the user.
     pub target: String,
-    /// The kind of error.
+    /// Kind of error.
     pub kind: LinkErrorKind,
 }
 
-/// The kind of an error of a wire.
+/// The kind of a connection error.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LinkErrorKind {
-    /// No such port, host or file.
+    /// The port, host or file does not exist.
     #[error("does not exist")]
     NotFound,
-    /// The user may not open it.
+    /// The user has no permission to open it.
     #[error("permission denied")]
     Permission {
-        /// The group with permission, if the system names one.
+        /// Group with permission, if the system reports one.
         group: Option<String>,
     },
-    /// Another program has it.
+    /// Another program is using it.
     #[error("in use by another program")]
     Busy,
-    /// The path exists and is not a serial port.
+    /// The path exists but is not a serial port.
     #[error("not a serial port")]
     NotAPort,
-    /// Nothing listens at that address, or it cannot be reached.
+    /// Nothing listens at the address, or it cannot be reached.
     #[error("cannot be reached: {0}")]
     Unreachable(String),
-    /// The connection was lost: unplugged, or closed by the other side.
+    /// The connection was lost: unplugged, or closed by the remote end.
     #[error("connection lost")]
     Lost,
     /// A recording has no answer to the request.
@@ -42,13 +42,13 @@ pub enum LinkErrorKind {
     /// Any other error of the system.
     #[error("the recording has no answer to {0}")]
     NotRecorded(String),
-    /// Anything else the system says.
+    /// Any other error reported by the system.
     #[error("{0}")]
     Other(String),
 }
 
 impl LinkError {
-    /// Creates an error at `target`.
+    /// Creates an error for `target`.
     pub fn new(target: impl Into<String>, kind: LinkErrorKind) -> Self {
         LinkError { target: target.into(), kind }
     }
@@ -63,7 +63,7 @@ impl LinkError {
         LinkError::new(target, kind)
     }
 
-    /// Returns whether the connection was open and is lost.
+    /// Returns whether an open connection was lost.
     pub fn is_lost(&self) -> bool {
         self.kind == LinkErrorKind::Lost
     }

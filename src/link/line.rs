@@ -1,5 +1,5 @@
-//! The common behaviour of lines with frames: silence, echoes, late replies, repetition and time-outs. The folders of the
-//! devices decode the frames; no byte is interpreted here, except for the echo.
+//! Behaviour common to lines with frames: silence, echoes, late replies, repetition and time-outs. Decoding frames is
+//! up to the device folders; no byte is interpreted here except for the echo.
 
 mod echo;
 mod quality;
@@ -32,11 +32,11 @@ pub(crate) const MOST_KEPT: usize = 4096;
 /// The reason why an exchange on a line ends early.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LineError {
-    /// The user cancelled it.
+    /// The user has cancelled the exchange.
     Cancelled,
-    /// Bytes arrive during the required silence.
+    /// Bytes keep arriving during the required silence.
     NeverSilent,
-    /// The wire.
+    /// The connection failed.
     Link(LinkError),
 }
 
@@ -59,7 +59,6 @@ impl From<LinkError> for LineError {
 
 /// The host's side of a line, for one job.
 pub(crate) struct SerialLine<'a> {
-    /// The context of the job.
     pub(crate) ctx: Ctx<'a>,
     /// Time to repeat requests without an answer, if not the default.
     pub(crate) patience: Option<Duration>,
@@ -69,12 +68,10 @@ pub(crate) struct SerialLine<'a> {
 }
 
 impl<'a> SerialLine<'a> {
-    /// Creates the line of a job.
     pub(crate) fn new(ctx: Ctx<'a>) -> Self {
         SerialLine { ctx, patience: None, shielded: false, passed: None }
     }
 
-    /// Returns the current time.
     pub(crate) fn now(&self) -> Moment {
         self.ctx.clock.now()
     }

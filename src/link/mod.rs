@@ -1,7 +1,7 @@
-//! Connections, clocks, and the context in which a procedure runs.
+//! Connections, clocks, and the execution context of procedures.
 //!
-//! Most devices need one kind of connection, a stream of bytes ([`ByteLink`]); some also exchange cyclic data as packets
-//! ([`Datagrams`]). Protocols with registers, process data or explicit messages use the same [`Ctx`].
+//! Most devices require a byte stream ([`ByteLink`]); some also exchange cyclic data as datagrams ([`Datagrams`]).
+//! Protocols with registers, process data or explicit messages share the same [`Ctx`].
 
 #![warn(missing_docs)]
 
@@ -40,25 +40,25 @@ pub use url::{LinkUrl, Query, Scheme, UrlError, Wire};
 
 use crate::units::{CharacterFormat, Moment};
 
-/// A wire on which bytes come and go.
+/// A connection that transports bytes in both directions.
 pub trait ByteLink: Send {
-    /// Writes bytes to the line in one call, so that no gap arises inside a frame. It may return before the last bit is
+    /// Writes bytes in a single call, so that no gap arises within a frame. May return before the last bit has been
     /// sent.
     ///
     /// # Errors
-    /// Returns an error if the line is lost.
+    /// The line was lost.
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError>;
 
-    /// Waits for bytes until `until` and appends them to `into`. Appends nothing when the time is up.
+    /// Waits until `until` for bytes and appends them to `into`; appends nothing on time-out.
     ///
     /// # Errors
-    /// Returns an error if the line is lost.
+    /// The line was lost.
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError>;
 
-    /// Sets baud rate and parity from now on.
+    /// Sets baud rate and parity.
     ///
     /// # Errors
-    /// Returns an error if the line is lost or the format cannot be set.
+    /// The line was lost, or the format cannot be set.
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
     /// Returns whether [`set_format`](Self::set_format) has an effect. A device server has its own settings, which are
@@ -70,11 +70,11 @@ pub trait ByteLink: Send {
     /// Checks that the line still exists, without sending or receiving.
     ///
     /// # Errors
-    /// Returns an error if the line is lost.
+    /// The line was lost.
     fn check(&mut self) -> Result<(), LinkError>;
 }
 
-/// A request to cancel the running work. Clones share it.
+/// A cancellation flag shared by its clones.
 #[derive(Clone, Debug, Default)]
 pub struct Cancel(Arc<CancelState>);
 
@@ -92,7 +92,7 @@ impl Default for CancelState {
 }
 
 impl Cancel {
-    /// Creates a cancellation that takes effect by itself after `transactions` transactions.
+    /// Creates a flag that requests cancellation after the given number of transactions.
     pub fn after(transactions: u64) -> Self {
         let cancel = Cancel::default();
         cancel.0.fuse.store(transactions, Ordering::SeqCst);
@@ -104,17 +104,17 @@ impl Cancel {
         self.0.requested.store(true, Ordering::SeqCst);
     }
 
-    /// Withdraws the request, for the next job.
+    /// Clears the request before the next job.
     pub fn reset(&self) {
         self.0.requested.store(false, Ordering::SeqCst);
     }
 
-    /// Returns whether cancellation is requested.
+    /// Returns whether cancellation has been requested.
     pub fn is_requested(&self) -> bool {
         self.0.requested.load(Ordering::SeqCst)
     }
 
-    /// Returns whether the next transaction must not begin; called before each.
+    /// Returns whether the next transaction must not begin. Called before each transaction.
     pub fn stops_transaction(&self) -> bool {
         let left = self.0.fuse.load(Ordering::SeqCst);
         if left == 0 {
@@ -126,14 +126,14 @@ impl Cancel {
     }
 }
 
-/// The context of a procedure: connection, clock, cancellation and trace.
+/// Execution context of a procedure: connection, clock, cancellation and trace.
 pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
-    /// The wire.
+    /// Connection to the device.
     pub wire: &'a mut W,
-    /// The time.
+    /// Source of time.
     pub clock: &'a dyn Clock,
-    /// The cancellation.
+    /// Cancellation flag.
     pub cancel: &'a Cancel,
-    /// The trace of the line.
+    /// Trace of the line.
     pub trace: &'a mut Trace,
 }

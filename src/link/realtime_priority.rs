@@ -1,10 +1,10 @@
-//! Threads that have to wake up at an exact time. Packets of a cyclic connection are due every few milliseconds, and on a
-//! busy computer ordinary threads wait for longer than that.
+//! Threads that must wake up at exact times. Packets of a cyclic connection are due every few milliseconds, and
+//! ordinary threads on a busy computer may wait longer than that.
 
 use thread_priority::{Error, ThreadPriority};
 
-/// Requests from the system that the calling thread is woken before all ordinary ones, until it ends. Returns whether the
-/// system agreed: Linux does for users with the permission (`rtprio` among their limits).
+/// Asks the system to wake the calling thread before all ordinary ones, until it ends. Returns whether the system
+/// agreed: Linux does for users with permission (`rtprio` among their limits).
 pub fn wake_before_others() -> bool {
     let asked = ask();
     if let Err(error) = &asked {

@@ -1,4 +1,4 @@
-//! `replay:FILE` — a recorded trace, answering as the device did.
+//! `replay:FILE`: a recorded trace that replies as the device did.
 
 use std::sync::Arc;
 
@@ -13,8 +13,8 @@ struct Exchange {
     reply: Option<Vec<u8>>,
 }
 
-/// A recording played back. Each request is searched from the position of the last one, once around; masked bytes match
-/// anything.
+/// Playback of a recording. Each request is searched for from the position of the previous one, wrapping around once;
+/// masked bytes match anything.
 pub struct ReplayLink {
     target: String,
     exchanges: Vec<Exchange>,
@@ -24,7 +24,7 @@ pub struct ReplayLink {
 }
 
 impl ReplayLink {
-    /// Plays `entries` back, under the name `target`.
+    /// Creates the playback of `entries` under the name `target`.
     pub fn new(target: &str, entries: Vec<TraceEntry>, clock: Arc<dyn Clock>) -> Self {
         let mut exchanges: Vec<Exchange> = Vec::new();
         for entry in entries {

@@ -1,10 +1,10 @@
-//! The reply times of a device, readable outside the thread of its session.
+//! Reply times of a device, readable outside the thread of its session.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// The measured reply times of a session. Clones share them.
+/// Measured reply times of a session, shared by its clones.
 #[derive(Clone, Debug, Default)]
 pub struct Replies(Arc<Measured>);
 
@@ -27,7 +27,7 @@ impl Replies {
         self.0.count.fetch_add(1, Ordering::Release);
     }
 
-    /// Returns the average reply time; `None` before the first reply.
+    /// Returns the average reply time, or `None` before the first reply.
     pub fn usual(&self) -> Option<Duration> {
         let count = self.0.count.load(Ordering::Acquire);
         self.0.sum.load(Ordering::Relaxed).checked_div(count).map(Duration::from_micros)

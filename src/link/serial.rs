@@ -1,5 +1,5 @@
-//! `serial:PATH` — a serial port, usually a USB–RS-485 converter; and `bridge:PATH`, the port of an adapter. DTR and RTS
-//! remain as they are after opening.
+//! `serial:PATH`: a serial port, usually a USB–RS-485 converter; and `bridge:PATH`, the port of an adapter. DTR and RTS
+//! keep the state they have after opening.
 
 use std::io::{ErrorKind, Read, Write};
 use std::sync::Arc;
@@ -10,21 +10,21 @@ use serialport::{ClearBuffer, SerialPort, SerialPortBuilder, SerialPortType};
 use super::{ByteLink, Clock, LinkError, LinkErrorKind};
 use crate::units::{CharacterFormat, Moment, Parity};
 
-/// A serial port of this machine.
+/// A serial port of this computer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PortInfo {
-    /// Path or name, as a link takes it.
+    /// Path or name, as used in a link.
     pub path: String,
-    /// Maker and product of the adapter according to the system; may be empty.
+    /// Manufacturer and product of the adapter as reported by the system; may be empty.
     pub description: String,
     /// Serial number of a USB adapter.
     pub serial_number: Option<String>,
 }
 
-/// Returns the serial ports of this computer, by name. Pseudo-terminals are never listed but can be opened.
+/// Returns the serial ports of this computer, ordered by name. Pseudo-terminals are never listed but can be opened.
 ///
 /// # Errors
-/// Returns an error if the system has no list of ports.
+/// The system does not provide a list of ports.
 pub fn ports() -> Result<Vec<PortInfo>, LinkError> {
     if !platform::lists_ports() {
         return Ok(Vec::new());
@@ -56,7 +56,7 @@ pub struct SerialLink {
 }
 
 impl SerialLink {
-    /// Opens a port for this program alone.
+    /// Opens a port exclusively.
     ///
     /// # Errors
     /// [`LinkErrorKind::NotFound`], [`Permission`](LinkErrorKind::Permission), [`Busy`](LinkErrorKind::Busy),
@@ -65,11 +65,11 @@ impl SerialLink {
         Self::open_as(path, format, clock, |builder| builder)
     }
 
-    /// Opens the port of an adapter, with DTR asserted: for many microcontrollers an edge of DTR is a reset. Linux asserts
+    /// Opens the port of an adapter with DTR asserted, since an edge of DTR resets many microcontrollers. Linux asserts
     /// it automatically, other systems on request.
     ///
     /// # Errors
-    /// Errors as for [`open`](Self::open).
+    /// As for [`open`](Self::open).
     pub fn open_adapter(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         Self::open_as(path, format, clock, |builder| builder.dtr_on_open(true))
     }
@@ -180,7 +180,7 @@ fn opening(path: &str, error: &serialport::Error) -> LinkErrorKind {
 
 #[cfg(unix)]
 mod platform {
-    //! Ports are files, and a group owns them.
+    //! Systems on which ports are files owned by a group.
 
     use std::os::unix::fs::{FileTypeExt, MetadataExt};
     use std::path::Path;
@@ -205,7 +205,7 @@ mod platform {
         LinkErrorKind::Permission { group }
     }
 
-    /// Returns the name of a group other than root's, which must not be recommended.
+    /// Returns the name of a group, except that of root, which must not be recommended.
     fn group_name(gid: u32) -> Option<String> {
         let groups = std::fs::read_to_string("/etc/group").ok()?;
         let id = gid.to_string();
@@ -220,7 +220,7 @@ mod platform {
 
 #[cfg(not(unix))]
 mod platform {
-    //! Ports have names (`COM3`) and no owner; a port in use causes "access denied".
+    //! Systems on which ports have names (`COM3`) and no owner, and a port in use causes "access denied".
 
     use super::LinkErrorKind;
 

@@ -1,4 +1,4 @@
-//! `sim:` — a virtual device in this process. In virtual time, waiting for an answer takes no time.
+//! `sim:`: a virtual device in this process. In virtual time, waiting for a reply takes no time.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -8,14 +8,14 @@ use super::{ByteLink, Clock, DatagramPort, Datagrams, LinkError};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{CharacterFormat, Moment};
 
-/// A connection to a virtual device. The device can be shared with a test that inspects it, or with the next link.
+/// A connection to a virtual device, which can be shared with a test that inspects it, or with the next link.
 pub struct SimLink {
     device: Arc<Mutex<dyn ByteDevice>>,
     clock: Arc<dyn Clock>,
 }
 
 impl SimLink {
-    /// Connects to the device.
+    /// Connects to a device.
     pub fn connect(device: Arc<Mutex<dyn ByteDevice>>, clock: Arc<dyn Clock>) -> Self {
         let link = SimLink { device, clock };
         let now = link.clock.now();
@@ -63,7 +63,7 @@ impl ByteLink for SimLink {
     }
 }
 
-/// Opens channels for packets to and from a virtual device.
+/// Datagram channels to a virtual device.
 pub struct SimPort {
     device: Arc<Mutex<dyn DatagramDevice>>,
     clock: Arc<dyn Clock>,
@@ -74,7 +74,7 @@ pub struct SimPort {
 const FIRST_PORT: u16 = 50_000;
 
 impl SimPort {
-    /// Creates a link to the device.
+    /// Creates a factory for channels to a device.
     pub fn new(device: Arc<Mutex<dyn DatagramDevice>>, clock: Arc<dyn Clock>) -> Self {
         SimPort { device, clock, next: FIRST_PORT }
     }

@@ -1,4 +1,5 @@
-//! `tcp:HOST:PORT` — the same bytes through a serial device server in raw mode. Speed and parity are set at the server.
+//! `tcp:HOST:PORT`: the same bytes through a serial device server in raw mode. Baud rate and parity are set at the
+//! server.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
@@ -24,7 +25,7 @@ impl TcpLink {
     /// Connects to `host:port`.
     ///
     /// # Errors
-    /// [`LinkErrorKind::NotFound`] for an unknown name, [`LinkErrorKind::Unreachable`] without an answer.
+    /// [`LinkErrorKind::NotFound`] for an unknown name, [`LinkErrorKind::Unreachable`] if there is no response.
     pub fn connect(target: &str, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let fail = |kind| LinkError::new(target, kind);
         let addresses = target.to_socket_addrs().map_err(|_| fail(LinkErrorKind::NotFound))?;

@@ -1,11 +1,12 @@
-//! The trace: all frames on a connection, with secrets masked; and its text form, which `replay:` reads.
+//! The trace of all frames on a connection, with secrets masked, and its text format, which `replay:` reads.
 //!
 //! ```text
 //! # encoder-studio trace 1
 //! 0.031204 > 40 42 02
 //! 0.047511 < 40 42 00 0E 05 31 38
 //! ```
-//! Seconds, `>` sent or `<` received, bytes; `**` is a masked byte. Lines that begin with `#` are comments.
+//! A line consists of seconds, `>` sent or `<` received, and bytes; `**` is a masked byte. Lines starting with `#` are
+//! comments.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -14,7 +15,7 @@ use std::time::Duration;
 use crate::bits::{HexError, MaskedBytes};
 use crate::units::Moment;
 
-/// The direction of bytes.
+/// Direction of transmission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// From the computer.
@@ -23,20 +24,20 @@ pub enum Direction {
     Received,
 }
 
-/// One frame on the wire.
+/// A frame on the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceEntry {
-    /// Time at which its first byte was sent or received.
+    /// Time at which the first byte was sent or received.
     pub at: Moment,
-    /// The direction.
+    /// Direction of transmission.
     pub direction: Direction,
-    /// The bytes, with secrets masked.
+    /// Bytes with secrets masked.
     pub bytes: MaskedBytes,
 }
 
 type Watcher = Box<dyn FnMut(&TraceEntry) + Send>;
 
-/// A trace tap of a wire.
+/// A trace of the frames on a line.
 #[derive(Default)]
 pub struct Trace {
     watchers: Vec<Watcher>,
@@ -49,7 +50,7 @@ impl fmt::Debug for Trace {
 }
 
 impl Trace {
-    /// Reports every further frame to `watcher`, which must not wait.
+    /// Calls `watcher` for every subsequent frame. It must not block.
     pub fn watch(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
         self.watchers.push(Box::new(watcher));
     }
@@ -69,7 +70,7 @@ impl Trace {
 /// First line of a trace file.
 pub const HEADER: &str = "# encoder-studio trace 1";
 
-/// Begins a trace file.
+/// Writes the header of a trace file.
 ///
 /// # Errors
 /// Errors of the writer.
@@ -77,7 +78,7 @@ pub fn write_header(file: &mut impl Write) -> io::Result<()> {
     writeln!(file, "{HEADER}")
 }
 
-/// Adds a line to a trace file.
+/// Appends a line to a trace file.
 ///
 /// # Errors
 /// Errors of the writer.
@@ -89,29 +90,29 @@ pub fn write_entry(file: &mut impl Write, entry: &TraceEntry) -> io::Result<()> 
     writeln!(file, "{:.6} {sign} {}", entry.at.since_start().as_secs_f64(), entry.bytes)
 }
 
-/// The reason why a text is not a trace.
+/// The reason why a string is not a trace.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TraceFileError {
-    /// The first line is not that of a trace file.
+    /// The first line is not the header of a trace file.
     #[error("it does not begin with \"{HEADER}\"")]
     Header,
-    /// A line is not time, direction and bytes.
+    /// A line does not consist of time, direction and bytes.
     #[error("line {line} is not of the form \"0.031204 > 40 42 02\"")]
     Line {
-        /// Counted from 1.
+        /// Line number, starting at 1.
         line: usize,
     },
-    /// The bytes of a line.
+    /// The bytes of a line are invalid.
     #[error("line {line}: {source}")]
     Hex {
-        /// Counted from 1.
+        /// Line number, starting at 1.
         line: usize,
-        /// The problem.
+        /// Cause of the error.
         source: HexError,
     },
 }
 
-/// Reads a trace file.
+/// Parses a trace file.
 ///
 /// # Errors
 /// Returns the number of the first invalid line.

@@ -1,4 +1,4 @@
-//! Packets over UDP: cyclic data to and from one target ([`UdpPort`]), and a question to all who listen ([`UdpBroadcast`]).
+//! Datagrams over UDP: cyclic data to and from one target ([`UdpPort`]), and broadcast requests ([`UdpBroadcast`]).
 
 use std::io::{self, ErrorKind};
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, ToSocketAddrs, UdpSocket};
@@ -18,14 +18,14 @@ const WAITING: usize = 64;
 /// The longest time until a receiver notices that its owner has been dropped.
 const GLANCE: Duration = Duration::from_millis(100);
 
-/// Opens channels for packets to and from the target of a TCP connection, at the local address that leads to it.
+/// UDP channels to the target of a TCP connection, bound to the local address that leads to it.
 pub struct UdpPort {
     target: String,
     clock: Arc<dyn Clock>,
 }
 
 impl UdpPort {
-    /// Creates a link to a target, given as `host:port` of its TCP connection.
+    /// Creates a factory for channels to a target, given as `host:port` of its TCP connection.
     pub fn new(target: &str, clock: Arc<dyn Clock>) -> Self {
         UdpPort { target: target.to_owned(), clock }
     }
@@ -82,7 +82,6 @@ struct Packets {
     local: Ipv4Addr,
     port: u16,
     socket: Arc<UdpSocket>,
-    /// Dropped, they end.
     listeners: Vec<Listener>,
     sender: Sender<Vec<u8>>,
     heard: Receiver<Vec<u8>>,
@@ -175,7 +174,7 @@ impl Datagrams for Packets {
     }
 }
 
-/// A request to all devices at a port, in all networks of this computer.
+/// Broadcast requests to a port on all networks of this computer.
 pub struct UdpBroadcast {
     socket: UdpSocket,
     to: Vec<SocketAddrV4>,
@@ -183,10 +182,10 @@ pub struct UdpBroadcast {
 }
 
 impl UdpBroadcast {
-    /// Creates a link that broadcasts in every network.
+    /// Creates a channel that broadcasts on every network.
     ///
     /// # Errors
-    /// Returns an error if the system has no free socket.
+    /// The system has no free socket.
     pub fn to_all(port: u16, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let mut networks = vec![Ipv4Addr::BROADCAST];
         networks.extend(networks_of_ours());
@@ -194,10 +193,10 @@ impl UdpBroadcast {
         Self::to(networks.into_iter().map(|address| SocketAddrV4::new(address, port)).collect(), clock)
     }
 
-    /// Creates a link to these addresses.
+    /// Creates a channel that sends to the given addresses.
     ///
     /// # Errors
-    /// Returns an error if the system has no free socket.
+    /// The system has no free socket.
     pub fn to(to: Vec<SocketAddrV4>, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let open = || {
             let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;

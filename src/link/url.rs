@@ -1,5 +1,5 @@
-//! Link URLs: `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; the code that opens the link interprets
-//! the parameters.
+//! Link URLs such as `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; the code that opens the link
+//! interprets the parameters.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,18 +7,18 @@ use std::str::FromStr;
 use crate::expected::Expected;
 use crate::parameter::{Refused, Values};
 
-/// The kind of wire.
+/// Kind of connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheme {
-    /// The virtual device in this process.
+    /// A virtual device in this process.
     Sim,
     /// A serial port.
     Serial,
-    /// The same bytes through a serial device server.
+    /// A serial device server.
     Tcp,
     /// A recorded trace.
     Replay,
-    /// The open adapter for clocked buses, at a serial port or a TCP address.
+    /// An open adapter for clocked buses, at a serial port or a TCP address.
     Bridge,
     /// A Modbus/TCP gateway to process data.
     Modbus,
@@ -37,7 +37,7 @@ impl Scheme {
         (Scheme::Enip, "enip"),
     ];
 
-    /// Returns the word before the colon.
+    /// Returns the keyword before the colon.
     pub fn word(self) -> &'static str {
         Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
     }
@@ -55,19 +55,19 @@ impl Scheme {
     }
 }
 
-/// A link as the user writes it. Its text is the same on the command line and in the window.
+/// A link as written by the user, in the same form on the command line and in the window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkUrl {
-    /// Kind of wire.
+    /// Kind of connection.
     pub scheme: Scheme,
-    /// Path, host and port, or file; empty for `sim:`. For `bridge:`, a path, or host and port after `tcp:`; for `modbus:`
-    /// and `enip:`, always with the port, which is 502 or 44818 by default.
+    /// Path, host and port, or file; empty for `sim:`. For `bridge:`, a path, or host and port after `tcp:`; for
+    /// `modbus:` and `enip:`, always with the port, which defaults to 502 or 44818.
     pub target: String,
-    /// The parameters after the question mark.
+    /// Parameters after the question mark.
     pub query: Query,
 }
 
-/// The resource of the computer that a link uses; two links may use the same.
+/// The resource of the computer that a link uses, which several links may share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire<'a> {
     /// The device is in this process.
@@ -80,62 +80,62 @@ pub enum Wire<'a> {
     File(&'a str),
 }
 
-/// Parameters in the order written. Names are lower case, and unique.
+/// Parameters in the order written. Names are lower case and unique.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Query(Vec<(String, String)>);
 
-/// The reason why a text is not a link.
+/// The reason why a string is not a link.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UrlError {
-    /// The colon is missing, or the word before it is not a kind of link.
+    /// The colon is missing, or the keyword before it is unknown.
     #[error("{0:?} is not a link: a link begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:")]
     Scheme(String),
-    /// A kind of link that cannot reach this device.
+    /// This kind of link cannot reach the device.
     #[error("{scheme}: links cannot be used for this device; valid links begin with {known}")]
     Device {
-        /// The word before the colon.
+        /// Keyword before the colon.
         scheme: &'static str,
-        /// The words that are allowed.
+        /// Allowed keywords.
         known: &'static str,
     },
     /// The port, host or file is missing.
     #[error("{}: needs {}", scheme.word(), scheme.needs())]
     Target {
-        /// The kind of link.
+        /// Kind of connection.
         scheme: Scheme,
     },
-    /// The text after the host is not a port.
+    /// The port number is invalid.
     #[error("{scheme}: {port} is not a port from 1 to 65535")]
     Port {
-        /// The word before the colon.
+        /// Keyword before the colon.
         scheme: &'static str,
-        /// The text of the port.
+        /// The invalid port.
         port: String,
     },
-    /// A parameter that is not of the form name=value.
+    /// A parameter is not of the form `name=value`.
     #[error("{0:?} is not of the form name=value")]
     Parameter(String),
-    /// A parameter that appears twice.
+    /// A parameter occurs twice.
     #[error("{0} appears twice")]
     Twice(String),
-    /// A parameter that this link does not accept.
+    /// The link does not accept a parameter.
     #[error("{name} is not a parameter of {scheme}: links; valid parameters are {known}")]
     Unknown {
-        /// The name as written.
+        /// Name as written.
         name: String,
-        /// The word before the colon.
+        /// Keyword before the colon.
         scheme: &'static str,
-        /// The known names.
+        /// Known names.
         known: String,
     },
-    /// A value that cannot be used.
+    /// A value is invalid.
     #[error("{name}={value} is not valid (allowed: {allowed})")]
     Value {
-        /// The parameter.
+        /// Name of the parameter.
         name: String,
-        /// The value as written.
+        /// Value as written.
         value: String,
-        /// The allowed values.
+        /// Allowed values.
         allowed: Expected,
     },
 }
@@ -172,12 +172,12 @@ impl FromStr for LinkUrl {
 }
 
 impl LinkUrl {
-    /// Creates the virtual device as delivered.
+    /// Returns the link to the virtual device with default settings.
     pub fn sim() -> Self {
         LinkUrl { scheme: Scheme::Sim, target: String::new(), query: Query::default() }
     }
 
-    /// Returns the resource that has to be opened.
+    /// Returns the resource that must be opened.
     pub fn wire(&self) -> Wire<'_> {
         let target = self.target.as_str();
         match (self.scheme, target.strip_prefix("tcp:")) {
@@ -253,7 +253,7 @@ impl Query {
         self.0.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
     }
 
-    /// Sets a parameter; an existing one keeps its place.
+    /// Sets a parameter; an existing one keeps its position.
     pub fn set(&mut self, name: &str, value: &str) {
         match self.0.iter_mut().find(|(own, _)| own == name) {
             Some((_, own)) => value.clone_into(own),
@@ -271,10 +271,10 @@ impl Query {
         self.0.iter().filter(|(name, _)| !names.contains(&name.as_str())).cloned().collect()
     }
 
-    /// Reads a parameter; `None` if it is missing.
+    /// Parses a parameter, or returns `None` if it is missing.
     ///
     /// # Errors
-    /// Returns an error if the value is not allowed.
+    /// The value is not allowed.
     pub fn read<V: Values>(&self, name: &str, values: &V) -> Result<Option<V::Value>, UrlError> {
         Ok(self.get(name).map(|value| values.take(name, value)).transpose()?)
     }

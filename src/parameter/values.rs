@@ -1,4 +1,4 @@
-//! The values of a parameter: parsing, printing, and the allowed ones for messages.
+//! Parameter values: parsing, printing, and descriptions of the allowed ones.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -10,7 +10,6 @@ use crate::expected::{Expected, Limit, Quantity};
 pub trait Values {
     type Value;
 
-    /// Parses a value.
     fn read(&self, text: &str) -> Option<Self::Value>;
 
     fn allowed(&self) -> Expected;

@@ -1,5 +1,5 @@
-//! The content of a profile, for any kind of device. A device implements [`Profile`] for its own type; this module derives
-//! the untyped traits that documents use.
+//! Profile content for any kind of device. A device implements [`Profile`] for its own type; this module derives the
+//! untyped traits that documents use.
 
 use std::any::Any;
 use std::fmt;
@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 use super::ron_text::{Entries, Writer};
 use super::{Comparison, ProfileError};
 
-/// The profile of one kind of device, as the device implements it.
+/// Profile of one kind of device, implemented by the device.
 pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// The word for the kind of device, as on the command line and in profiles.
     const KIND: &'static str;
@@ -19,46 +19,46 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// The formats with only this one: for places where no other kind is possible.
     const FORMATS: Formats = Formats::new(&[Self::FORMAT]);
 
-    /// Reads the profile: takes its entries from those of the document.
+    /// Parses the profile from the entries of a document.
     ///
     /// # Errors
-    /// Returns an error that names the invalid entry.
+    /// Names the invalid entry.
     fn read(entries: &mut Entries) -> Result<Self, ProfileError>;
 
-    /// Writes the entries into the document.
+    /// Writes the entries of the profile to a document.
     fn write(&self, writer: &mut Writer);
 
-    /// Compares it with another one.
+    /// Compares the profile with another one.
     fn compare(&self, other: &Self) -> Comparison;
 }
 
-/// The parser for the profiles of one kind of device.
+/// Parser for the profiles of one kind of device.
 pub trait ProfileFormat: fmt::Debug + Sync {
-    /// Returns the word for the kind of device.
+    /// Returns the keyword for the kind of device.
     fn kind(&self) -> &'static str;
 
-    /// Reads a profile.
+    /// Parses a profile.
     ///
     /// # Errors
-    /// Returns an error that names the invalid entry.
+    /// Names the invalid entry.
     fn parse(&self, entries: &mut Entries) -> Result<Body, ProfileError>;
 }
 
-/// The saved content of a device. Implemented for every [`Profile`].
+/// Saved content of a device. Implemented for every [`Profile`].
 pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
-    /// Returns the word for the kind of device.
+    /// Returns the keyword for the kind of device.
     fn kind(&self) -> &'static str;
 
-    /// Writes the entries into the document.
+    /// Writes the entries of the profile to a document.
     fn emit(&self, writer: &mut Writer);
 
-    /// Returns a copy.
+    /// Returns a copy in a box.
     fn boxed(&self) -> Box<dyn ProfileBody>;
 
-    /// Returns whether it equals another body.
+    /// Returns whether the body equals another one.
     fn equals(&self, other: &dyn ProfileBody) -> bool;
 
-    /// Compares it with another one; `None` if that is of another kind of device.
+    /// Compares the body with another one, or returns `None` if that is of another kind of device.
     fn compared(&self, other: &dyn ProfileBody) -> Option<Comparison>;
 }
 
@@ -105,26 +105,25 @@ impl<P: Profile> ProfileFormat for FormatOf<P> {
     }
 }
 
-/// The content of a profile of some kind of device.
+/// Content of a profile for any kind of device.
 pub struct Body(Box<dyn ProfileBody>);
 
 impl Body {
-    /// Creates a profile of a kind of device.
+    /// Wraps the profile of a kind of device.
     pub fn new<P: Profile>(profile: P) -> Self {
         Body(Box::new(profile))
     }
 
-    /// Returns the word for the kind of device.
+    /// Returns the keyword for the kind of device.
     pub fn kind(&self) -> &'static str {
         self.0.kind()
     }
 
-    /// Writes the entries into the document.
     pub(super) fn emit(&self, writer: &mut Writer) {
         self.0.emit(writer);
     }
 
-    /// Compares it with another one.
+    /// Compares the profile with another one.
     ///
     /// # Errors
     /// [`ProfileError::OtherKind`].
@@ -132,24 +131,24 @@ impl Body {
         self.0.compared(other.0.as_ref()).ok_or_else(|| other.is_not(self.kind()))
     }
 
-    /// Returns the error that this is another kind of device than `wanted`.
+    /// Returns the error for a profile of a kind of device other than `wanted`.
     pub fn is_not(&self, wanted: &'static str) -> ProfileError {
         ProfileError::OtherKind { found: self.kind(), wanted }
     }
 
-    /// Returns the profile as that of a kind of device; `None` if it is of another kind.
+    /// Returns the profile as `P`, or `None` if it is of another kind of device.
     pub fn get<P: Profile>(&self) -> Option<&P> {
         let any: &dyn Any = self.0.as_ref();
         any.downcast_ref()
     }
 
-    /// Returns the same, to be changed.
+    /// Returns the profile as `P`, mutably.
     pub fn get_mut<P: Profile>(&mut self) -> Option<&mut P> {
         let any: &mut dyn Any = self.0.as_mut();
         any.downcast_mut()
     }
 
-    /// Returns the profile of a kind of device.
+    /// Converts the profile to `P`.
     ///
     /// # Errors
     /// [`ProfileError::OtherKind`].
@@ -178,17 +177,17 @@ impl PartialEq for Body {
     }
 }
 
-/// The formats of profiles that can be read, in the order in which messages list them.
+/// Readable profile formats, in the order in which messages list them.
 #[derive(Clone, Copy, Debug)]
 pub struct Formats(&'static [&'static dyn ProfileFormat]);
 
 impl Formats {
-    /// Creates a list of these.
+    /// Creates a list of formats.
     pub const fn new(formats: &'static [&'static dyn ProfileFormat]) -> Self {
         Formats(formats)
     }
 
-    /// Returns the words for the kinds of devices.
+    /// Returns the keywords for the kinds of devices.
     pub fn kinds(self) -> impl Iterator<Item = &'static str> {
         self.0.iter().map(|format| format.kind())
     }

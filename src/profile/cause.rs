@@ -1,10 +1,11 @@
-//! An error of a device's own type, passed through code that knows no device.
+//! Device-specific errors on their way through code that knows no device.
 
 use std::any::Any;
 use std::error::Error;
 use std::fmt;
 
-/// The reason why a text is refused, as the device's own error type. It displays like that error and compares equal to it.
+/// The device-specific reason why a profile entry is refused. It displays like the wrapped error and compares equal to
+/// it.
 pub struct Cause(Box<dyn Fact>);
 
 trait Fact: Any + Error + Send + Sync {
@@ -24,12 +25,12 @@ impl<E: Error + Clone + Eq + Send + Sync + 'static> Fact for E {
 }
 
 impl Cause {
-    /// Creates an error of a device.
+    /// Wraps an error of a device.
     pub fn new<E: Error + Clone + Eq + Send + Sync + 'static>(error: E) -> Self {
         Cause(Box::new(error))
     }
 
-    /// Returns the error if it is of this type.
+    /// Returns the wrapped error if it has type `E`.
     pub fn get<E: Error + 'static>(&self) -> Option<&E> {
         let any: &dyn Any = self.0.as_ref();
         any.downcast_ref()

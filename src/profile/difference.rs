@@ -1,33 +1,33 @@
-//! The differences between two profiles, or between a profile and a device.
+//! Differences between two profiles, or between a profile and a device.
 
 use std::ops::Range;
 
-/// One thing that is not the same on both sides.
+/// An item whose values differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// The name, as `read` takes it: `field:1@3+2`.
+    /// Name of the item as accepted by `read`, such as `field:1@3+2`.
     pub item: String,
-    /// The value on the left; bytes as upper-case hex.
+    /// Value on the left side; bytes as upper-case hex.
     pub left: String,
-    /// The value on the right.
+    /// Value on the right side.
     pub right: String,
 }
 
-/// The result of a comparison.
+/// Result of a comparison.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Comparison {
-    /// Only the differences, in the order of the device's memory.
+    /// The differences in the order of the device memory.
     pub differences: Vec<Difference>,
-    /// Number of values compared: a byte of a data field counts one, and so does its status byte.
+    /// Number of values compared. Each byte of a data field counts as one, and so does its status byte.
     pub compared: u64,
-    /// Items that only the left side has, or that the right side cannot read.
+    /// Items that are only present, or only readable, on the left side.
     pub only_left: Vec<String>,
-    /// Items that only the right side has, or that the left side cannot read.
+    /// Items that are only present, or only readable, on the right side.
     pub only_right: Vec<String>,
 }
 
 impl Comparison {
-    /// Compares an item that counts one, as far as both sides have it.
+    /// Compares an item that counts as one value, if both sides have it.
     pub fn add<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
         match (left, right) {
             (None, None) => {}
@@ -42,7 +42,7 @@ impl Comparison {
         }
     }
 
-    /// Returns the items that only one side has.
+    /// Returns the items that are present on one side only.
     pub fn missing(&self) -> Vec<String> {
         self.only_left.iter().chain(&self.only_right).cloned().collect()
     }

@@ -1,4 +1,4 @@
-//! A profile document: schema version, kind of device, and the saved content.
+//! Profile documents: schema version, kind of device, and saved content.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -14,36 +14,36 @@ use super::ron_text::{Entries, Unknown, Writer};
 use super::unique_names::UniqueNames;
 use crate::expected::Expected;
 
-/// The version of the profile's form that this program writes.
+/// Version of the profile schema that this program writes.
 pub const SCHEMA: u32 = 1;
 
-/// A profile as written in a file.
+/// A profile document as stored in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Document {
-    /// Time at which it was read from a device, RFC 3339.
+    /// Time at which the profile was read from a device, RFC 3339.
     pub saved: Option<String>,
-    /// The user's note.
+    /// Note of the user.
     pub note: Option<String>,
-    /// The content.
+    /// Saved content.
     pub body: Body,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
-    /// The version of its form. A profile newer than [`SCHEMA`] can only be viewed: a save would lose its unknown parts.
+    /// Schema version. A profile newer than [`SCHEMA`] can only be viewed, since saving would lose its unknown parts.
     pub schema: u32,
-    /// Paths of entries that the schema does not have: those of an older file are moved into `extra`.
+    /// Paths of entries that the schema does not define; those of an older file are moved into `extra`.
     pub beyond: Vec<String>,
 }
 
 impl Document {
-    /// Creates a document with the current time.
+    /// Creates a document with the given time of reading.
     pub fn new(saved: String, body: Body) -> Self {
         Document { saved: Some(saved), note: None, body, unknown: Unknown::new(), schema: SCHEMA, beyond: Vec::new() }
     }
 
-    /// Reads a profile whose kind of device has a format in `formats`.
+    /// Parses a profile of a kind of device with a format in `formats`.
     ///
     /// # Errors
-    /// Returns line and column if the text is not RON, otherwise the invalid entry.
+    /// Returns line and column if the file is not valid RON, otherwise the invalid entry.
     pub fn parse(text: &str, formats: Formats) -> Result<Self, ProfileError> {
         let twice = RefCell::default();
         let syntax = |error: SpannedError| ProfileError::Syntax {
@@ -85,20 +85,21 @@ impl Document {
         Ok(Document { saved, note, body, unknown, schema, beyond: reading.beyond() })
     }
 
-    /// Returns whether it has a newer schema: it can be viewed and compared, but neither saved nor written into a device.
+    /// Returns whether the schema is newer: the profile can be viewed and compared, but neither saved nor written to a
+    /// device.
     pub fn is_newer(&self) -> bool {
         self.schema > SCHEMA
     }
 
-    /// Returns the document if all of it is known.
+    /// Returns the document if its schema is known.
     ///
     /// # Errors
-    /// [`ProfileError::Schema`] of a newer schema.
+    /// [`ProfileError::Schema`] for a newer schema.
     pub fn known(self) -> Result<Self, ProfileError> {
         if self.is_newer() { Err(ProfileError::Schema { found: self.schema, known: SCHEMA }) } else { Ok(self) }
     }
 
-    /// Returns the profile's text.
+    /// Returns the file content.
     pub fn emit(&self) -> String {
         let mut writer = Writer::default();
         writer.open("", '(');
@@ -116,7 +117,7 @@ impl Document {
         writer.finish()
     }
 
-    /// Returns the word for the kind of device, as on the command line.
+    /// Returns the keyword for the kind of device, as used on the command line.
     pub fn device(&self) -> &'static str {
         self.body.kind()
     }

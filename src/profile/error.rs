@@ -1,106 +1,106 @@
-//! The reasons why a text is not a profile.
+//! Reasons why a file is not a valid profile.
 
 use super::Cause;
 use crate::bits::HexError;
 use crate::expected::Expected;
 
-/// The reason why a text is not a profile.
+/// The reason why a file is not a valid profile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProfileError {
-    /// The text is not RON.
+    /// The file is not valid RON.
     #[error("line {line}, column {column}: {what}")]
     Syntax {
-        /// Counted from 1.
+        /// Line number, starting at 1.
         line: usize,
-        /// Counted from 1.
+        /// Column number, starting at 1.
         column: usize,
-        /// The problem.
+        /// Description of the problem.
         what: SyntaxProblem,
     },
-    /// The name of an entry is not known, and a similar one is missing.
+    /// The name of an entry is unknown, and an entry with a similar name is missing.
     #[error("line {line}, column {column}: {path} is unknown, and {intended} is missing")]
     Misspelt {
-        /// Counted from 1.
+        /// Line number, starting at 1.
         line: usize,
-        /// Counted from 1.
+        /// Column number, starting at 1.
         column: usize,
         /// Path of the entry, such as `fields[2].statsu`.
         path: String,
-        /// The name that is missing.
+        /// Name of the missing entry.
         intended: String,
     },
-    /// The version of the form is missing, or newer than known where the whole profile has to be known.
+    /// The schema version is missing, or newer than supported where the whole profile must be understood.
     #[error("schema {found}; this program knows schema 1 to {known}")]
     Schema {
-        /// The value in the file.
+        /// Version in the file.
         found: u32,
-        /// The newest known version.
+        /// Newest supported version.
         known: u32,
     },
-    /// The kind of device has no profiles in this program.
+    /// This program has no profiles for the kind of device.
     #[error("device {found:?}; this program knows {}", quoted(known))]
     Device {
-        /// The value in the file.
+        /// Kind of device in the file.
         found: String,
-        /// The known kinds.
+        /// Known kinds of device.
         known: Vec<&'static str>,
     },
-    /// A kind of device that this program saves, and not the one that is asked for.
+    /// The profile is for another kind of device than required.
     #[error("a profile of a {found} device where one of a {wanted} device is needed")]
     OtherKind {
-        /// The value in the file.
+        /// Kind of device in the file.
         found: &'static str,
-        /// The required value.
+        /// Required kind of device.
         wanted: &'static str,
     },
-    /// Something has to be there and is not.
+    /// A required entry is missing.
     #[error("{path} is missing")]
     Missing {
         /// Path of the entry, such as `fields[2].status`.
         path: String,
     },
-    /// Something is of another kind.
+    /// An entry has the wrong type.
     #[error("{path} must be {expected}")]
     Shape {
         /// Path of the entry.
         path: String,
-        /// The expected value.
+        /// Expected value.
         expected: Expected,
     },
-    /// Bytes that are none.
+    /// An entry does not contain valid bytes.
     #[error("{path}: {problem}")]
     Bytes {
         /// Path of the entry.
         path: String,
-        /// The problem.
+        /// Description of the problem.
         problem: HexError,
     },
-    /// An invalid value, or an invalid combination of values, with the error of the device.
+    /// A value, or a combination of values, is invalid according to the device.
     #[error("{path}: {cause}")]
     Refused {
         /// Path of the entry.
         path: String,
-        /// The reason.
+        /// Reason given by the device.
         cause: Cause,
     },
 }
 
-/// The reason why a text is not RON, or not RON of a profile.
+/// A violation of the RON syntax, or of its use in profiles.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SyntaxProblem {
-    /// Structures in structures in structures.
+    /// Structures are nested too deeply.
     #[error("nested too deeply")]
     TooDeep,
-    /// A name that a structure has twice.
+    /// A name occurs twice within a structure.
     #[error("{0} appears twice")]
     Twice(String),
-    /// The message of the parser.
+    /// Message of the RON parser.
     #[error("{0}")]
     Parser(String),
 }
 
 impl ProfileError {
-    /// Creates the error for a device that refuses the entry at `path`.
+    /// Creates the error for an entry that the device refuses.
     pub fn refused<E: std::error::Error + Clone + Eq + Send + Sync + 'static>(path: String, error: E) -> Self {
         ProfileError::Refused { path, cause: Cause::new(error) }
     }

@@ -1,4 +1,4 @@
-//! Misspelt names of entries, and entries that the schema does not have, found while a profile is read.
+//! Detection of misspelt entry names, and of entries that the schema does not define, while a profile is read.
 
 use std::cell::{Cell, RefCell};
 
@@ -9,7 +9,6 @@ use super::{ProfileError, SCHEMA};
 pub(super) struct Reading {
     /// The newer schema of the file, whose unknown entries are kept.
     newer: Cell<Option<u32>>,
-    /// Places of entries beyond the schema.
     beyond: RefCell<Vec<String>>,
     /// The misspelt name of an entry that was not found, and the cause of an error about that entry.
     slip: RefCell<Option<Misspelling>>,
@@ -18,10 +17,8 @@ pub(super) struct Reading {
 /// A name that differs from another one by a typing error. The one with the fewest different letters is the least.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Misspelling {
-    /// Number of differing letters.
     pub(super) letters: usize,
     pub(super) path: String,
-    /// The intended name.
     pub(super) intended: String,
 }
 

@@ -1,4 +1,4 @@
-//! Profiles, differences and plans. No I/O: files are opened by `store`, devices are read and written by their procedures.
+//! Profiles, differences and plans. No I/O: files are opened by `store`, devices are accessed by their procedures.
 
 #![warn(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! Values that belong to the mounting of a device on one machine, as marked in profiles.
+//! Marks in profiles for values that belong to the mounting of a device on one machine.
 
 use std::error::Error;
 
@@ -6,14 +6,14 @@ use super::ProfileError;
 use super::ron_text::{Entries, Unknown, Writer, entries_text, quoted};
 use crate::expected::Expected;
 
-/// Something that is right for one device on one machine and no other.
+/// A mark on a value that is valid for one device on one machine only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MountingMark<Item> {
-    /// The item, which can be written.
+    /// Marked item, which is writable.
     pub item: Item,
-    /// The meaning of the item.
+    /// Meaning of the item.
     pub meaning: String,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 

@@ -1,4 +1,4 @@
-//! The location of an entry in the text of a profile, which the parser's values do not keep.
+//! Source locations of profile entries, which the values of the parser do not contain.
 
 use std::fmt;
 

@@ -1,28 +1,28 @@
-//! The one way to write: read → difference → plan → consent to *this* plan → write → read back.
+//! The only way to write: read → difference → plan → consent to *this* plan → write → read back.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// A planned write, for the user to review. Only its operations are carried out.
+/// A planned write for review by the user. Only its operations are carried out.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Plan<Base, Op> {
-    /// The values read before; they are read again before the first operation and must be unchanged.
+    /// The values on which the plan is based. They are read again before the first operation and must be unchanged.
     pub base: Base,
-    /// The operations, in the order in which they are carried out.
+    /// Operations in execution order.
     pub ops: Vec<Op>,
 }
 
-/// One operation of a plan.
+/// An operation of a plan.
 pub trait Operation {
-    /// Returns the number of persistent writes that it costs when nothing has to be repeated.
+    /// Returns the number of persistent writes that the operation costs if nothing is repeated.
     fn write_cycles(&self) -> u64;
 }
 
-/// Identifies the plan that a consent is for.
+/// Identification of the plan to which a consent applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanId(u64);
 
 impl<Base: Hash, Op: Hash> Plan<Base, Op> {
-    /// Two plans with another base or other operations have another id.
+    /// Returns the id of the plan. Plans with another base or other operations have another id.
     pub fn id(&self) -> PlanId {
         let mut hasher = DefaultHasher::new();
         self.hash(&mut hasher);
@@ -31,20 +31,20 @@ impl<Base: Hash, Op: Hash> Plan<Base, Op> {
 }
 
 impl<Base, Op> Plan<Base, Op> {
-    /// Returns whether there is nothing to do.
+    /// Returns whether the plan contains no operations.
     pub fn is_empty(&self) -> bool {
         self.ops.is_empty()
     }
 }
 
 impl<Base, Op: Operation> Plan<Base, Op> {
-    /// Returns the number of persistent writes it costs when nothing has to be repeated.
+    /// Returns the number of persistent writes that the plan costs if nothing is repeated.
     pub fn write_cycles(&self) -> u64 {
         self.ops.iter().map(Operation::write_cycles).sum()
     }
 }
 
-/// The user's consent to one plan. Only the window and the command line create one.
+/// The user's consent to a plan. Only the window and the command line create one.
 #[derive(Clone, Copy, Debug)]
 pub struct Consent(PlanId);
 
@@ -54,7 +54,7 @@ impl Consent {
         Consent(plan)
     }
 
-    /// Returns whether the consent is for this plan.
+    /// Returns whether the consent applies to a plan.
     pub fn covers(self, plan: PlanId) -> bool {
         self.0 == plan
     }

@@ -1,11 +1,11 @@
-//! A profile saved over a text edited by a user, and profiles of two users merged.
+//! Saving a profile over a file edited by a user, and merging the profiles of two users.
 
 use super::source::{Carried, Change, applied, carry, changes, lost};
 use super::{Document, Formats, ProfileError};
 
 impl Document {
-    /// Returns `text` with the content of the document: equal entries remain as written, with comments, order and line
-    /// ends.
+    /// Returns `text` with the content of the document. Unchanged entries remain as written, with comments, order and
+    /// line endings.
     pub fn emit_over(&self, text: &str, formats: Formats) -> Carried {
         let own = self.emit();
         let before = Document::parse(text, formats).map(|before| before.emit());
@@ -21,32 +21,32 @@ impl Document {
         }
     }
 
-    /// Returns the changes that turn this into `other`, entry by entry.
+    /// Returns the changes that turn this document into `other`, entry by entry.
     pub fn changes_to(&self, other: &Document) -> Vec<Change> {
         changes(&self.emit(), &other.emit()).unwrap_or_default()
     }
 
-    /// Returns the document with these changes.
+    /// Applies changes to the document.
     ///
     /// # Errors
-    /// Returns the error if the result is not a profile; `None` if a change has no place in it.
+    /// The result is not a valid profile; `None` if a change does not apply.
     pub fn changed(&self, changes: &[Change], formats: Formats) -> Result<Document, Option<ProfileError>> {
         Document::parse(&applied(&self.emit(), changes).ok_or(None)?, formats).map_err(Some)
     }
 }
 
-/// Which side changed an entry since both had the same profile.
+/// The side that has changed an entry since both had the same profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Changed {
-    /// The other one alone.
+    /// Only the other side.
     There,
-    /// This one alone.
+    /// Only this side.
     Here,
-    /// Both.
+    /// Both sides.
     Both,
 }
 
-/// Returns the changes that turn `theirs` into `mine`, and which side made each.
+/// Returns the changes that turn `theirs` into `mine`, and the side that made each of them.
 pub fn divergence(base: &Document, theirs: &Document, mine: &Document) -> Vec<(Change, Changed)> {
     let (there, here) = (base.changes_to(theirs), base.changes_to(mine));
     let touches = |own: &[Change], change: &Change| {

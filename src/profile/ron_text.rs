@@ -1,5 +1,5 @@
-//! RON for profiles. The `ron` crate reads; unknown entries are kept as read. Writing is done here, because a profile is
-//! for people: hexadecimal numbers, sixteen bytes per line, comments.
+//! RON for profiles. The `ron` crate reads, and unknown entries are preserved as read. Writing is implemented here to
+//! produce readable files: hexadecimal numbers, sixteen bytes per line, comments.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -19,7 +19,7 @@ pub type Unknown = BTreeMap<String, Value>;
 /// Name of the structure that holds the user's own entries.
 const EXTRA: &str = "extra";
 
-/// The entries of a structure, taken out one by one; the remaining ones are the user's own, or misspelt.
+/// The entries of a structure, which are taken out one by one. The remaining ones are the user's own, or misspelt.
 pub struct Entries {
     path: String,
     entries: BTreeMap<String, Value>,
@@ -73,17 +73,17 @@ impl Entries {
         slips.min()
     }
 
-    /// Returns the path of the structure, for messages.
+    /// Returns the path of the structure for use in messages.
     pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// Returns the path of an entry, for messages.
+    /// Returns the path of an entry for use in messages.
     pub fn path_of(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// Takes a plain value; `None` if it is missing.
+    /// Takes a plain value, or `None` if it is missing.
     pub fn optional<T: DeserializeOwned>(&mut self, name: &str, expected: Expected) -> Result<Option<T>, ProfileError> {
         let Some(value) = self.take(name) else { return Ok(None) };
         if matches!(value, Value::Option(None)) {
@@ -92,19 +92,19 @@ impl Entries {
         unwrapped(value).into_rust().map(Some).map_err(|_| ProfileError::Shape { path: self.path_of(name), expected })
     }
 
-    /// Takes a plain value that is required.
+    /// Takes a required plain value.
     pub fn required<T: DeserializeOwned>(&mut self, name: &str, expected: Expected) -> Result<T, ProfileError> {
         self.optional(name, expected)?.ok_or_else(|| ProfileError::Missing { path: self.path_of(name) })
     }
 
-    /// Takes a structure that is required.
+    /// Takes a required structure.
     pub fn structure(&mut self, name: &str) -> Result<Entries, ProfileError> {
         let path = self.path_of(name);
         let value = self.take(name).ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
         Entries::open(&path, value, &self.reading)
     }
 
-    /// Takes a structure; `None` if it is missing.
+    /// Takes a structure, or `None` if it is missing.
     pub fn optional_structure(&mut self, name: &str) -> Result<Option<Entries>, ProfileError> {
         let path = self.path_of(name);
         match self.take(name) {
@@ -113,7 +113,7 @@ impl Entries {
         }
     }
 
-    /// Takes bytes: a list of hex lines, or one text.
+    /// Takes bytes, given as a list of hex strings or a single one.
     pub fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
         let path = self.path_of(name);
         let Some(value) = self.optional::<Value>(name, Expected::HexLines)? else { return Ok(None) };
@@ -127,7 +127,7 @@ impl Entries {
         bytes.map(|rows| Some(rows.concat())).map_err(|problem| ProfileError::Bytes { path, problem })
     }
 
-    /// Takes a list of structures that is required.
+    /// Takes a required list of structures.
     pub fn required_structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         if !self.entries.contains_key(name) {
             self.missed.push(name.to_owned());
@@ -136,7 +136,7 @@ impl Entries {
         self.structures(name)
     }
 
-    /// Takes a list of structures; empty if it is missing.
+    /// Takes a list of structures, which is empty if missing.
     pub fn structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         let path = self.path_of(name);
         match self.take(name).map(unwrapped) {
@@ -150,7 +150,7 @@ impl Entries {
         }
     }
 
-    /// Takes a map with any keys, in their order; empty if it is missing.
+    /// Takes a map with arbitrary keys in their order, which is empty if missing.
     pub fn map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
         match self.take(name).map(unwrapped) {
             None | Some(Value::Unit) => Ok(Vec::new()),
@@ -159,11 +159,11 @@ impl Entries {
         }
     }
 
-    /// Returns the entries that were not read: the user's own, which belong in `extra`, or unknown ones of a newer schema.
-    /// Entries outside `extra` are moved into it, because older files have them there.
+    /// Returns the entries that have not been taken: the user's own, which belong in `extra`, or unknown ones of a
+    /// newer schema. Entries outside `extra` are moved into it, because older files have them there.
     ///
     /// # Errors
-    /// [`ProfileError::Misspelt`] if one is the misspelt name of a missing entry.
+    /// [`ProfileError::Misspelt`] if one of them is the misspelt name of a missing entry.
     pub fn rest(mut self) -> Result<Unknown, ProfileError> {
         let left = std::mem::take(&mut self.entries);
         if self.reading.is_newer() {
@@ -186,7 +186,7 @@ impl Entries {
         Ok(own)
     }
 
-    /// Notes that the entry at this path is beyond the schema.
+    /// Records that the schema does not define the entry at this path.
     pub fn is_beyond(&self, path: String) {
         self.reading.is_beyond(path);
     }
@@ -221,7 +221,7 @@ fn unwrapped(value: Value) -> Value {
     }
 }
 
-/// Writes a profile's text.
+/// Writer for profile files.
 #[derive(Default)]
 pub struct Writer {
     out: String,
@@ -229,18 +229,18 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Writes a comment on a line of its own.
+    /// Writes a comment on a separate line.
     pub fn comment(&mut self, text: &str) {
         self.line(&format!("// {text}"));
     }
 
-    /// Writes `name: value,` with the value as given, and a comment after it.
+    /// Writes `name: value,` with the value as given, followed by a comment.
     pub fn entry(&mut self, name: &str, value: &str, comment: &str) {
         let behind = if comment.is_empty() { String::new() } else { format!(" // {comment}") };
         self.line(&format!("{name}: {value},{behind}"));
     }
 
-    /// Writes an element of a list as given.
+    /// Writes a list element as given.
     pub fn entry_in_list(&mut self, value: &str) {
         self.line(&format!("{value},"));
     }
@@ -250,7 +250,7 @@ impl Writer {
         self.entry(name, &quoted(text), "");
     }
 
-    /// Writes bytes as a list of lines of sixteen, each followed by its text.
+    /// Writes bytes as a list of strings of sixteen bytes, each followed by its ASCII characters.
     pub fn bytes(&mut self, name: &str, bytes: &[u8]) {
         self.open(name, '[');
         for row in bytes.chunks(16) {
@@ -261,14 +261,14 @@ impl Writer {
         self.close(']');
     }
 
-    /// Writes the user's own entries as read.
+    /// Writes unknown entries as they were read.
     pub fn unknown(&mut self, unknown: &Unknown) {
         if !unknown.is_empty() {
             self.entry(EXTRA, &extra_text(unknown), "");
         }
     }
 
-    /// Begins a structure or list; without a name inside a list and at the top.
+    /// Begins a structure or list; the name is empty within a list and at the top level.
     pub fn open(&mut self, name: &str, bracket: char) {
         let head = if name.is_empty() { bracket.to_string() } else { format!("{name}: {bracket}") };
         self.line(&head);
@@ -292,7 +292,6 @@ impl Writer {
     }
 }
 
-/// Returns a RON string.
 pub(crate) fn quoted(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }

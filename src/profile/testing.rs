@@ -1,4 +1,4 @@
-//! Helpers for the tests of profiles of any kind of device.
+//! Helpers for profile tests of any kind of device.
 
 use super::{Carried, Document, Profile};
 

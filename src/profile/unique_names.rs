@@ -1,5 +1,5 @@
-//! Names that appear twice in a structure of a profile. The `ron` crate keeps the last of them without a word; in a file
-//! edited by hand that would drop the other.
+//! Detection of names that occur twice in a structure. The `ron` crate silently keeps the last one, which would drop
+//! the other from a file edited by hand.
 
 use std::cell::RefCell;
 use std::collections::HashSet;

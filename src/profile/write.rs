@@ -1,13 +1,13 @@
-//! Carries out a plan in the same way for every kind of device: reads its base again, carries out the operations in order,
-//! and restores the mode of the device. A kind supplies a [`Write`]. Only `worker::commit` calls this, because it saves the
-//! before-image in between.
+//! Execution of a plan, the same for every kind of device: reads its base again, carries out the operations in order,
+//! and restores the mode of the device. A kind supplies a [`Write`]. Only `worker::commit` calls this module, because
+//! it saves the backup in between.
 
 use std::fmt;
 use std::hash::Hash;
 
 use super::{Consent, Operation, Plan, WriteRecord};
 
-/// The device that a plan is written into: the parts that differ between kinds.
+/// The device to which a plan is written: the parts that differ between kinds.
 pub trait Write {
     /// The values that a plan is based on.
     type Base: Hash;
@@ -20,25 +20,25 @@ pub trait Write {
     /// The state in which an interrupted write left the device.
     type EndState;
 
-    /// Reads the base of the plan again, and writes nothing: first it checks that it is the device for which the plan was
-    /// made.
+    /// Reads the base of the plan again without writing, after checking that the device is the one for which the plan
+    /// was made.
     ///
     /// # Errors
-    /// Returns an error if anything has changed.
+    /// The device or the values have changed.
     fn confirm(&mut self, plan: &Plan<Self::Base, Self::Op>) -> Result<(), <Self::Error as OperationError>::Device>;
 
     /// Prepares the device for the first operation.
     ///
     /// # Errors
-    /// Returns an error before any operation begins.
+    /// Preparation failed; no operation has begun.
     fn begin(&mut self) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// Carries an operation out, reads it back if possible, and counts it.
+    /// Carries out an operation, reads it back if possible, and counts it.
     ///
     /// # Errors
-    /// Returns an error; the operations after it do not begin.
+    /// The operation failed; subsequent operations do not begin.
     fn apply(
         &mut self,
         op: &Self::Op,
@@ -46,10 +46,10 @@ pub trait Write {
         done: &mut Self::Written,
     ) -> Result<(), Self::Error>;
 
-    /// Reads back the values that can only be read after all operations.
+    /// Reads back the values that are only readable after all operations.
     ///
     /// # Errors
-    /// Returns an error if a value is not as planned.
+    /// A value differs from the plan.
     fn finish(
         &mut self,
         _confirmed: &Confirmed<'_, Self::Base, Self::Op>,
@@ -58,7 +58,7 @@ pub trait Write {
         Ok(())
     }
 
-    /// Leads the device back to a safe state, however the operations ended.
+    /// Returns the device to a safe state, however the operations ended.
     ///
     /// # Errors
     /// The reason why the operations ended early, or why the mode of the device cannot be restored.
@@ -71,7 +71,7 @@ pub trait Write {
         ended
     }
 
-    /// Returns in which state a write that ended early has left the device.
+    /// Returns the state in which a write that ended early has left the device.
     fn end_state(&mut self, cause: &Self::Error) -> Self::EndState;
 }
 
@@ -80,7 +80,7 @@ pub trait OperationError: fmt::Display {
     /// The error of the device or its connection.
     type Device;
 
-    /// Returns the error of the device or its connection; `None` if the cause was another one.
+    /// Returns the error of the device or its connection, or `None` for other causes.
     fn device(&self) -> Option<&Self::Device>;
 
     /// Returns whether the user cancelled and no other error occurred.
@@ -92,7 +92,7 @@ pub trait DeviceError: fmt::Display {
     /// Returns whether the user cancelled and no other error occurred.
     fn is_only_cancelled(&self) -> bool;
 
-    /// Returns whether the user cancelled, whatever failed after that.
+    /// Returns whether the user cancelled, even if errors followed.
     fn is_cancelled(&self) -> bool {
         self.is_only_cancelled()
     }
@@ -110,21 +110,21 @@ impl<E: DeviceError> OperationError for E {
     }
 }
 
-/// A plan that a user consented to and whose base is unchanged. Without it no operation can be carried out.
+/// A plan with the user's consent and an unchanged base. Operations require one.
 pub struct Confirmed<'p, Base, Op> {
     plan: &'p Plan<Base, Op>,
 }
 
-/// The progress of an interrupted write, and its cause.
+/// Progress of an interrupted write, and its cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interrupted<Op, E, Done, Left> {
-    /// The changes written before.
+    /// Changes that were written before the interruption.
     pub done: Done,
-    /// The operation that was not finished, and may have begun; `None` if all were carried out.
+    /// Operation that was not completed and may have begun, or `None` if all operations were carried out.
     pub unfinished: Option<Op>,
-    /// The cause of the interruption.
+    /// Cause of the interruption.
     pub cause: E,
-    /// The state in which the device was left.
+    /// State in which the device was left.
     pub end_state: Left,
 }
 
@@ -142,7 +142,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
         consent.covers(plan.id()).then(|| write.confirm(plan).map(|()| Confirmed { plan }))
     }
 
-    /// Returns the plan.
+    /// Returns the confirmed plan.
     pub fn plan(&self) -> &'p Plan<Base, Op> {
         self.plan
     }

@@ -1,23 +1,23 @@
-//! The result of a write whose operations are complete or not started, never partial.
+//! Result of a write whose operations are complete or not started, never partial.
 
 /// The changes that were written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Written {
-    /// Operations carried out, of the plan's.
+    /// Number of operations of the plan that were carried out.
     pub ops: usize,
-    /// Number of values changed, counted as by a comparison; otherwise one per operation.
+    /// Number of changed values, counted as in a comparison, or otherwise one per operation.
     pub written: u64,
-    /// Number of values that were read back and found correct.
+    /// Number of values that were read back and are correct.
     pub verified: u64,
-    /// Number of persistent writes spent, or possibly spent; repeated ones included.
+    /// Number of persistent writes spent, or possibly spent, including repetitions.
     pub write_cycles: u64,
 }
 
-/// The record of a write that a kind of device keeps.
+/// The record of a write, as kept by a kind of device.
 pub trait WriteRecord: Default {
     /// Returns the number of operations of the plan that were carried out.
     fn ops(&self) -> usize;
-    /// Returns the number of persistent writes spent, or that may have been.
+    /// Returns the number of persistent writes spent, or possibly spent.
     fn write_cycles(&self) -> u64;
 }
 

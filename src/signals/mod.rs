@@ -1,4 +1,4 @@
-//! Signals: sine and cosine without a device.
+//! Signals: analysis of sine and cosine without a device.
 
 pub(crate) mod commands;
 pub mod state;

@@ -1,12 +1,12 @@
-//! Injected faults: noise on the line, slow and silent devices, a power cut during a store. Parsed from `--fault` and
-//! `sim:?fault=`. Each device defines how a fault affects it.
+//! Injected faults: noise on the line, slow and silent devices, and a power cut during a store. Parsed from `--fault`
+//! and `sim:?fault=`. Each device defines how a fault affects it.
 
 use std::str::FromStr;
 use std::time::Duration;
 
 use fastrand::Rng;
 
-/// The faults of a virtual device; none by default.
+/// Faults of a virtual device; none by default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Faults {
     drop: f64,
@@ -17,28 +17,28 @@ pub struct Faults {
     die_in_store: Option<u32>,
 }
 
-/// The values of a setting for faults.
+/// Valid values of a fault setting.
 pub const FAULTS: FaultList = FaultList;
 
-/// See [`FAULTS`].
+/// Parser for faults; see [`FAULTS`].
 #[derive(Clone, Copy, Debug)]
 pub struct FaultList;
 
 impl FaultList {
-    /// Returns the faults that a setting names.
+    /// Parses the faults of a setting.
     ///
     /// # Errors
-    /// Returns the first invalid one.
+    /// Returns the first invalid fault.
     pub fn take(&self, _key: &str, value: &str) -> Result<Faults, FaultError> {
         value.parse()
     }
 
-    /// Returns an empty unit.
+    /// Returns an empty string, because faults have no unit.
     pub fn unit(&self) -> &'static str {
         ""
     }
 
-    /// Returns false: faults are not numbers.
+    /// Returns `false`, because faults are not numbers.
     pub fn is_decimal(&self) -> bool {
         false
     }
@@ -47,48 +47,48 @@ impl FaultList {
 /// The reason why a fault specification is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FaultError {
-    /// A name that is none, or a name without value.
+    /// The fault is unknown, or lacks its value.
     #[error(
         "`{item}` is not a fault; valid faults are drop:P, flip:P, garbage:P, delay:MS, silent-after:N and \
          die-in-store:N, separated by commas"
     )]
     Unknown {
-        /// The item as written.
+        /// Fault as written.
         item: String,
     },
-    /// The value of drop, flip or garbage.
+    /// The value of drop, flip or garbage is not a probability.
     #[error("fault `{item}`: the probability must be a number from 0 to 1")]
     Probability {
-        /// The item as written.
+        /// Fault as written.
         item: String,
     },
-    /// The value of delay, silent-after or die-in-store.
+    /// The value of delay, silent-after or die-in-store is out of range.
     #[error("fault `{item}`: the value must be a whole number from {min} to {max}")]
     Number {
-        /// The item as written.
+        /// Fault as written.
         item: String,
-        /// Least value.
+        /// Minimum value.
         min: u32,
-        /// Greatest value.
+        /// Maximum value.
         max: u32,
     },
 }
 
-/// The passage of one byte over a noisy line.
+/// The passage of a byte over a noisy line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Passage {
-    /// A byte of noise before it.
+    /// Noise byte inserted before it, if any.
     pub inserted: Option<u8>,
-    /// The byte itself; `None` if it was lost.
+    /// The byte itself, or `None` if it was lost.
     pub carried: Option<Carried>,
 }
 
 /// A byte that arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Carried {
-    /// The data bits.
+    /// Data bits.
     pub byte: u8,
-    /// Whether one bit was inverted on the way, so that a parity bit is wrong.
+    /// Whether one bit was inverted, so that the parity is wrong.
     pub flipped: bool,
 }
 
@@ -101,17 +101,17 @@ impl Faults {
         self.delay
     }
 
-    /// Returns the number of frames after which the device neither answers nor acts.
+    /// Returns the number of frames after which the device neither replies nor acts.
     pub fn silent_after(&self) -> Option<u32> {
         self.silent_after
     }
 
-    /// Returns the store, counted from 1, in the middle of which power is lost.
+    /// Returns the number of the store, starting at 1, during which power is lost.
     pub fn die_in_store(&self) -> Option<u32> {
         self.die_in_store
     }
 
-    /// Sends one byte over the noisy line.
+    /// Passes a byte over the noisy line.
     pub fn passage(&self, rng: &mut Rng, byte: u8) -> Passage {
         let inserted = happens(self.garbage, rng).then(|| rng.u8(..));
         let carried = (!happens(self.drop, rng)).then(|| match happens(self.flip, rng) {

@@ -1,5 +1,6 @@
-//! A half-duplex line between the host's UART and virtual devices: characters are transmitted one after the other, some of
-//! them damaged, and received in the order of time. Each device defines which characters it receives and what they mean.
+//! A half-duplex line between the UART of the host and virtual devices: characters are transmitted one after another,
+//! some of them damaged, and received in the order of time. Each device defines which characters it receives and what
+//! they mean.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -25,7 +26,6 @@ impl<T> Queue<T> {
         self.0.insert(place, (at, item));
     }
 
-    /// Returns the number of items.
     pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
@@ -60,7 +60,6 @@ pub(crate) struct Character {
 
 /// The outcome of sent bytes.
 pub(crate) struct Sent {
-    /// The characters that the others receive.
     pub(crate) heard: Vec<Character>,
     /// The characters as sent: an echoing converter returns them without the noise of the line.
     pub(crate) own: Vec<Character>,
@@ -75,7 +74,6 @@ pub(crate) struct Wires {
     pub(crate) rng: Rng,
     pub(crate) host: CharacterFormat,
     pub(crate) now: Moment,
-    /// The host's UART has sent everything then.
     host_done: Moment,
     /// Numbers of bytes that the host's UART still sends, with the time at which the last of them is sent.
     sending: VecDeque<(Moment, usize)>,
@@ -140,13 +138,13 @@ pub(crate) trait VirtualLine: Send {
 
     fn happen(&mut self, at: Moment, event: Self::Event);
 
-    /// Sends bytes of the host on the line from `start` on, and returns the time at which the last one is sent.
+    /// Transmits bytes of the host from `start` on; returns when the last one has been sent.
     fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment;
 
     /// Restores the power of every device that has lost it.
     fn give_power(&mut self, now: Moment);
 
-    /// Processes the events that are due by `to`.
+    /// Processes all events due by `to`.
     fn advance(&mut self, to: Moment) {
         while let Some((at, event)) = self.next_event().filter(|(at, _)| *at <= to) {
             self.wires_mut().now = self.wires().now.max(at);

@@ -1,27 +1,27 @@
-//! The motor of a virtual shaft: a shared handle. It has no clock: a change takes effect at the next request to the
+//! The motor of a virtual shaft as a shared handle. It has no clock: a change takes effect at the next request to the
 //! encoder.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The motor of a virtual encoder. Clones are the same motor.
+/// The motor of a virtual encoder, shared by its clones.
 #[derive(Clone, Debug)]
 pub struct Motor(Arc<AtomicU64>);
 
 impl Motor {
-    /// The maximum speed in revolutions per minute, in either direction.
+    /// Maximum speed in revolutions per minute, in either direction.
     pub const MAX_RPM: f64 = 12_000.0;
 
     pub(crate) fn at(rpm: f64) -> Self {
         Motor(Arc::new(AtomicU64::new(rpm.to_bits())))
     }
 
-    /// Returns the speed in revolutions per minute; above 0 the motor turns clockwise, and the position rises.
+    /// Returns the speed in revolutions per minute. Above 0 the motor turns clockwise, and the position increases.
     pub fn rpm(&self) -> f64 {
         f64::from_bits(self.0.load(Ordering::SeqCst))
     }
 
-    /// Sets the speed, limited to [`MAX_RPM`](Self::MAX_RPM); a value that is not a number is ignored.
+    /// Sets the speed, limited to [`MAX_RPM`](Self::MAX_RPM); NaN is ignored.
     pub fn set_rpm(&self, rpm: f64) {
         if !rpm.is_nan() {
             self.0.store(rpm.clamp(-Self::MAX_RPM, Self::MAX_RPM).to_bits(), Ordering::SeqCst);

@@ -1,5 +1,5 @@
-//! Settings of a virtual device, as the query of a `sim:` link: keys with their values, the allowed values, and the errors.
-//! Each device defines its keys.
+//! Settings of a virtual device in the query of a `sim:` link: keys, values, allowed values and errors. Each device
+//! defines its keys.
 
 use super::FaultError;
 use crate::expected::Expected;
@@ -8,32 +8,32 @@ use crate::parameter::{Checked, Parameters, Refused, Values, number};
 /// The reason why settings are invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConfigError {
-    /// The key does not exist.
+    /// The key is unknown.
     #[error("{device} has no setting `{key}`; valid settings are {known}")]
     Key {
-        /// The device without such a key.
+        /// Device to which the settings belong.
         device: VirtualDevice,
-        /// The key as written.
+        /// Key as written.
         key: String,
-        /// The existing keys.
+        /// Known keys.
         known: String,
     },
     /// The value is not allowed for its key.
     #[error("`{key}={value}` is not valid (allowed: {allowed})")]
     Value {
-        /// The key.
+        /// Name of the key.
         key: String,
-        /// The value as written.
+        /// Value as written.
         value: String,
-        /// The allowed values.
+        /// Allowed values.
         allowed: Expected,
     },
-    /// The value of `fault`.
+    /// The value of `fault` is invalid.
     #[error(transparent)]
     Fault(#[from] FaultError),
 }
 
-/// The name of a virtual device in an error about an unknown setting.
+/// A virtual device, as named in errors about settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VirtualDevice {
     /// An encoder.
@@ -51,7 +51,7 @@ pub enum VirtualDevice {
 }
 
 impl ConfigError {
-    /// Creates the error that `device` has no setting `key`; `known` are the existing ones.
+    /// Creates the error for an unknown setting of `device`; `known` lists the existing keys.
     pub fn unknown(device: VirtualDevice, key: &str, known: &[&str]) -> Self {
         ConfigError::Key { device, key: key.to_owned(), known: known.join(", ") }
     }
@@ -63,10 +63,8 @@ impl From<Refused> for ConfigError {
     }
 }
 
-/// Parses the settings of `device`, already percent-decoded. Of a key given twice the last one counts.
-///
-/// # Errors
-/// A sentence that names the key and the allowed values.
+/// Parses the percent-decoded settings of `device`. If a key occurs twice, its last value counts.⎏⎏# Errors⎏Names the
+/// key and the allowed values.
 pub fn read<P: Parameters<Error = ConfigError>>(
     device: VirtualDevice,
     pairs: &[(String, String)],
@@ -80,13 +78,13 @@ pub fn read<P: Parameters<Error = ConfigError>>(
     Ok(own)
 }
 
-/// Any number: the seed of noise.
+/// Seed of the noise; any number.
 pub const SEED: Checked<u64> = Checked(Expected::Whole, number);
 
-/// Revolutions per minute, in either direction.
+/// Speed in revolutions per minute, in either direction.
 pub const RPM: Rpm = Rpm;
 
-/// See [`RPM`].
+/// Values of a speed setting; see [`RPM`].
 #[derive(Clone, Copy, Debug)]
 pub struct Rpm;
 

@@ -1,5 +1,5 @@
-//! Backups: the content of a device before a write, one file each, sorted by device and serial number. None is ever
-//! overwritten or removed. The caller supplies the text; access codes must not be in it.
+//! Backups: the content of a device before a write, one file each, sorted by device and serial number. Backups are
+//! never overwritten or removed. The caller supplies the text, which must not contain access codes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,13 +19,11 @@ const EXTENSION: &str = "ron";
 /// Largest number of backups of one device in the same second. More are the sign of a runaway loop.
 const MOST_IN_A_SECOND: u32 = 1000;
 
-/// The folder of backups.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Backups(PathBuf);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Backup {
-    /// The file.
     pub path: PathBuf,
     /// Time of the backup, to the second.
     pub taken: Timestamp,

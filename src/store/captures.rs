@@ -1,4 +1,4 @@
-//! Captures from files: read in pieces, with progress and cancellation.
+//! Captures from files, read in chunks with progress and cancellation.
 
 use std::fs::File;
 use std::io::{self, Read};

@@ -1,5 +1,5 @@
-//! The user's own descriptions of devices: the files of a folder, read independently. An unreadable file does not prevent
-//! reading the others.
+//! User-defined device descriptions: the files of a folder, read independently, so an unreadable file does not affect
+//! the others.
 
 use std::fs;
 use std::path::{Path, PathBuf};

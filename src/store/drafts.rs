@@ -1,5 +1,5 @@
-//! Drafts: edits of a user that are not yet written into a device, kept so that neither a crash nor a pulled cable loses
-//! them. One file each; the caller supplies the text, and access codes must not be in it.
+//! Drafts: edits that have not been written to a device, kept so that neither a crash nor a pulled cable loses them.
+//! One file each; the caller supplies the text, which must not contain access codes.
 
 use std::fs;
 use std::path::PathBuf;
@@ -17,7 +17,6 @@ pub struct Claim {
     _lock: FileLock,
 }
 
-/// The folder of drafts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Drafts(PathBuf);
 

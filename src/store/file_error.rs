@@ -1,4 +1,4 @@
-//! The reasons why a file could not be read or written: the system's errors, sorted by what a user can do about them.
+//! Reasons why a file could not be read or written: system errors grouped by what the user can do about them.
 
 use std::fmt;
 use std::io;
@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot {task} {}: {problem}", path.display())]
 pub struct FileError {
-    /// The file or folder.
     pub path: PathBuf,
     pub task: FileTask,
     pub problem: FileProblem,
@@ -19,9 +18,7 @@ pub struct FileError {
 pub enum FileTask {
     Read,
     Write,
-    /// The files in a folder were listed.
     List,
-    /// A folder was made, with those above it.
     CreateFolder,
     Remove,
 }
@@ -50,7 +47,6 @@ pub enum FileProblem {
     /// A file is in a place where the path needs a folder.
     #[error("a part of the path is a file, not a folder")]
     NotFolder,
-    /// The path is that of a folder.
     #[error("it is a folder")]
     IsFolder,
     /// The path is that of a pipe or a device.
@@ -88,7 +84,6 @@ pub enum FileProblem {
     Other {
         /// The system's kind of error.
         kind: io::ErrorKind,
-        /// The system's words.
         what: String,
     },
 }

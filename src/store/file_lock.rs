@@ -1,4 +1,4 @@
-//! Locks among programs that use the same files. The system releases the lock of a program that ends for any reason.
+//! Locks between programs that use the same files. The system releases the locks of a program that ends for any reason.
 
 use std::fs::{File, TryLockError};
 use std::io;

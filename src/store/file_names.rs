@@ -1,4 +1,4 @@
-//! Names of folders and files made from external texts: serial numbers, names of items.
+//! Folder and file names derived from external strings such as serial numbers and item names.
 
 /// How a name records the case of its letters, which file names on Windows and macOS do not distinguish.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -1,5 +1,5 @@
-//! Whole files, read and written at once. A file is either the old one or the new one, never a part of it: it is written to
-//! a temporary neighbour, flushed and renamed.
+//! Reading and writing of whole files. A file contains either the old or the new content, never a part of it: the
+//! content is written to a temporary file in the same folder, flushed and renamed.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
@@ -206,7 +206,6 @@ mod platform {
         builder.permissions(Permissions::from_mode(0o666));
     }
 
-    /// Makes a rename outlast a power failure.
     pub(super) fn flush_folder(folder: &Path) -> io::Result<()> {
         use io::ErrorKind as Kind;
         match File::open(folder).and_then(|folder| folder.sync_all()) {

@@ -1,4 +1,4 @@
-//! The folders that relative paths start from: one rule for the command line, and for typed and dropped paths.
+//! The folders to which relative paths refer: one rule for the command line, and for typed and dropped paths.
 
 use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
@@ -19,7 +19,6 @@ impl Folders {
         Folders { working: std::env::current_dir().ok(), home }
     }
 
-    /// Folders of a test.
     pub fn at(working: &Path, home: &Path) -> Self {
         Folders { working: Some(working.to_owned()), home: Some(home.to_owned()) }
     }

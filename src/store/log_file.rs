@@ -1,6 +1,6 @@
-//! The log file: the content of the log panel, kept after the window closes. A separate thread writes it, so that a disk
-//! that hangs blocks nothing: lines that do not fit into the queue are dropped and counted, and the count is written when
-//! the disk responds again. A file that has grown large is renamed and a new one begun.
+//! The log file: the content of the log panel, kept after the window closes. A separate thread writes it, so a hanging
+//! disk blocks nothing: lines that do not fit into the queue are dropped and counted, and the count is written when the
+//! disk responds again. A file that has grown large is renamed, and a new one is started.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -69,7 +69,6 @@ impl LogFile {
         Ok(LogFile { queue: sender, dropped })
     }
 
-    /// Adds a line, with its end.
     fn add(&self, line: &[u8]) {
         if self.queue.try_send(Order::Line(line.to_owned())).is_err() {
             self.dropped.fetch_add(1, Ordering::Relaxed);

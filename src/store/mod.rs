@@ -1,5 +1,5 @@
-//! The program's own folders: backups, drafts, the logbook and the log (data), settings and the user's own device tables
-//! (configuration). No folder is created before a file is written into it, and no access code is ever written.
+//! Folders of the program: backups, drafts, the logbook and the log (data), settings and user-defined device tables
+//! (configuration). Folders are created when the first file is written, and access codes are never stored.
 
 mod backups;
 mod captures;

@@ -1,4 +1,4 @@
-//! The lines of a device check, for every kind of device.
+//! Results of a device check, for every kind of device.
 
 use egui::{RichText, Ui};
 

@@ -1,5 +1,5 @@
-//! The actions of the window by name: for the keyboard and for the command palette. Each is listed once, with its text, its
-//! key and whether it can be carried out now. Motion is not among them: it needs a held button.
+//! Named actions of the window, for the keyboard and the command palette. Each is listed once, with its text, its key
+//! and whether it is available. Motion is excluded, since it requires a held button.
 
 use std::time::Duration;
 
@@ -34,10 +34,8 @@ pub(super) struct Command {
     pub(super) effect: Effect,
 }
 
-/// What a command does.
 pub(super) enum Effect {
     Act(Action),
-    /// Open a page of a device.
     Page(SessionId, usize),
     /// Open a page of a tab without devices.
     ToolPage(Tab, usize),
@@ -48,7 +46,6 @@ pub(super) enum Effect {
 
 /// A named action of one kind of device, for the command palette.
 pub struct NamedAction {
-    /// The text of its button.
     pub name: String,
     pub is_enabled: bool,
     pub action: Action,
@@ -129,7 +126,6 @@ fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     commands
 }
 
-/// Returns what every device can be asked for.
 fn of_every_device(theme: &Theme, device: &AnyDevice, views: &Views) -> Vec<Command> {
     let act = |word: &'static str, action| Command::new(device.name(), theme.say(word), Effect::Act(action));
     let ask = |word: &'static str, command| act(word, device.command(command));

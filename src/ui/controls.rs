@@ -1,5 +1,5 @@
-//! The small widgets of every view: cards, rows of label and value, buttons with icons, badges, empty states. Each has the
-//! same text for a screen reader as on the screen, without its icon.
+//! Small widgets of every view: rows of label and value, buttons with icons, badges and empty states. A screen reader
+//! receives the same text as on the screen, without icons.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
@@ -131,7 +131,6 @@ pub(crate) fn allowed_button(
     }
 }
 
-/// Draws the main button of a screen.
 pub(crate) fn primary(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
     let ink = if enabled { theme.palette.on_accent } else { theme.palette.muted };
@@ -281,7 +280,6 @@ pub(crate) fn verdict_ui(ui: &mut Ui, theme: &Theme, own: Verdict, words: &crate
     });
 }
 
-/// Returns the icon and colour of a severity.
 pub(crate) fn severity(theme: &Theme, severity: crate::app::Severity) -> (&'static str, crate::app::Rgb) {
     use crate::app::Severity;
     let palette = theme.palette;

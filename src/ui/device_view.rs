@@ -1,4 +1,4 @@
-//! The view of a device: typed in the device's folder, object-safe for the window. One adapter connects the two.
+//! View of a device: typed in the device's folder, object-safe for the window. A single adapter connects the two.
 
 #![warn(missing_docs)]
 
@@ -9,30 +9,30 @@ use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
 use super::{Theme, status_line};
 use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, Rgb, Studio, Tab, Text, ToolKind};
 
-/// Page of a tab, for the navigation and the help. `word` and `help` are text ids.
+/// A page of a tab, for the navigation and the help. `word` and `help` are text ids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PageInfo {
-    /// The icon before the word.
+    /// Icon in front of the name.
     pub icon: &'static str,
-    /// The name of the page.
+    /// Text id of the name.
     pub word: &'static str,
-    /// The help for the page.
+    /// Text id of the help.
     pub help: &'static str,
 }
 
 impl PageInfo {
-    /// Creates a page with its icon, and the text ids of its name and help.
+    /// Creates a page.
     pub const fn new(icon: &'static str, word: &'static str, help: &'static str) -> Self {
         PageInfo { icon, word, help }
     }
 }
 
-/// The pages of a tab.
+/// Pages of a tab.
 pub trait TabPage: Copy + PartialEq + Default + 'static {
     /// All pages, in the order of the navigation.
     const PAGES: &'static [(Self, PageInfo)];
 
-    /// Returns its index among the pages of its tab.
+    /// Returns the index of the page within its tab.
     fn place(self) -> usize {
         Self::PAGES.iter().position(|(own, _)| *own == self).unwrap_or_default()
     }
@@ -47,7 +47,7 @@ pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
     P::PAGES.get(place).map(|(page, _)| *page)
 }
 
-/// The view of a kind of device, as the device implements it.
+/// View of a kind of device, implemented by the device.
 pub trait TypedDeviceView: Sync + 'static {
     /// Application state of the device, without drawing.
     type Device: DeviceType;
@@ -61,12 +61,12 @@ pub trait TypedDeviceView: Sync + 'static {
     /// Whether the keys of undo and redo act on the edits of the device; false if an editor has its own.
     const HAS_UNDO_KEYS: bool;
 
-    /// Returns what distinguishes one device from another of its kind; `None` if that is unknown or makes no difference.
+    /// Returns what distinguishes a device from others of its kind, or `None` if that is unknown or irrelevant.
     fn serial_number(_device: &Self::Device) -> Option<&str> {
         None
     }
 
-    /// Returns whether a page holds edits that are not written.
+    /// Returns whether a page contains edits that have not been written.
     fn is_edited(_device: &Self::Device, _page: Self::Page) -> bool {
         false
     }
@@ -93,10 +93,10 @@ pub trait TypedDeviceView: Sync + 'static {
         status_line::running_ui(ui, theme, any, None, actions);
     }
 
-    /// Draws the position large, in this colour, and the numbers beside it.
+    /// Draws the large position in the given colour, with further values.
     fn value_ui(ui: &mut Ui, theme: &Theme, device: &Self::Device, ink: Rgb);
 
-    /// Draws the menu of the values that are read with the position, if the device has any.
+    /// Draws the menu of values that are read together with the position, if the device has any.
     fn watch_menu(
         _ui: &mut Ui,
         _skin: &Theme,
@@ -106,21 +106,22 @@ pub trait TypedDeviceView: Sync + 'static {
     ) {
     }
 
-    /// Returns the text of the header while the device moves; `None` while it does not.
+    /// Returns the header text while the device moves, or `None` while it does not.
     fn motion(_device: &Self::Device) -> Option<Text> {
         None
     }
 
-    /// Returns the actions of this kind for the command palette. None of them moves anything.
+    /// Returns the actions of this kind for the command palette. None of them starts a motion.
     fn named_actions(_theme: &Theme, _device: &Self::Device) -> Vec<NamedAction> {
         Vec::new()
     }
 
-    /// Draws what the tab offers without a device, below the buttons of every kind.
+    /// Draws what the tab offers without a device, below the buttons common to all kinds.
     fn empty_ui(_ui: &mut Ui, _skin: &Theme, _actions: &mut Vec<Action>) {}
 }
 
-/// View of a kind of device, as used by the window. A device of another kind is not drawn, and has no edits here.
+/// Object-safe view of a kind of device, used by the window. It draws nothing for devices of other kinds, and reports
+/// no edits of them.
 pub trait DeviceView: Sync {
     /// Returns the kind of device.
     fn kind(&self) -> &'static dyn DeviceKind;
@@ -128,37 +129,37 @@ pub trait DeviceView: Sync {
     /// Returns all pages, in navigation order.
     fn pages(&self) -> Vec<PageInfo>;
 
-    /// Returns whether the keys of undo and redo act on the edits of the device.
+    /// Returns whether the undo and redo keys act on the edits of the device.
     fn has_undo_keys(&self) -> bool;
 
-    /// Returns the text of the header while the device moves; `None` while it does not.
+    /// Returns the header text while the device moves, or `None` while it does not.
     fn motion(&self, device: &AnyDevice) -> Option<Text>;
 
-    /// Returns the actions of this kind for the command palette. None of them moves anything.
+    /// Returns the actions of this kind for the command palette. None of them starts a motion.
     fn named_actions(&self, theme: &Theme, device: &AnyDevice) -> Vec<NamedAction>;
 
-    /// Draws the position large, in this colour, and the numbers beside it.
+    /// Draws the large position in the given colour, with further values.
     fn value_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, ink: Rgb);
 
-    /// Begins the form in the connection dialog.
+    /// Creates the form for the connection dialog.
     fn connect_form(&self) -> Box<dyn ConnectForm>;
 
-    /// Begins the view of a session.
+    /// Creates the view of a session.
     fn session(&self) -> Box<dyn SessionView>;
 
-    /// Draws what the tab offers without a device, below the buttons of every kind.
+    /// Draws what the tab offers without a device, below the buttons common to all kinds.
     fn empty_ui(&self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>);
 }
 
 /// View of one session: its open page, text buffers and selections.
 pub trait SessionView {
-    /// Returns the place of the open page.
+    /// Returns the index of the open page.
     fn page(&self) -> usize;
 
-    /// Opens a page.
+    /// Opens the page with the given index.
     fn open(&mut self, page: usize);
 
-    /// Returns whether a page holds edits that are not written.
+    /// Returns whether a page contains edits that have not been written.
     fn is_edited(&self, device: &AnyDevice, page: usize) -> bool;
 
     /// Draws the open page.
@@ -167,7 +168,7 @@ pub trait SessionView {
     /// Draws the progress of the running job in the status line, from the right.
     fn running_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 
-    /// Draws the menu of the values that are read with the position, if the device has any.
+    /// Draws the menu of values that are read together with the position, if the device has any.
     fn watch_menu(&mut self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 }
 
@@ -268,34 +269,34 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
     }
 }
 
-/// The view of a tab without devices.
+/// View of a tab that requires no device.
 pub trait ToolView: Sync {
     /// Returns the tool.
     fn kind(&self) -> &'static dyn ToolKind;
 
-    /// Returns the name of the tab, as the table of texts calls it.
+    /// Returns the text id of the tab's name.
     fn title(&self) -> &'static str;
 
-    /// Returns all pages, in the order of the navigation.
+    /// Returns all pages in navigation order.
     fn pages(&self) -> Vec<PageInfo>;
 
-    /// Begins the view of a window.
+    /// Creates the view for a window.
     fn begin(&self) -> Box<dyn ToolPages>;
 }
 
-/// View of a tab without devices in one window: its open page, text buffers and selections.
+/// A window's view of a tab that requires no device: open page, text buffers and selections.
 pub trait ToolPages {
-    /// Returns the place of the open page.
+    /// Returns the index of the open page.
     fn page(&self) -> usize;
 
-    /// Opens a page.
+    /// Opens the page with the given index.
     fn open(&mut self, page: usize);
 
     /// Draws the open page.
     fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>);
 }
 
-/// Views of all tabs, in the order of the navigation: devices first.
+/// Views of all tabs in navigation order, devices first.
 #[derive(Clone, Copy)]
 pub struct TabViews {
     devices: &'static [&'static dyn DeviceView],
@@ -308,7 +309,7 @@ impl TabViews {
         TabViews { devices, tools }
     }
 
-    /// Returns the pages of a tab in their order, as the table of texts calls them.
+    /// Returns the text ids of a tab's pages in navigation order.
     pub fn page_words(self, tab: Tab) -> Vec<&'static str> {
         self.pages(tab).into_iter().map(|page| page.word).collect()
     }
@@ -324,7 +325,6 @@ impl TabViews {
         self.of_devices().chain(self.tools.iter().map(|view| view.kind().tab()))
     }
 
-    /// Returns the name of a tab.
     pub(crate) fn title(self, theme: &Theme, tab: Tab) -> String {
         let title = self.tool(tab).map(|view| theme.say(view.title()));
         title.or_else(|| self.device(tab).map(|view| view.kind().bus().to_owned())).unwrap_or_default()

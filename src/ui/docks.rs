@@ -7,14 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::{Theme, Views, panels, workspace};
 use crate::app::{Action, Studio};
 
-/// A panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Pane {
-    /// The content of the open tab.
     Workspace,
-    /// Live values and their curve.
     Live,
-    /// The trace panel.
     Trace,
     Jobs,
     Log,
@@ -254,7 +250,6 @@ mod tests {
     use crate::app::Settings;
     use crate::app::recorded::SETTINGS;
 
-    /// Names of panels are stored in users' settings.
     #[test]
     fn recorded_panel_layouts_load() {
         let layout = Settings::parse(SETTINGS).unwrap().layout.unwrap();

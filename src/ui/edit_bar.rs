@@ -16,7 +16,6 @@ const NARROW: f32 = 660.0;
 pub enum Edited {
     /// Bytes of a memory.
     Bytes,
-    /// Values with a name.
     Values,
 }
 

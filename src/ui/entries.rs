@@ -13,7 +13,6 @@ pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint:
     entry_in(ui, text, width, label, hint, egui::TextStyle::Body.into())
 }
 
-/// Draws a one-line entry for an exact spelling.
 pub(crate) fn mono_entry(
     ui: &mut Ui,
     theme: &Theme,

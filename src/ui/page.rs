@@ -15,7 +15,6 @@ pub(crate) fn sides(ui: &Ui, theme: &Theme) -> i8 {
     (if narrow { theme.space.groups } else { theme.space.around }) as i8
 }
 
-/// Returns the room around a page.
 pub(crate) fn around(ui: &Ui, theme: &Theme) -> Margin {
     let sides = sides(ui, theme);
     Margin { left: sides, right: sides, top: ABOVE, bottom: sides.min(ABOVE) }

@@ -15,14 +15,10 @@ impl From<Rgb> for Color32 {
 /// The appearance and the language.
 #[derive(Clone, Copy, Debug)]
 pub struct Theme {
-    /// Colours by meaning.
     pub palette: &'static Palette,
     pub sizes: &'static TextSizes,
-    /// Distances.
     pub space: &'static Spaces,
-    /// Corners of cards.
     pub radius: CornerRadius,
-    /// Language of the window.
     pub language: Language,
     theme: ColorScheme,
 }
@@ -68,7 +64,6 @@ impl Theme {
         self.words(&Text::new("live.word").with("hex", word).with("count", word.bits))
     }
 
-    /// Returns a label for the value beside it.
     pub fn label(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).color(self.palette.muted)
     }
@@ -98,7 +93,6 @@ impl Theme {
         RichText::new(words).font(FontId::monospace(self.sizes.value))
     }
 
-    /// Returns the heavier of the two weights.
     pub fn strong(&self, size: f32) -> FontId {
         FontId::new(size, FontFamily::Name(STRONG.into()))
     }

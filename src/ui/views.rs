@@ -19,9 +19,7 @@ pub struct Views {
     pub(super) help: bool,
     /// The command palette, while it is open.
     pub(super) palette: Option<PaletteUiState>,
-    /// The list of frames.
     pub(super) trace: TraceView,
-    /// The plot of the encoder that is shown.
     pub(super) plot: plot::PlotUiState,
     /// Microseconds from one reading of the position to the next.
     pub(super) rate: u64,

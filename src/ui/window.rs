@@ -1,4 +1,4 @@
-//! The window: header, navigation, panels, dialogs and the keyboard; implements the application for eframe.
+//! The window: header, navigation, panels, dialogs and keyboard; implements the eframe application.
 
 use std::time::Duration;
 
@@ -47,7 +47,6 @@ impl Window {
         }
     }
 
-    /// Returns the complete state.
     pub fn studio(&self) -> &Studio {
         &self.studio
     }
@@ -296,7 +295,6 @@ impl Window {
         self.studio.connect.is_some() || self.asks() || dialog
     }
 
-    /// Returns whether a consent is asked for.
     fn asks(&self) -> bool {
         let asks = self.studio.question.is_some() || self.studio.diverged.is_some();
         asks || self.studio.selected_device().is_some_and(AnyDevice::is_reviewing)

@@ -1,4 +1,4 @@
-//! Wires or pins of an encoder, one per line with its signal.
+//! Wires or pins of an encoder, one line each with its signal.
 
 use egui::Ui;
 

@@ -1,6 +1,6 @@
-//! The one way to write, for every kind of device in the same order: consent and base → before-image on disk → logbook:
+//! The only way to write, in the same order for every kind of device: consent and base → backup on disk → logbook:
 //! intent → the operations, each read back → logbook: result. A device supplies its own parts as a [`Write`] and cannot
-//! omit a step: its operations take a [`Confirmed`], which only [`write_plan`] creates.
+//! omit a step: its operations require a [`Confirmed`], which only [`write_plan`] creates.
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,5 @@
-//! Events leaving the thread of a session: none about a job is lost, progress is coalesced, and the thread never blocks.
+//! Events sent from the thread of a session: events about jobs are never lost, progress is coalesced, and the thread
+//! never blocks.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The reasons why a job ends early on a writable device: before the first write, or after it.
+//! Reasons why a job on a writable device ends early, before the first write or after it.
 
 use std::path::PathBuf;
 
@@ -7,15 +7,15 @@ use crate::profile::{DeviceError, Interrupted, OperationError, WriteRecord};
 
 /// The reason why a job ended early, for any kind of device.
 pub trait EndedEarly {
-    /// Returns whether the user cancelled it.
+    /// Returns whether the user cancelled the job.
     fn is_cancelled(&self) -> bool;
 
-    /// Returns the number of operations carried out before; `None` if no write was begun.
+    /// Returns the number of operations carried out before the end, or `None` if no write had begun.
     fn done(&self) -> Option<usize> {
         None
     }
 
-    /// Returns whether something was written before it ended.
+    /// Returns whether the device had been written to before the job ended.
     fn has_begun(&self) -> bool {
         self.done().is_some()
     }
@@ -25,31 +25,31 @@ pub trait EndedEarly {
 /// [`Interrupted`]) and kinds of change `K`.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError<E, P, I, K> {
-    /// The device.
+    /// The device or its connection failed.
     #[error(transparent)]
     Device(E),
-    /// The plan is not possible; nothing was written.
+    /// The plan is impossible; nothing was written.
     #[error(transparent)]
     Plan(P),
-    /// The device counts as worn, or its before-image cannot be kept; nothing was written.
+    /// The device has reached its limit of write cycles, or its backup cannot be stored; nothing was written.
     #[error(transparent)]
     NotBegun(#[from] NotBegun),
-    /// The write was begun and not finished.
+    /// The write was begun but not finished.
     #[error("{interrupted}; before-image: {}", backup.display())]
     Interrupted {
-        /// The changes written, the cause, and the state in which the device was left.
+        /// Changes written, cause, and state in which the device was left.
         interrupted: Box<I>,
-        /// The before-image.
+        /// Path of the backup.
         backup: PathBuf,
-        /// Operations of the plan.
+        /// Number of operations in the plan.
         planned: usize,
-        /// The kind of change.
+        /// Kind of change.
         kind: K,
     },
 }
 
 impl<P, Op, E: OperationError, Done: WriteRecord, Left, K> JobError<E::Device, P, Interrupted<Op, E, Done, Left>, K> {
-    /// Returns the error of the device or its connection, whether or not something was written before.
+    /// Returns the error of the device or its connection, whether or not the device had been written to.
     pub fn device(&self) -> Option<&E::Device> {
         match self {
             JobError::Device(error) => Some(error),

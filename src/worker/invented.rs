@@ -1,4 +1,4 @@
-//! A device that exists only in tests and never sends a message.
+//! A device for tests that never sends a message.
 
 use super::{Device, EndedEarly, JobReport, SessionContext, Watched};
 use crate::link::LinkError;

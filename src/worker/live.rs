@@ -1,5 +1,5 @@
-//! Requests to a worker while its thread runs: cancellation, the sampling interval, the watched values. The latest request
-//! counts; none is queued.
+//! Requests to a worker while its thread runs: cancellation, sampling interval and watched values. Only the latest
+//! request counts; none is queued.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -15,7 +15,6 @@ const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 #[derive(Clone)]
 pub(super) struct Live {
     requests: Arc<Mutex<PollRequests>>,
-    /// Cancellation of a sample during its repetitions.
     sampling: Cancel,
     /// Wakes the thread; a full channel means that it is about to wake.
     changed: Sender<()>,
@@ -85,7 +84,6 @@ impl Live {
         self.sampling.request();
     }
 
-    /// Returns the token of the samples.
     pub(super) fn sampling(&self) -> &Cancel {
         &self.sampling
     }
@@ -112,7 +110,6 @@ pub(super) struct Watches<W> {
 
 struct List<W> {
     entries: Vec<Entry<W>>,
-    /// Counts the changes.
     number: u64,
 }
 
@@ -187,12 +184,12 @@ impl<W> Clone for Watches<W> {
     }
 }
 
-/// A handle that stops a worker from code that does not own it. Clones share the worker.
+/// A handle that stops a worker from code that does not own it, shared by its clones.
 #[derive(Clone)]
 pub struct Stopper(Live);
 
 impl Stopper {
-    /// Ends polling, and the running job at the next possible point. It does not affect jobs submitted later.
+    /// Ends polling, and the running job at the next possible point. Jobs submitted later are not affected.
     pub fn stop(&self) {
         self.0.stop();
     }

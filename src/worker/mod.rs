@@ -1,10 +1,10 @@
-//! The background I/O worker: one thread per session, one job at a time, sampling and watching while there is no job, and a
-//! stop that takes effect before everything else.
+//! The background I/O worker: one thread per session, one job at a time, sampling and watching between jobs, and a stop
+//! that takes precedence over everything else.
 //!
-//! This module knows no protocol: a [`Device`] has its own types of jobs, results and errors, so that a session with one
+//! This module knows no protocol: a [`Device`] has its own types of jobs, results and errors, so a session with one
 //! kind of device cannot receive the jobs of another.
 //!
-//! Events about a job are never lost. Progress is coalesced: while events are not read, only the newest is kept. Neither
+//! Events about jobs are never lost. Progress is coalesced: while events are not read, only the newest is kept. Neither
 //! side waits for the other: a full channel is a state of the worker and does not stop the line.
 
 #![warn(missing_docs)]

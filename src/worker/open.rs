@@ -1,4 +1,4 @@
-//! Opening a connection from a link URL: the common part of all devices on a stream of bytes.
+//! Opening a connection from a link: the part common to all devices on a byte stream.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -15,27 +15,27 @@ use crate::units::CharacterFormat;
 /// The reason why a link cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    /// A parameter.
+    /// A link parameter is invalid.
     #[error(transparent)]
     Url(#[from] UrlError),
-    /// A parameter of the virtual device.
+    /// A setting of the virtual device is invalid.
     #[error(transparent)]
     Sim(#[from] ConfigError),
-    /// The wire.
+    /// The connection failed.
     #[error(transparent)]
     Link(#[from] LinkError),
     /// The recording cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The recording is not one.
+    /// The file is not a valid recording.
     #[error("{path}: {cause}")]
     Recording {
-        /// The file.
+        /// Path of the file.
         path: String,
-        /// The cause.
+        /// Cause of the error.
         cause: TraceFileError,
     },
-    /// The user's table of encoder types.
+    /// The user-defined table of encoder types is invalid.
     #[error(transparent)]
     Store(#[from] StoreError),
 }
@@ -50,7 +50,7 @@ pub(crate) const fn margin(scheme: Scheme) -> Duration {
     }
 }
 
-/// Opens the connection of a byte stream; `simulated` creates the virtual one.
+/// Opens a byte stream; `simulated` creates the virtual device.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
@@ -71,12 +71,12 @@ pub fn open_bytes(
     })
 }
 
-/// Opens the connection to a virtual device in this process.
+/// Connects to a virtual device in this process.
 pub fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<dyn ByteLink> {
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
 
-/// Creates the error for links that do not lead to a device; `known` are those that do.
+/// Creates the error for links that do not lead to a device; `known` lists those that do.
 pub fn leads_elsewhere(scheme: Scheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.word(), known }.into()
 }
@@ -90,7 +90,7 @@ pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
     read_trace(&text).map_err(|cause| OpenError::Recording { path: path.to_owned(), cause })
 }
 
-/// Refuses a parameter that is not among `known`.
+/// Refuses parameters that are not listed in `known`.
 ///
 /// # Errors
 /// [`UrlError::Unknown`].

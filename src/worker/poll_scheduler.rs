@@ -1,14 +1,14 @@
-//! A schedule of the requests to a polled device: its sample, and at most one watched value between two samples. It has no
-//! clock.
+//! Schedule of the requests to a polled device: its sample, and at most one watched value between two samples.
+//! Independent of any clock.
 
 use std::time::{Duration, Instant};
 
 /// The request that is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Due<W> {
-    /// The device's sample.
+    /// The sample of the device.
     Sample,
-    /// A value that is watched.
+    /// A watched value.
     Watch(W),
 }
 

@@ -1,11 +1,11 @@
-//! A bounded ring for data that may be dropped: samples, frames of a trace. The writer never waits for the reader; the
-//! oldest entries are dropped and counted.
+//! A bounded ring for data that may be dropped, such as samples and trace frames. The writer never waits for the
+//! reader; the oldest entries are dropped and counted.
 
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A bounded ring. Clones share it.
+/// A bounded ring, shared by its clones.
 pub struct Ring<T>(Arc<Mutex<State<T>>>);
 
 struct State<T> {
@@ -33,13 +33,14 @@ impl<T> Ring<T> {
         Ring::bounded(capacity, usize::MAX, |_| 0)
     }
 
-    /// The same, and no more than so many bytes as `size_of` counts them; the newest thing stays in any case.
+    /// Creates an empty ring that is also bounded to `most` bytes, as measured by `size_of`; the newest entry is kept
+    /// in any case.
     pub fn bounded(capacity: usize, most: usize, size_of: fn(&T) -> usize) -> Self {
         let (items, capacity) = (VecDeque::new(), capacity.max(1));
         Ring(Arc::new(Mutex::new(State { items, capacity, most, size: 0, size_of, dropped: 0 })))
     }
 
-    /// Adds one; in a full ring the oldest is dropped.
+    /// Appends an entry, dropping the oldest if the ring is full.
     pub fn push(&self, item: T) {
         let mut state = self.lock();
         let size = (state.size_of)(&item);
@@ -54,7 +55,7 @@ impl<T> Ring<T> {
         drop(oldest);
     }
 
-    /// Takes out everything, oldest first, and how many were dropped since the last time.
+    /// Takes all entries, oldest first, and the number dropped since the previous call.
     pub fn drain(&self) -> (Vec<T>, u64) {
         let mut state = self.lock();
         let items = std::mem::take(&mut state.items);

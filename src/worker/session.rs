@@ -1,4 +1,4 @@
-//! A session: one connection, the known data of its device, and the context of every job.
+//! A session: one connection, the data known about its device, and the context of every job.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -7,15 +7,15 @@ use super::{Device, EndedEarly as _, Event, JobId, JobReport, Watched};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
-/// The context of a job for any kind of device: time, cancellation, trace, and the folders.
+/// Context of a job for any kind of device: time, cancellation, trace and folders.
 pub struct SessionContext {
-    /// The time of the session.
+    /// Clock of the session.
     pub clock: Arc<dyn Clock>,
     pub(super) cancel: Cancel,
     pub(super) trace: Trace,
-    /// The folders: backups, logbook.
+    /// Folders for backups and the logbook.
     pub store: Store,
-    /// Whether the device is in this process: its write cycles are counted separately.
+    /// Whether the device is simulated in this process; its write cycles are counted separately.
     pub is_virtual: bool,
 }
 
@@ -26,7 +26,7 @@ impl SessionContext {
     }
 }
 
-/// One connection, from opening to closing. A test runs jobs on it inline; a worker runs them on its own thread.
+/// A connection from opening to closing. A test runs jobs on it inline; a worker runs them on its own thread.
 pub struct Session<D> {
     context: SessionContext,
     pub(crate) device: D,
@@ -39,22 +39,22 @@ impl<D: Device> Session<D> {
         Session { context: SessionContext { clock, cancel, trace, store, is_virtual }, device }
     }
 
-    /// Returns the cancellation of the running work.
+    /// Returns the cancellation flag of the running job.
     pub fn cancel(&self) -> Cancel {
         self.context.cancel.clone()
     }
 
-    /// Replaces the cancellation, for a test that cancels automatically.
+    /// Replaces the cancellation flag, for tests that cancel automatically.
     pub fn set_cancel(&mut self, cancel: Cancel) {
         self.context.cancel = cancel;
     }
 
-    /// Shows every frame from now on to `watcher`.
+    /// Passes every subsequent frame to `watcher`.
     pub fn watch(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
         self.context.trace.watch(watcher);
     }
 
-    /// Returns whether the device lives in this process.
+    /// Returns whether the device is simulated in this process.
     pub fn is_virtual(&self) -> bool {
         self.context.is_virtual
     }
@@ -62,7 +62,7 @@ impl<D: Device> Session<D> {
     /// Checks that the connection still exists.
     ///
     /// # Errors
-    /// Returns an error if it is lost.
+    /// The connection is lost.
     pub fn check(&mut self) -> Result<(), LinkError> {
         self.device.check()
     }
@@ -72,22 +72,21 @@ impl<D: Device> Session<D> {
         self.device.idle_interval()
     }
 
-    /// Maintains the session while there is no job, and returns a message if there is one.
+    /// Maintains the session between jobs; returns a message of the device, if any.
     pub fn idle(&mut self) -> Option<D::DeviceMessage> {
         self.device.idle(&mut self.context)
     }
 
-    /// Returns whether unrequested work needs attention now.
     pub(super) fn is_urgent(&self) -> bool {
         self.device.is_urgent()
     }
 
-    /// Restores, at the end of the session, any state that must not remain.
+    /// Restores any state that must not outlast the session.
     pub fn leave(&mut self) {
         self.device.leave(&mut self.context);
     }
 
-    /// Runs a job on this thread. `tell` receives all events but the last, which is returned.
+    /// Runs a job on this thread. `tell` receives all events except the last, which is returned.
     pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));
         let result = self.device.run(&mut self.context, job, &mut |report| match report {
@@ -104,23 +103,23 @@ impl<D: Device> Session<D> {
         }
     }
 
-    /// Sets the interval of samples from now on, or none.
+    /// Sets the sampling interval, or stops sampling.
     pub fn pace(&mut self, interval: Option<Duration>) {
         self.device.pace(&mut self.context, interval);
     }
 
-    /// Takes a sample here and now.
+    /// Takes a sample immediately.
     ///
     /// # Errors
-    /// Returns an error if there is none.
+    /// No sample could be taken.
     pub fn sample(&mut self) -> Result<D::Sample, D::Error> {
         self.device.sample(&mut self.context)
     }
 
-    /// Asks for a watched value here and now.
+    /// Reads a watched value immediately.
     ///
     /// # Errors
-    /// Returns an error if there is no answer.
+    /// The device did not reply.
     pub fn watch_value(&mut self, what: &D::Watch) -> Result<Watched<D::Sample>, D::Error> {
         self.device.watch(&mut self.context, what)
     }
@@ -130,7 +129,7 @@ impl<D: Device> Session<D> {
         self.device.take_remark()
     }
 
-    /// Runs a job on this thread, for callers that need only its result.
+    /// Runs a job on this thread, for callers that only need its result.
     ///
     /// # Errors
     /// Errors of the job.

@@ -1,5 +1,5 @@
-//! Streams of unrequested data: batches of samples from their own thread, through a bounded ring that drops the oldest and
-//! counts. The thread never waits for the reader, and wakes the window at intervals, not for each batch.
+//! Streams of unrequested data: batches of samples from their own thread, through a bounded ring that drops and counts
+//! the oldest. The thread never waits for the reader, and wakes the window at intervals rather than for each batch.
 //!
 //! This module does not know the source of the samples: a [`Producer`] supplies them.
 
@@ -103,7 +103,6 @@ struct Shared<P: Producer> {
 /// Batches that wait to be read.
 struct Ring<S> {
     batches: VecDeque<Batch<S>>,
-    /// Samples in them.
     held: usize,
     capacity: usize,
     /// Samples lost since the beginning.

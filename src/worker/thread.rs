@@ -20,7 +20,6 @@ const RETRY: Duration = Duration::from_millis(5);
 pub(super) struct Order<D: Device> {
     pub(super) id: JobId,
     pub(super) job: D::Job,
-    /// Cancellation of this job.
     pub(super) cancel: Cancel,
 }
 
@@ -31,7 +30,6 @@ pub(super) enum Never {}
 pub(super) struct Bench<D: Device> {
     pub(super) session: Session<D>,
     pub(super) orders: Receiver<Order<D>>,
-    /// Signals that a live request has changed.
     pub(super) changes: Receiver<()>,
     pub(super) live: Live,
     pub(super) watches: Watches<D::Watch>,
@@ -159,7 +157,6 @@ impl<D: Device> Bench<D> {
         true
     }
 
-    /// Does unrequested work, however often samples are taken.
     fn run_idle_work(&mut self) {
         // A job interrupts it, like a sample.
         self.session.set_cancel(self.live.sampling().clone());

@@ -23,7 +23,6 @@ pub struct TableHints {
     pub delimiter: Option<Delimiter>,
     /// Numbers have a decimal comma.
     pub decimal_comma: Option<bool>,
-    /// Columns by number.
     pub columns: Option<Columns>,
     pub time_unit: Option<TimeUnit>,
     /// Volts in one unit of the sine and cosine columns, overriding the header; finite, not zero.
@@ -39,7 +38,6 @@ pub struct Layout {
     pub first_row: u64,
     /// Names of the columns; empty without a header.
     pub names: Vec<String>,
-    /// The columns that are used.
     pub columns: Columns,
     pub time_unit: TimeUnit,
     /// Volts in one unit of the sine and cosine columns.
@@ -48,7 +46,6 @@ pub struct Layout {
     pub clock: Option<SampleClock>,
 }
 
-/// Times of counted samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleClock {
     /// The time of sample 0 in seconds.
@@ -61,7 +58,6 @@ impl Delimiter {
     /// All delimiters, the most certain first: a comma may also be a decimal sign.
     pub const ALL: [Delimiter; 3] = [Delimiter::Semicolon, Delimiter::Tab, Delimiter::Comma];
 
-    /// Returns the character.
     pub const fn byte(self) -> u8 {
         match self {
             Delimiter::Comma => b',',

@@ -6,9 +6,7 @@
 pub struct Columns {
     /// Time; `None` for evenly spaced samples at an unknown interval.
     pub time: Option<usize>,
-    /// Sine, or SIN against ground.
     pub sine: usize,
-    /// Cosine, or COS against ground.
     pub cosine: usize,
     /// REFSIN and REFCOS against ground, if sine and cosine are not already differences.
     pub references: Option<(usize, usize)>,
@@ -89,7 +87,6 @@ impl TimeUnit {
         }
     }
 
-    /// Parses the spelling in a header.
     pub(super) fn parse(text: &str) -> Option<Self> {
         match text {
             "s" | "sec" | "second" | "seconds" => Some(TimeUnit::Seconds),
@@ -112,7 +109,6 @@ impl VoltUnit {
         }
     }
 
-    /// Parses the spelling in a header.
     pub(super) fn parse(text: &str) -> Option<Self> {
         match text {
             "v" | "volt" | "volts" => Some(VoltUnit::Volts),

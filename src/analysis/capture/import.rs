@@ -34,7 +34,6 @@ struct ColumnChoice {
     seconds: (f64, f64),
     volts: f64,
     comma: bool,
-    /// The time column counts samples.
     counts: bool,
 }
 
@@ -65,7 +64,6 @@ impl Import {
         Ok(Import { decoder: Decoder::of(head), ..import })
     }
 
-    /// Begins with a known layout.
     pub fn with(layout: Layout) -> Self {
         let taken = ColumnChoice {
             columns: layout.columns,

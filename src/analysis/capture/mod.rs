@@ -62,7 +62,6 @@ pub enum CaptureError {
         /// The line in the file, from 1.
         row: u64,
         columns: usize,
-        /// Columns needed.
         needed: usize,
     },
     /// Something in a row is no number.
@@ -72,7 +71,6 @@ pub enum CaptureError {
         row: u64,
         /// The column, from 1.
         column: usize,
-        /// The text, shortened.
         text: String,
     },
     /// An absolute position is no whole number of steps.
@@ -91,7 +89,6 @@ pub enum CaptureError {
         row: u64,
         /// The column, from 1.
         column: usize,
-        /// The text, shortened.
         text: String,
     },
     /// More than half of the rows have no measured value.
@@ -116,7 +113,6 @@ pub enum CaptureError {
         row: u64,
         /// The column, from 1.
         column: usize,
-        /// The text, shortened.
         text: String,
     },
     /// A quotation mark is not closed, so that all that follows belongs to one field.

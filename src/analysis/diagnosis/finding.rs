@@ -6,11 +6,9 @@ use crate::analysis::wiring::Wire;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// For information; the signal is usable.
     Notice,
     /// Out of its limits, or a disturbance that reduces accuracy.
     Warning,
-    /// The position is wrong or will be.
     Fault,
 }
 
@@ -23,16 +21,13 @@ pub struct DiagnosisFinding {
 /// Kind of finding. Shares are of the amplitude of the cosine channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FindingKind {
-    /// A parameter outside of the family's limits.
     Limit(OutOfLimits),
-    /// Neither channel moves.
     Still,
     /// Both channels are constant, away from zero: the shaft stands still.
     AtRest,
     /// One channel does not move while the other does.
     Dead {
         channel: Channel,
-        /// Level of its wires.
         stuck: Stuck,
     },
     /// One channel has half of the other's amplitude: one of its two wires is open.
@@ -45,14 +40,12 @@ pub enum FindingKind {
     Same,
     /// The mean level of a reference is outside of the family's limits.
     Level {
-        /// REFSIN or REFCOS.
         wire: Wire,
         /// Its mean in volts.
         volts: f64,
         /// Good from, good to, in volts.
         ok_v: (f64, f64),
     },
-    /// The mains and its multiples.
     Hum {
         /// 50 or 60 Hz.
         mains_hz: f64,
@@ -72,7 +65,6 @@ pub enum FindingKind {
         /// As for the hum.
         common: bool,
     },
-    /// White noise.
     Noise {
         /// Of one channel, rms, in volts.
         volts: f64,
@@ -85,7 +77,6 @@ pub enum FindingKind {
         /// As a share, peak; also the resulting error in radians.
         share: f64,
     },
-    /// A channel is cut off.
     Clipping {
         channel: Channel,
         /// Level in volts.
@@ -93,40 +84,32 @@ pub enum FindingKind {
         /// Share of the samples at that level.
         samples: f64,
     },
-    /// The amplitude changes over a revolution.
     Modulation {
         /// Half of the difference between largest and least, over the mean.
         share: f64,
     },
     /// Single samples far off were left out.
     Spikes {
-        /// Number of samples.
         count: usize,
         /// The farthest, in volts off the ellipse.
         volts: f64,
     },
     /// Several samples in a row were far off and left out.
     LetsGo {
-        /// Total number.
         count: usize,
         /// The most in a row.
         longest: usize,
     },
-    /// Samples are missing.
     Missing {
-        /// Number of gaps.
         gaps: usize,
         /// The longest time from one sample to the next, in seconds.
         longest_s: f64,
     },
-    /// The time goes back.
     TimeBack {
         /// The first sample that is before the one before it, counted from 0.
         sample: usize,
     },
-    /// The shaft turned back.
     Reversed {
-        /// Number of times.
         times: usize,
     },
     /// Too few samples per period to follow the angle with certainty.
@@ -150,7 +133,6 @@ pub enum FindingKind {
     SingleEnded {
         /// Mean of the sine channel in volts.
         sine_v: f64,
-        /// And of the cosine channel.
         cosine_v: f64,
     },
     /// Of two captures, the second has more noise.

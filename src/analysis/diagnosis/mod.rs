@@ -41,10 +41,8 @@ const MODULATION: (f64, f64) = (0.03, 0.1);
 /// The part of the residual's mean square that other findings have to explain.
 const EXPLAINED: f64 = 0.7;
 
-/// The data to judge.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
-    /// The samples, references taken off.
     pub samples: Samples<'a>,
     /// REFSIN and REFCOS in volts, if they were recorded.
     pub references_v: Option<(&'a [f64], &'a [f64])>,
@@ -142,7 +140,6 @@ impl Diagnosis {
         diagnosis
     }
 
-    /// Removes a residual whose causes are reported.
     fn leave_out_explained(&mut self) {
         if self.explained {
             self.findings.retain(|finding| !matches!(finding.kind, FindingKind::Limit(OutOfLimits::Residual(_))));

@@ -14,7 +14,6 @@ const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
 const LARGER: f64 = 1.1;
 const LARGER_DEG: f64 = 0.2;
 
-/// Reports findings about the times of the samples.
 pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     if let Some(sample) = analysis.continuity.back {
         say(Severity::Warning, FindingKind::TimeBack { sample });

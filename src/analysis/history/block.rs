@@ -11,7 +11,6 @@ use super::{BLOCK, FAN};
 /// A level of the pyramid.
 #[derive(Clone, Copy)]
 struct Level {
-    /// Samples under a bucket.
     size: usize,
     /// Index of its first bucket within the block.
     start: usize,

@@ -3,7 +3,6 @@
 /// A value as it was appended, with nothing rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// A measured or calculated value.
     Real(f64),
     /// A count, steps of a position for example.
     Whole(i64),
@@ -21,7 +20,6 @@ impl Value {
 
 /// The type of the values of a series.
 pub(super) trait Number: Copy + PartialOrd {
-    /// Returns whether it is neither infinite nor NaN.
     fn is_number(self) -> bool;
 
     /// Returns the number's distance from `base` such that [`at_most`](Number::at_most) gives a number that is not above
@@ -63,7 +61,6 @@ pub(super) trait Number: Copy + PartialOrd {
     /// Returns the least `f64` that is not below.
     fn above(self) -> f64;
 
-    /// Returns the number itself.
     fn value(self) -> Value;
 }
 

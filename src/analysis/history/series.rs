@@ -9,7 +9,6 @@ use super::flags::Flags;
 use super::number::Number;
 use super::spread::{Spread, together};
 
-/// One column of values.
 #[derive(Debug)]
 pub(super) struct Series<T> {
     blocks: VecDeque<Block<T>>,

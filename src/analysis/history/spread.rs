@@ -44,7 +44,6 @@ impl<T: Number> Spread<T> {
     }
 }
 
-/// Returns the union of two optional spreads.
 pub(super) fn together<T: Number>(one: Option<Spread<T>>, other: Option<Spread<T>>) -> Option<Spread<T>> {
     match (one, other) {
         (Some(one), Some(other)) => Some(one.with(other)),

@@ -14,7 +14,6 @@ pub struct Statistics {
     pub count: u64,
     /// Samples without a value to believe.
     pub bad: u64,
-    /// Their mean, in the column's unit.
     pub mean: f64,
     /// The least value, as it was appended.
     pub min: Value,

@@ -1,4 +1,4 @@
-//! The connection dialog, carried out.
+//! Execution of the connection dialog's actions.
 
 use super::context::{FinderContext, Next};
 use super::form::AnyForm;
@@ -77,7 +77,6 @@ impl Studio {
         self.edit(|connect| connect.typed = None);
     }
 
-    /// Passes an action to the search.
     fn find(&mut self, action: Payload) {
         let is_its = |form: &dyn AnyForm| form.is_of_finder(&action);
         let Some((tab, place)) = self.place_of_form(is_its) else {
@@ -156,7 +155,6 @@ impl Studio {
         }
     }
 
-    /// Closes the dialog; its search ends.
     pub(in crate::app) fn close_dialog(&mut self) {
         self.end_search();
         self.connect = None;

@@ -1,4 +1,4 @@
-//! Resources that a search may use besides the connection form it belongs to.
+//! Resources that a search may use in addition to its connection form.
 
 use crossbeam_channel::Receiver;
 
@@ -21,7 +21,6 @@ pub struct FinderContext<'a> {
 /// The next act of the dialog after a request to a search.
 #[derive(Default)]
 pub(super) struct Next {
-    /// Closes, and connects to this device.
     pub(super) found: Option<LinkUrl>,
     /// Shows why that was not done.
     pub(super) problem: Option<Text>,
@@ -36,7 +35,6 @@ impl<'a> FinderContext<'a> {
         Next { found: self.found, problem: self.problem }
     }
 
-    /// Returns the log, tasks, the world outside.
     pub fn services(&mut self) -> &mut Services {
         &mut self.studio.services
     }

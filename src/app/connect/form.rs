@@ -1,5 +1,5 @@
-//! The connection form of a kind of device, and its search for devices: typed in the device's folder, object-safe for the
-//! dialog. One adapter connects the two.
+//! Connection form of a kind of device, and the search for devices. Typed in the device's folder, object-safe for the
+//! dialog; a single adapter connects the two.
 
 #![warn(missing_docs)]
 
@@ -14,31 +14,31 @@ use crate::app::payload::{Payload, WrongKind};
 use crate::app::services::Services;
 use crate::link::LinkUrl;
 
-/// Link to a kind of device as entries. Entries of another kind of connection are kept.
+/// A link to a kind of device, as form entries. Entries of other connection types are preserved.
 pub trait FormModel: Clone + PartialEq + Send + 'static {
     /// The search for devices of the form; [`NoFinder`] for none.
     type Finder: Finder<Form = Self>;
 
-    /// Returns the link to the virtual device that the window begins with.
+    /// Returns the link to the virtual device, with which the form starts.
     fn usual() -> LinkUrl;
 
-    /// Returns the form filled in from a link.
+    /// Fills in a new form from a link.
     fn from_url(url: &LinkUrl) -> Self;
 
-    /// Returns the link of the entries. Default values are left out.
+    /// Builds the link from the entries. Default values are omitted.
     ///
     /// # Errors
-    /// A sentence that names the invalid entry and the allowed values.
+    /// Returns a message that names the invalid entry and the allowed values.
     fn url(&self) -> Result<LinkUrl, Text>;
 
-    /// Fills in the file of a recording.
+    /// Enters the path of a recording.
     fn set_file(&mut self, _file: String) {}
 
-    /// Returns an example of a link to such a device.
+    /// Returns an example of a link, shown as a hint.
     fn example(&self) -> &'static str;
 }
 
-/// Searches for devices from a connection form: on its line, or in the network.
+/// A search for devices, started from a connection form, on a serial line or in the network.
 pub trait Finder: Default + 'static {
     /// The form that it fills in.
     type Form;
@@ -47,33 +47,33 @@ pub trait Finder: Default + 'static {
     /// The results of its tasks.
     type Done: Any + Send;
 
-    /// Carries out an action.
+    /// Executes an action of the search.
     fn act(&mut self, action: Self::Action, form: &mut Self::Form, context: &mut FinderContext<'_>);
 
-    /// Handles the result of a task; `None` if the dialog was closed meanwhile.
+    /// Handles the result of a task; `finder` is `None` if the dialog has been closed in the meantime.
     fn done(finder: Option<&mut Self>, done: Self::Done, services: &mut Services);
 
     /// Continues after the user has confirmed that no other master is on the line.
     fn confirmed(&mut self, _context: &mut FinderContext<'_>) {}
 
-    /// Takes in all events since the last call.
+    /// Processes all events received since the last call.
     fn pump(&mut self) {}
 
-    /// Returns whether it holds the wire of the form.
+    /// Returns whether the search occupies the connection of the form.
     fn is_running(&self) -> bool {
         false
     }
 
-    /// Stops.
+    /// Stops the search.
     fn stop(&mut self) {}
 
-    /// Ends the search and forgets its results. The channel, if any, closes when the connection is free.
+    /// Ends the search and discards its results. The returned channel, if any, closes when the connection is free.
     fn end(&mut self, _services: &mut Services) -> Option<Receiver<()>> {
         None
     }
 }
 
-/// No search.
+/// The finder of a form without a device search.
 pub struct NoFinder<F>(PhantomData<fn() -> F>);
 
 impl<F> Default for NoFinder<F> {
@@ -96,48 +96,48 @@ impl<F: 'static> Finder for NoFinder<F> {
     }
 }
 
-/// Form of a kind of device, as used by the dialog. Implemented for every [`FormModel`].
+/// Object-safe interface of a connection form, used by the dialog. Implemented for every [`FormModel`].
 pub trait AnyForm {
-    /// Returns the entries.
+    /// Returns the form for downcasting.
     fn form(&self) -> &dyn Any;
-    /// Returns the search.
+    /// Returns the finder for downcasting.
     fn finder(&self) -> &dyn Any;
-    /// Returns the search, to be changed.
+    /// Returns the finder for downcasting, mutably.
     fn finder_mut(&mut self) -> &mut dyn Any;
-    /// Returns the link of the entries.
+    /// Builds the link from the entries. Default values are omitted.
     ///
     /// # Errors
-    /// A sentence that names the invalid entry and the allowed values.
+    /// Returns a message that names the invalid entry and the allowed values.
     fn url(&self) -> Result<LinkUrl, Text>;
     /// Fills in the entries from a link.
     fn take(&mut self, url: &LinkUrl);
-    /// Fills in the file of a recording.
+    /// Enters the path of a recording.
     fn set_file(&mut self, file: String);
-    /// Returns an example of a link to such a device.
+    /// Returns an example of a link, shown as a hint.
     fn example(&self) -> &'static str;
-    /// Returns whether these are entries of this form.
+    /// Returns whether the payload contains entries of this form.
     fn is_of_form(&self, entries: &Payload) -> bool;
-    /// Returns whether this is an action of its search.
+    /// Returns whether the payload contains an action of this form's finder.
     fn is_of_finder(&self, action: &Payload) -> bool;
-    /// Takes edited entries.
+    /// Replaces the entries with edited ones.
     ///
     /// # Errors
-    /// They are of another kind of device.
+    /// The entries belong to another kind of device.
     fn edit(&mut self, entries: Payload) -> Result<(), WrongKind>;
-    /// Passes an action to the search. Returns whether it has filled in the form.
+    /// Passes an action to the finder; returns whether it has filled in the form.
     ///
     /// # Errors
-    /// The action is of another kind of device.
+    /// The action belongs to another kind of device.
     fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, WrongKind>;
     /// Continues after the user has confirmed that no other master is on the line.
     fn confirmed(&mut self, context: &mut FinderContext<'_>);
-    /// Takes in the events of its search.
+    /// Processes pending events of the finder.
     fn pump(&mut self);
-    /// Returns whether its search holds the connection.
+    /// Returns whether the finder occupies the connection.
     fn is_running(&self) -> bool;
-    /// Stops its search.
+    /// Stops the finder.
     fn stop(&mut self);
-    /// Ends its search. The channel, if any, closes when the connection is free.
+    /// Ends the search. The returned channel, if any, closes when the connection is free.
     fn end(&mut self, services: &mut Services) -> Option<Receiver<()>>;
 }
 

@@ -1,5 +1,5 @@
-//! The connection dialog: a link as a form, the ports of this computer, and the search for devices. Independent of the
-//! kinds of devices: each brings its form.
+//! The connection dialog: a form for the link, the serial ports of this computer, and the search for devices.
+//! Independent of the kinds of devices, each of which provides its form.
 
 mod act;
 pub mod context;
@@ -28,11 +28,9 @@ use crate::link::LinkUrl;
 /// An action of the dialog.
 pub enum ConnectAction {
     Open,
-    /// Close the dialog; a search ends.
     Close,
     /// List the serial ports again.
     ListPorts,
-    /// Another kind of device.
     Device(Tab),
     /// The form of a kind of device was edited; see [`ConnectAction::edit`].
     Edit(Payload),
@@ -41,27 +39,21 @@ pub enum ConnectAction {
     /// A link was typed, pasted or selected; if it is valid, it fills in the form.
     Use(String),
     AskRecording,
-    /// A recording was chosen.
     Recording(PathBuf),
-    /// Connect with the link of the form.
     Connect,
-    /// End the search.
     StopSearch,
 }
 
 impl ConnectAction {
-    /// Returns the action that takes an edited form.
     pub fn edit<F: FormModel>(form: F) -> Self {
         ConnectAction::Edit(Payload::of(form))
     }
 
-    /// Returns an action of a search.
     pub fn find<S: Finder>(action: S::Action) -> Self {
         ConnectAction::Find(Payload::of(action))
     }
 }
 
-/// The dialog.
 pub struct Connect {
     pub device: Tab,
     kinds: Kinds,
@@ -85,7 +77,6 @@ impl Connect {
         self.forms.iter().find_map(|(_, form)| form.form().downcast_ref())
     }
 
-    /// Returns the search of that type.
     pub fn finder<S: Any>(&self) -> Option<&S> {
         self.forms.iter().find_map(|(_, form)| form.finder().downcast_ref())
     }
@@ -142,12 +133,10 @@ impl Connect {
         self.own().map(AnyForm::example).unwrap_or_default()
     }
 
-    /// Takes in the events of searches.
     pub(super) fn pump(&mut self) {
         self.forms_mut().for_each(|form| form.pump());
     }
 
-    /// Stops searches.
     pub(super) fn stop(&mut self) {
         self.forms_mut().for_each(|form| form.stop());
     }

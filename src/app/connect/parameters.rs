@@ -1,5 +1,4 @@
-//! Conversion between the parameters of a link and the entries of its form, in both directions, and parameters without an
-//! entry.
+//! Conversion between link parameters and form entries, including parameters that have no entry.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +25,6 @@ impl Typed {
         self.0.get(key).map_or("", String::as_str)
     }
 
-    /// Types a value for a parameter.
     pub fn set(&mut self, key: &'static str, text: impl Into<String>) {
         let text = text.into();
         if text.is_empty() {
@@ -48,7 +46,6 @@ impl Typed {
 pub(crate) struct Parameters(Vec<Pair>);
 
 impl Parameters {
-    /// Sets a parameter that differs from its default.
     pub(crate) fn set(&mut self, name: &str, value: &str) {
         self.0.push((name.to_owned(), value.to_owned()));
     }

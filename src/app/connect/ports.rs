@@ -1,4 +1,4 @@
-//! The serial ports offered by the connection form, the most likely first.
+//! Serial ports offered by the connection form, in order of likelihood.
 
 use crate::link::{LinkUrl, PortInfo, Scheme};
 

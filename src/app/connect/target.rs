@@ -1,5 +1,4 @@
-//! Common parts of the connection forms of all devices: entries that must not be empty, host and port, and why a link
-//! cannot be used.
+//! Parts common to all connection forms: mandatory entries, host and port, and the reasons why a link is unusable.
 
 use std::net::Ipv6Addr;
 use std::num::NonZeroU16;

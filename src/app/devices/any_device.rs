@@ -1,4 +1,4 @@
-//! Methods of every device that follow from its commands.
+//! Methods shared by all devices, derived from the device commands.
 
 use std::any::Any;
 use std::path::{Path, PathBuf};
@@ -41,12 +41,10 @@ impl AnyDevice {
         self.state().place()
     }
 
-    /// Returns the source of the data.
     pub fn source(&self) -> &Source {
         &self.state().source
     }
 
-    /// Returns the state of the connection.
     pub fn phase(&self) -> &Phase {
         &self.state().phase
     }
@@ -55,7 +53,6 @@ impl AnyDevice {
         &mut self.state_mut().phase
     }
 
-    /// Returns whether its link is being opened.
     pub(in crate::app) fn is_opening(&self) -> bool {
         self.state().opening.is_some()
     }
@@ -64,7 +61,6 @@ impl AnyDevice {
         &mut self.state_mut().opening
     }
 
-    /// Returns the trace of the line.
     pub fn trace(&self) -> &TraceLog {
         &self.state().trace
     }
@@ -121,14 +117,12 @@ impl AnyDevice {
         }
     }
 
-    /// Backups and writes were listed.
     pub(in crate::app) fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory) {
         if let Some(memory) = self.memory_mut() {
             memory.listed(of, listed);
         }
     }
 
-    /// Handles the end of reading a backup.
     pub(in crate::app) fn take_backup(
         &mut self,
         of: &DeviceKey,

@@ -1,4 +1,4 @@
-//! Commands that every device has, whatever its kind.
+//! Commands that every device supports, regardless of its kind.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -14,9 +14,7 @@ pub enum DeviceCommand {
     Reconnect,
     /// Read everything again.
     Read,
-    /// Ask where to save a profile.
     AskSave,
-    /// Show the effect of writing the edits.
     Review,
     /// Read the position all the time, or no more.
     Poll(Option<Duration>),
@@ -26,15 +24,10 @@ pub enum DeviceCommand {
     Undo,
     /// Do it again.
     Redo,
-    /// Take all edits back.
     RevertAll,
-    /// Show the effect of restoring a backup.
     Restore(PathBuf),
-    /// Ask for a profile to restore.
     AskRestore,
-    /// Ask for a profile to compare with.
     AskCompare,
-    /// Show what differs from a profile on disk.
     Compare(PathBuf),
     /// Show the effect of writing this profile to a connected device.
     WriteInto(SessionId),

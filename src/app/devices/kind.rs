@@ -1,5 +1,5 @@
-//! A kind of device before any is open: its tab, its links, its profiles. A device implements [`DeviceType`]; one adapter
-//! makes a [`DeviceKind`] of it, which the studio lists.
+//! A kind of device before one is open: its tab, its links and its profiles. A device implements [`DeviceType`]; an
+//! adapter turns it into a [`DeviceKind`], which the studio lists.
 
 #![warn(missing_docs)]
 
@@ -20,7 +20,7 @@ use crate::profile::{Cause, Document, Profile, ProfileFormat};
 use crate::store::Store;
 use crate::worker::OpenError;
 
-/// A kind of device, as the device implements it.
+/// A kind of device, implemented once per device folder.
 pub trait DeviceType: DeviceModel + Sized {
     /// Entry for the list of kinds.
     const KIND: &'static dyn DeviceKind = &KindOf::<Self>(PhantomData);
@@ -37,36 +37,37 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Tables required to read its profiles, besides their text.
     type Tables: Send + 'static;
 
-    /// Checks whether a link can lead to such a device, as far as possible without opening it.
+    /// Checks whether a link can lead to a device of this kind, as far as possible without opening it.
     ///
     /// # Errors
-    /// Why it cannot.
+    /// Returns the reason why it cannot.
     fn check(url: &LinkUrl) -> Result<(), OpenError>;
 
-    /// Returns the parameters of its links whose values are neither shown nor kept: those that are declared as secret.
+    /// Returns the link parameters declared as secret, whose values are neither displayed nor stored.
     fn secrets() -> Vec<&'static str>;
 
-    /// Returns whether another master may be on the line behind a link: the user is then asked before anything is sent.
+    /// Returns whether another master may be connected to the line of a link. If so, the user is asked before anything
+    /// is sent.
     fn may_have_other_master(_url: &LinkUrl) -> bool {
         false
     }
 
-    /// Creates a device with nothing known but the profile that was opened, with the tables for reading it.
+    /// Creates a device about which nothing is known except the opened profile, if any, and the tables for reading it.
     fn begin(
         session: Session<Self::Device>,
         profile: Option<(&Self::Profile, Self::Tables)>,
         services: &mut Services,
     ) -> Self;
 
-    /// Returns a device at a link that is being opened.
+    /// Creates a device for a link that is being opened.
     fn at_link(id: SessionId, url: LinkUrl, services: &mut Services) -> Self {
         Self::begin(Session::at_link(id, url, services.world.kinds), None, services)
     }
 
-    /// Reads the tables for its profiles. Runs on the thread of a task.
+    /// Reads the tables that its profiles require. Runs on a task thread.
     fn tables(store: &Store) -> Self::Tables;
 
-    /// Returns a profile.
+    /// Creates an offline device from a profile.
     fn in_file(
         id: SessionId,
         file: ProfileFile,
@@ -80,13 +81,13 @@ pub trait DeviceType: DeviceModel + Sized {
         own
     }
 
-    /// Returns the text for the refusal of a profile of this kind; `None` for a cause of another kind.
+    /// Explains why a profile of this kind was refused, or returns `None` if the cause belongs to another kind.
     fn explain(_cause: &Cause) -> Option<Text> {
         None
     }
 
-    /// Returns a profile that is in no file yet; `None` for a kind whose profiles come only from devices. `is_taken` tells
-    /// whether a name is in use.
+    /// Creates a profile that has not been saved to a file, or returns `None` if profiles of this kind only come from
+    /// devices. `is_taken` tells whether a file name is in use.
     fn new_profile(_id: SessionId, _is_taken: &dyn Fn(&Path) -> bool, _services: &mut Services) -> Option<Self> {
         None
     }
@@ -95,30 +96,30 @@ pub trait DeviceType: DeviceModel + Sized {
 /// Puts a profile on the desk.
 pub(crate) type OpenProfile = Box<dyn FnOnce(SessionId, ProfileFile, Document, &mut Services) -> Box<AnyDevice> + Send>;
 
-/// Kind of device, as used by the studio. Implemented for every [`DeviceType`].
+/// Object-safe interface of a kind of device, used by the studio. Implemented for every [`DeviceType`].
 pub trait DeviceKind: Sync {
-    /// Returns the tab that shows it.
+    /// Returns the tab in which devices of this kind are shown.
     fn tab(&self) -> Tab;
-    /// Returns the name of its bus, the same in every language.
+    /// Returns the name of the bus, which is the same in every language.
     fn bus(&self) -> &'static str;
-    /// Returns its name in profiles and on the command line.
+    /// Returns the keyword for this kind in profiles and on the command line.
     fn word(&self) -> &'static str;
-    /// Returns the format of its profiles.
+    /// Returns the format of profiles of this kind.
     fn format(&self) -> &'static dyn ProfileFormat;
-    /// Checks whether a link can lead to such a device.
+    /// Checks whether a link can lead to a device of this kind.
     ///
     /// # Errors
-    /// Why it cannot.
+    /// Returns the reason why it cannot.
     fn check(&self, url: &LinkUrl) -> Result<(), OpenError>;
-    /// Returns the parameters of its links whose values are neither shown nor kept.
+    /// Returns the link parameters whose values are neither displayed nor stored.
     fn secrets(&self) -> Vec<&'static str>;
     /// Returns the link to the virtual device of this kind.
     fn virtual_link(&self) -> LinkUrl;
-    /// Returns whether another master may be on the line behind a link.
+    /// Returns whether another master may be connected to the line of a link.
     fn may_have_other_master(&self, url: &LinkUrl) -> bool;
-    /// Returns the text for the refusal of a profile of this kind; `None` for a cause of another kind.
+    /// Explains why a profile of this kind was refused, or returns `None` if the cause belongs to another kind.
     fn explain(&self, cause: &Cause) -> Option<Text>;
-    /// Returns the form in the connection dialog, filled in from a link.
+    /// Returns the form for the connection dialog, filled in from a link.
     fn form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;
     #[doc(hidden)]
     fn finder_done(

@@ -1,4 +1,4 @@
-//! A kind of device as seen by the studio, typed: the parts that a device provides so that the rest is common to all.
+//! The typed model of a device for the studio: what each device provides so that everything else can be shared.
 
 #![warn(missing_docs)]
 
@@ -22,7 +22,7 @@ use crate::worker;
 
 type Job<T> = <<T as HasSession>::Device as worker::Device>::Job;
 
-/// Device, or profile of one, with all known data.
+/// State of a device or a profile, with all data known about it.
 pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// The tab that shows it.
     const TAB: Tab;
@@ -33,40 +33,40 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// The results of its own tasks.
     type Done: Any + Send;
 
-    /// Returns what is done with a session before it moves to its thread.
+    /// Returns the preparation of a session before it moves to its thread.
     fn prepare(&self, _world: &Environment) -> Prepare<Self::Device> {
         Box::new(|_| ())
     }
 
-    /// Takes over the session of the link that was opened for it.
+    /// Attaches the session of the opened link.
     fn connect(&mut self, opened: Opened<Self::Device>, services: &mut Services);
 
-    /// Carries out an action of this kind of device.
+    /// Executes an action specific to this kind of device.
     fn act(&mut self, action: Self::Action, context: &mut ActContext<'_>);
 
-    /// Handles the result of a task that this device started.
+    /// Handles the result of a task that this device has started.
     fn done(&mut self, done: Self::Done, services: &mut Services);
 
     /// Returns the job that reads the position once.
     fn position_job(&self) -> Job<Self>;
 
-    /// Returns its recording.
+    /// Returns the recording of the device.
     fn record(&self) -> &dyn Recording;
 
-    /// Returns its recording, to be changed.
+    /// Returns the recording of the device, mutably.
     fn record_mut(&mut self) -> &mut dyn Recording;
 
-    /// Returns all its recorders, the displayed one first.
+    /// Returns all recorders of the device, starting with the displayed one.
     fn recorders(&self) -> Vec<&Recorder> {
         vec![self.record().recorder()]
     }
 
-    /// Returns all its recorders, to be changed.
+    /// Returns all recorders of the device, mutably.
     fn recorders_mut(&mut self) -> Vec<&mut Recorder> {
         vec![self.record_mut().recorder_mut()]
     }
 
-    /// Carries out a command that every device has.
+    /// Executes a command that every device supports.
     fn command(&mut self, command: DeviceCommand, services: &mut Services) {
         match command {
             // The studio opens links, asks for files, and knows other sessions.
@@ -99,7 +99,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         }
     }
 
-    /// Reads everything that there is to be seen of the device.
+    /// Reads everything that the pages of the device display.
     fn read_device(&mut self, services: &mut Services) {
         self.submit(Self::Device::survey(), services);
     }
@@ -109,17 +109,17 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         step(self.pending_mut());
     }
 
-    /// Asks for the file of a profile.
+    /// Asks for the file in which to save a profile.
     fn ask_where_to_save(&mut self, services: &mut Services) {
         self.session().ask_where_to_save(services);
     }
 
-    /// Returns whether its positions can be streamed, thousands per second.
+    /// Returns whether positions can be streamed, at thousands of samples per second.
     fn streams(&self) -> bool {
         false
     }
 
-    /// Returns whether there is something to stop.
+    /// Returns whether a job is running or values are being polled.
     fn is_active(&self) -> bool {
         self.session().is_active()
     }
@@ -129,19 +129,19 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.session_mut().stop(services);
     }
 
-    /// Switches to another link for the same wire.
+    /// Switches to another link that uses the same wire.
     fn take_link(&mut self, _url: &LinkUrl) {}
 
-    /// Returns its memory; `None` for a kind to which nothing is written.
+    /// Returns the memory of the device, or `None` for a kind that is never written to.
     fn memory(&self) -> Option<&dyn DeviceMemory>;
 
-    /// Returns its memory, to be changed.
+    /// Returns the memory of the device, mutably.
     ///
     /// # Errors
-    /// Why nothing is written to such a device.
+    /// Returns the reason why nothing can be written to this kind of device.
     fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text>;
 
-    /// Calls `act` with the memory, or reports why there is none.
+    /// Calls `act` with the memory of the device, or reports why there is none.
     fn with_memory<R>(
         &mut self,
         services: &mut Services,
@@ -156,23 +156,24 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         }
     }
 
-    /// Returns the edited profile, to be written to another device; `None` if there is none.
+    /// Returns the edited profile that is to be written to another device, if any.
     fn wanted_body(&self) -> Option<Body> {
         self.memory()?.wanted_body()
     }
 
-    /// Returns the profile to compare with others: as the user wants it, or as it was read last; `None` if nothing was read.
+    /// Returns the profile to use in comparisons: with the edits of the user, or else from the last reading. `None` if
+    /// nothing has been read.
     ///
     /// # Errors
-    /// What a profile needs beyond what was read, a text each.
+    /// Returns a message for each value that a profile requires and that has not been read.
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>> {
         self.wanted_body().map(Ok).or_else(|| self.memory()?.known_body())
     }
 
-    /// Takes over a profile: opens the review of a write, or edits the layout to match it.
+    /// Adopts a profile: opens the review of a write, or edits the layout to match.
     ///
     /// # Errors
-    /// It is of another kind of device.
+    /// The profile belongs to another kind of device.
     fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
         self.with_memory(services, |memory, services| memory.restore(body, services)).unwrap_or(Ok(()))
     }
@@ -182,32 +183,32 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.with_memory(services, |memory, services| memory.save(path, services));
     }
 
-    /// Returns whether a profile can be saved now.
+    /// Returns whether a profile can currently be saved.
     fn is_savable(&self) -> bool {
         self.memory().is_some_and(DeviceMemory::is_savable)
     }
 
-    /// Returns its sine and cosine; `None` for a kind without them.
+    /// Returns the source of sine and cosine, or `None` for a kind without analogue signals.
     fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         None
     }
 
-    /// Returns its sine and cosine, to be read.
+    /// Returns the source of sine and cosine, mutably.
     fn sine_cosine_mut(&mut self) -> Option<&mut dyn SineCosineSource> {
         None
     }
 
-    /// Returns its motion; `None` for a kind that moves nothing.
+    /// Returns the motion control, or `None` for a kind that does not move anything.
     fn motion(&self) -> Option<&dyn MotionControl> {
         None
     }
 
-    /// Returns its motion, to be stopped.
+    /// Returns the motion control, mutably.
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
         None
     }
 
-    /// Returns the access to stored data about drives; `None` for a kind without any.
+    /// Returns the interface for stored data about drives, or `None` for a kind without drives.
     fn remembers_drives(&mut self) -> Option<&mut dyn RemembersDrives> {
         None
     }
@@ -216,9 +217,8 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
 /// Prepares a session before it goes to its thread.
 pub(crate) type Prepare<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
 
-/// Resources that an action may use besides the device.
+/// Resources that an action may use in addition to the device.
 pub struct ActContext<'a> {
-    /// The log, tasks, questions.
     pub(crate) services: &'a mut Services,
     /// The other devices that are open.
     others: &'a [Box<AnyDevice>],
@@ -249,72 +249,73 @@ impl<'a> ActContext<'a> {
     }
 }
 
-/// Motion requested in this window. Stop and release use only this interface, never an action of a kind.
+/// Motion requested from this window. STOP and key release act through this interface only, never through an action of
+/// a kind.
 pub trait MotionControl {
     /// Stops all motion.
     fn stop(&mut self);
 
-    /// Ends motion that lasts only while it is held: a jog, and a run without an end.
+    /// Ends every motion that lasts only while a button is held: jogging, and running without an end.
     fn let_go(&mut self);
 
-    /// Returns whether something moves or is about to.
+    /// Returns whether a drive is moving or about to move.
     fn is_moving(&self) -> bool;
 
-    /// Returns whether something moves, or is about to, at the request of this window.
+    /// Returns whether a drive is moving, or about to move, at the request of this window.
     fn moves_by_hand(&self) -> bool;
 
-    /// Returns whether a motion that was asked for in this window has not ended.
+    /// Returns whether a motion requested in this window has not ended yet.
     fn is_under_way(&self) -> bool;
 
-    /// Returns whether this window has control: values then arrive unrequested.
+    /// Returns whether this window has control of the drives; values then arrive without being requested.
     fn is_in_control(&self) -> bool;
 }
 
-/// A memory that is written through a review, and saved and restored as a profile.
+/// Device memory that is written after a review, and that is saved and restored as a profile.
 pub trait DeviceMemory {
-    /// Reviews the write of the edits.
+    /// Opens the review of the edits.
     fn review_edits(&mut self, services: &mut Services);
 
-    /// Returns whether a review of a write is open.
+    /// Returns whether a review is open.
     fn is_reviewing(&self) -> bool;
 
-    /// Returns the review of a write, if there is one.
+    /// Returns the open review, if any.
     fn sheet(&self) -> Option<ReviewSheet>;
 
-    /// Carries out an action of the review.
+    /// Executes an action of the review.
     fn act_review(&mut self, action: ReviewAction, services: &mut Services);
 
-    /// Closes the review; a running write continues.
+    /// Closes the review; a write in progress continues.
     fn close_review(&mut self);
 
-    /// Returns the edited profile; `None` if this is a device.
+    /// Returns the edited profile, or `None` if this is a device.
     fn wanted_body(&self) -> Option<Body>;
 
-    /// Returns the profile of what was read last; `None` if nothing was.
+    /// Returns the profile of the last reading, or `None` if nothing has been read.
     ///
     /// # Errors
-    /// What a profile needs beyond what was read, a text each.
+    /// Returns a message for each value that a profile requires and that has not been read.
     fn known_body(&self) -> Option<Result<Body, Vec<Text>>>;
 
-    /// Reviews the restore of a profile.
+    /// Opens the review of restoring a profile.
     ///
     /// # Errors
-    /// It is of another kind of device.
+    /// The profile belongs to another kind of device.
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
 
     /// Saves a profile.
     fn save(&mut self, path: PathBuf, services: &mut Services);
 
-    /// Returns whether a profile can be saved now.
+    /// Returns whether a profile can currently be saved.
     fn is_savable(&self) -> bool;
 
-    /// Reads a backup, to be restored.
+    /// Reads a backup that is to be restored.
     fn read_backup(&mut self, path: PathBuf, services: &mut Services);
 
-    /// Takes the lists of backups and writes; drops those of another device.
+    /// Stores the lists of backups and writes; ignores those of another device.
     fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory);
 
-    /// Takes a backup that was read, or the error; drops one of another device.
+    /// Handles a backup that was read, or the error; ignores those of another device.
     fn take_backup(
         &mut self,
         of: &DeviceKey,

@@ -1,5 +1,5 @@
-//! A device of any kind, as seen by the studio, the common parts of the window and other devices. There is one
-//! implementation for all kinds.
+//! A device of any kind, as used by the studio, the shared parts of the window, and other devices. A single
+//! implementation covers all kinds.
 
 #![warn(missing_docs)]
 
@@ -20,62 +20,62 @@ use crate::link::LinkUrl;
 use crate::profile::{Body, Document, ProfileError};
 use crate::store::FileError;
 
-/// Device, or profile of one, of any kind.
+/// A device or profile of any kind.
 pub type AnyDevice = dyn OpenDevice;
 
-/// The interface of every device. A kind implements `DeviceModel`; this follows from it.
+/// The interface common to all devices. A kind implements `DeviceModel`; this interface follows from it.
 pub trait OpenDevice: Any {
     /// Returns the state common to all sessions.
     fn state(&self) -> &SessionState;
     #[doc(hidden)]
     fn state_mut(&mut self) -> &mut SessionState;
-    /// Returns the tab that shows it.
+    /// Returns the tab in which the device is shown.
     fn tab(&self) -> Tab;
-    /// Returns whether the device lives in this process.
+    /// Returns whether the device is simulated in this process.
     fn is_virtual(&self) -> bool;
-    /// Returns whether its connection is open.
+    /// Returns whether the connection is open.
     fn is_connected(&self) -> bool;
     /// Returns whether a job is running.
     fn is_busy(&self) -> bool;
     /// Returns whether its memory is being changed.
     fn is_writing(&self) -> bool;
-    /// Returns whether the device is polled.
+    /// Returns whether values are polled.
     fn is_polling(&self) -> bool;
-    /// Returns whether there is something to stop.
+    /// Returns whether a job is running or values are being polled.
     fn is_active(&self) -> bool;
-    /// Returns whether it is connected and idle: a job may begin.
+    /// Returns whether the device is connected and idle, so that a job may start.
     fn is_ready(&self) -> bool;
-    /// Returns whether it can be read again; also true for a device that did not answer, and for a profile.
+    /// Returns whether the device can be read again; also true for a device that did not reply, and for a profile.
     fn is_readable(&self) -> bool;
-    /// Returns whether a profile of it can be saved now.
+    /// Returns whether a profile can currently be saved.
     fn is_savable(&self) -> bool;
-    /// Returns whether its positions can be streamed, thousands per second.
+    /// Returns whether positions can be streamed, at thousands of samples per second.
     fn streams(&self) -> bool;
-    /// Returns the job that runs.
+    /// Returns the running job, if any.
     fn running(&self) -> Option<Progressing>;
-    /// Returns whether there are edits that are not written.
+    /// Returns whether edits have not been written.
     fn is_dirty(&self) -> bool;
-    /// Returns the number of edits that are not written.
+    /// Returns the number of edits that have not been written.
     fn edits(&self) -> usize;
     /// Returns whether there is an edit to undo.
     fn can_undo(&self) -> bool;
     /// Returns whether there is an edit to redo.
     fn can_redo(&self) -> bool;
-    /// Returns whether its edits are restored after it is closed.
+    /// Returns whether edits are restored after the device has been closed.
     fn keeps_edits(&self) -> bool;
     /// Returns whether every edit is on disk, as far as the disk accepts it.
     fn is_draft_kept(&self) -> bool;
-    /// Returns the number of samples that were taken and dropped before they were recorded.
+    /// Returns the number of samples that were dropped before they could be recorded.
     fn dropped(&self) -> u64;
-    /// Returns its displayed recorder.
+    /// Returns the displayed recorder.
     fn recorder(&self) -> &Recorder;
     #[doc(hidden)]
     fn recorder_mut(&mut self) -> &mut Recorder;
-    /// Returns its recorders, the displayed one first.
+    /// Returns all recorders, starting with the displayed one.
     fn recorders(&self) -> Vec<&Recorder>;
     #[doc(hidden)]
     fn recorders_mut(&mut self) -> Vec<&mut Recorder>;
-    /// Returns its sine and cosine; `None` for a kind without them.
+    /// Returns the source of sine and cosine, or `None` for a kind without analogue signals.
     fn sine_cosine(&self) -> Option<&dyn SineCosineSource>;
     #[doc(hidden)]
     fn sine_cosine_mut(&mut self) -> Option<&mut dyn SineCosineSource>;

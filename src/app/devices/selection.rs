@@ -1,4 +1,4 @@
-//! The device that each tab shows.
+//! Selection of the device that each tab shows.
 
 use std::collections::HashMap;
 
@@ -15,7 +15,6 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    /// Returns the device that a tab shows.
     pub(crate) fn of(&self, tab: Tab) -> Option<SessionId> {
         self.by_tab.get(&tab).copied()
     }

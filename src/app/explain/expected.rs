@@ -1,4 +1,4 @@
-//! The values that a parameter, a setting or an entry may have.
+//! Descriptions of the values that a parameter, a setting or an entry accepts.
 
 use crate::app::Text;
 use crate::expected::{Expected, Quantity};

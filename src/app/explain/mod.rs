@@ -1,5 +1,5 @@
-//! Errors as texts for the user: what happened, and what to do. This is the only place for them; those of one kind of
-//! device are in a separate module.
+//! Error messages for the user: what happened and what to do. This is the only place for them, except for errors of a
+//! single kind of device, which have their own module.
 
 mod detail;
 mod expected;
@@ -21,7 +21,6 @@ use crate::store::{FileError, FileProblem, LogbookError, StoreError};
 use crate::units::Parity;
 use crate::worker::{NotBegun, OpenError};
 
-/// A wire.
 pub fn link(error: &LinkError) -> Text {
     let target = &error.target;
     match &error.kind {

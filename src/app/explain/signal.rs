@@ -1,4 +1,4 @@
-//! Texts for a capture of sine and cosine: why it cannot be read or analysed, and what is wrong with the signals.
+//! Messages about sine/cosine captures: why they cannot be read or analysed, and which signals are faulty.
 
 use std::path::Path;
 

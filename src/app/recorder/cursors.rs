@@ -1,4 +1,5 @@
-//! Two cursors, and the samples between them: calculated from the raw samples, not from those reduced for a picture.
+//! Two cursors and the statistics of the samples between them, calculated from the raw samples rather than from those
+//! reduced for drawing.
 
 use super::{Recorder, Series};
 use crate::analysis::Time;
@@ -27,11 +28,8 @@ impl Cursor {
 /// Readings of the cursors on a line, in its unit. `None` without a valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The raw sample nearest to cursor A.
     pub a: Option<f64>,
-    /// The raw sample nearest to cursor B.
     pub b: Option<f64>,
-    /// B minus A.
     pub difference: Option<f64>,
     /// Mean, least, greatest value and standard deviation of the samples from one cursor to the other, both included.
     pub between: Option<CursorStatistics>,
@@ -40,7 +38,6 @@ pub struct Measured {
 /// Values of the samples between two cursors, in the line's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CursorStatistics {
-    /// Samples with a value.
     pub count: u64,
     /// Samples without a value to believe.
     pub bad: u64,
@@ -49,7 +46,6 @@ pub struct CursorStatistics {
     pub min: f64,
     /// The greatest.
     pub max: f64,
-    /// Standard deviation.
     pub deviation: f64,
 }
 

@@ -1,5 +1,5 @@
-//! Lines that end, because later samples have another meaning or no longer arrive: they keep their samples and units, and
-//! come after those that continue.
+//! Lines that have ended because later samples have another meaning or no longer arrive. They keep their samples and
+//! units, and follow the active lines.
 
 use super::{LineId, Recorder, Scale, Series};
 use crate::app::Text;
@@ -37,7 +37,6 @@ impl Recorder {
         self.forget_trigger(id);
     }
 
-    /// Continues an ended line with this name.
     pub(in crate::app) fn resume_line(&mut self, id: LineId, name: Text, heading: String) {
         let mut group = None;
         self.with_line(id, |line| {

@@ -1,5 +1,5 @@
-//! Samples as a table of text (CSV). They are passed in portions to a thread that writes: the window does not wait for the
-//! disk, nor recording for the table.
+//! Export of samples as CSV. They are passed in portions to a writer thread, so the window does not wait for the disk,
+//! nor the recording for the export.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -121,7 +121,6 @@ impl Export {
 }
 
 impl Recorder {
-    /// Returns the table that is being written.
     pub fn export(&self) -> Option<&Export> {
         self.export.as_ref()
     }

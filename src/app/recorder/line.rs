@@ -1,4 +1,4 @@
-//! A line of a recorder: a column of samples with its name and its units.
+//! A line of a recorder: a column of samples with a name and units.
 
 use super::GroupId;
 use crate::analysis::history::{Sample, Value};
@@ -11,7 +11,6 @@ pub struct LineId(pub(super) u32);
 /// A unit in which a line can be seen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
-    /// The unit's sign or word.
     pub unit: Text,
     /// Size of one unit of the samples in this unit; not zero.
     pub factor: f64,
@@ -29,7 +28,6 @@ impl Scale {
 /// A column of samples over time.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Its number.
     pub id: LineId,
     pub name: Text,
     /// Its name as a column of a table.
@@ -76,18 +74,15 @@ impl Series {
         Series { shown: false, ..self }
     }
 
-    /// Creates the same, calculated from another line.
     #[must_use]
     pub(crate) fn derived(self) -> Self {
         Series { derived: true, ..self }
     }
 
-    /// Returns the column of its history.
     pub fn column(&self) -> usize {
         self.column
     }
 
-    /// Returns the units to choose from.
     pub fn scales(&self) -> &[Scale] {
         &self.scales
     }
@@ -97,7 +92,6 @@ impl Series {
         self.scale
     }
 
-    /// Returns the unit that is shown.
     pub fn scale(&self) -> Option<&Scale> {
         self.scales.get(self.scale)
     }

@@ -1,5 +1,5 @@
-//! A chart recorder: incoming samples as lines over time, with following, zoom, two cursors, a trigger and an export as a
-//! table. Independent of devices and drawing; the owner sets origin, unit and depth of the samples.
+//! A chart recorder: incoming samples as lines over time, with following, zoom, two cursors, a trigger and CSV export.
+//! Independent of devices and drawing; the owner sets the origin, unit and depth of the samples.
 
 mod cursors;
 mod ended;
@@ -28,7 +28,6 @@ use crate::app::Text;
 /// Something that is done with a recorder.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecorderAction {
-    /// Show a line, or hide it.
     Show(LineId, bool),
     /// Show a line in the unit of this number.
     SetScale(LineId, usize),
@@ -36,13 +35,9 @@ pub enum RecorderAction {
     SetRange(LineId, Option<(f64, f64)>),
     /// Draw all lines over one axis, or each over its own.
     ShareAxis(bool),
-    /// Follow the newest samples.
     Follow,
-    /// Hold the view; recording continues.
     Pause,
-    /// Everything that was recorded.
     Fit,
-    /// This stretch of time.
     Look(Time, Time),
     /// Show this many nanoseconds, up to the present end of the view.
     SetSpan(i64),
@@ -58,7 +53,6 @@ pub enum RecorderAction {
     Disarm,
     /// Forget the samples.
     Clear,
-    /// Give up a table that is being written.
     CancelExport,
 }
 
@@ -106,7 +100,6 @@ impl Group {
     }
 }
 
-/// Lines over time.
 #[derive(Debug, Default)]
 pub struct Recorder {
     groups: BTreeMap<GroupId, Group>,
@@ -140,7 +133,6 @@ impl Recorder {
         self.finished = true;
     }
 
-    /// Returns whether its times are numbers of samples.
     pub fn counts(&self) -> bool {
         self.counts
     }
@@ -180,7 +172,6 @@ impl Recorder {
         }
     }
 
-    /// Sets or clears the remark of a line.
     pub(in crate::app) fn remark(&mut self, id: LineId, remark: Option<Text>) {
         self.with_line(id, |line| line.remark = remark);
     }
@@ -248,7 +239,6 @@ impl Recorder {
         &self.lines
     }
 
-    /// Returns the line of that number.
     pub fn line(&self, id: LineId) -> Option<&Series> {
         self.lines.iter().find(|line| line.id == id)
     }
@@ -272,7 +262,6 @@ impl Recorder {
         self.groups.get(&line.group).map(|group| &group.history)
     }
 
-    /// Returns the origin of a line's samples.
     pub fn stamp(&self, line: &Series) -> Option<Stamp> {
         self.groups.get(&line.group).map(|group| group.stamp)
     }

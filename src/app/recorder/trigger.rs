@@ -1,4 +1,4 @@
-//! Waiting for an event in a line, and the view of it with the samples before it.
+//! The trigger: waits for an event in a line and shows it together with the samples before it.
 
 use super::{GroupId, LineId, Recorder, TimeWindow};
 use crate::analysis::Time;
@@ -7,13 +7,9 @@ use crate::analysis::history::{Flags, Sample};
 /// The condition of a trigger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
-    /// A sample at the level or above it.
     Above,
-    /// A sample at the level or below it.
     Below,
-    /// From below the level to it or above.
     Rising,
-    /// From above the level to it or below.
     Falling,
     /// A sample that the device marks as bad, or with a warning.
     Error,
@@ -32,9 +28,7 @@ impl When {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigger {
     pub line: LineId,
-    /// The event.
     pub when: When,
-    /// In the displayed unit of the line.
     pub level: f64,
     /// Share of the view before the event, 0 to 1.
     pub before: f64,
@@ -54,7 +48,6 @@ pub enum TriggerState {
     Missed,
 }
 
-/// A trigger at work.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
     trigger: Trigger,

@@ -1,4 +1,4 @@
-//! The range of time that is shown.
+//! The displayed time range.
 
 use super::Recorder;
 use crate::analysis::Time;
@@ -16,10 +16,8 @@ pub enum TimeWindow {
         /// Nanoseconds, at least 1.
         span: i64,
     },
-    /// This range, whatever arrives.
     Fixed {
         from: Time,
-        /// Its end, which is later.
         to: Time,
     },
 }
@@ -31,12 +29,10 @@ impl Default for TimeWindow {
 }
 
 impl Recorder {
-    /// Returns the range of time that is shown.
     pub fn view(&self) -> TimeWindow {
         self.view
     }
 
-    /// Returns whether it follows the newest samples.
     pub fn follows(&self) -> bool {
         matches!(self.view, TimeWindow::Follow { .. })
     }

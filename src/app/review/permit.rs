@@ -1,15 +1,12 @@
-//! Permits that the user may give for a write.
+//! Permits that the user may grant for a write.
 
 use crate::profile::RestoreOptions;
 
 /// A permit that the user may give for a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Permit {
-    /// Write a profile of another device.
     OtherDevice,
-    /// Write a profile of another type of device.
     OtherType,
-    /// Write values of another device's mounting.
     Mounting,
     /// Delete and create fields again.
     Recreate,
@@ -28,7 +25,6 @@ impl Permit {
     /// All permissions in display order, except those of single fields.
     pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::OtherType, Permit::Mounting, Permit::Recreate];
 
-    /// Returns the id of its text.
     pub const fn word(self) -> &'static str {
         match self {
             Permit::OtherDevice => "review.allow_other",
@@ -39,7 +35,6 @@ impl Permit {
         }
     }
 
-    /// Returns the id of its explanation.
     pub const fn hint(self) -> Option<&'static str> {
         match self {
             Permit::OtherDevice | Permit::Copy(_) => None,

@@ -1,5 +1,5 @@
-//! A device, or a profile of one, whose edits are kept after a crash. A kind defines its edits and their key; loading,
-//! storing and discarding drafts is common to all.
+//! A device or profile whose edits survive a crash. A kind defines its edits and their key; loading, storing and
+//! discarding drafts is shared.
 
 #![warn(missing_docs)]
 
@@ -18,28 +18,28 @@ type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
 /// A session with edits.
 pub trait Drafted: HasSession {
-    /// Returns the key of the logbook; `None` before the device was read, and for a device without an identity.
+    /// Returns the key in the logbook, or `None` before the device was read and for a device without an identity.
     fn key(&self) -> Option<DeviceKey>;
 
-    /// Returns the type and the serial number of the device that was read, under which its draft is stored: another type
-    /// may have the same number. The number is empty for a device without an identity; `None` if nothing has been read.
+    /// Returns the type and serial number of the device, under which its draft is stored, since another type may use
+    /// the same number. The serial number is empty for a device without an identity; `None` if nothing has been read.
     fn type_and_serial(&self) -> Option<(String, String)> {
         self.key().map(|key| (key.device_type, key.serial_number))
     }
 
-    /// Returns the edits.
+    /// Returns the current edits.
     fn edited(&self) -> Edits<Self>;
 
-    /// Takes earlier edits; those that are no longer valid are left out.
+    /// Restores earlier edits; those that are no longer valid are omitted.
     fn take_edits(&mut self, edits: Edits<Self>);
 
-    /// Takes a profile that was read again from its file; edits stay.
+    /// Adopts a profile that was read again from its file; edits are kept.
     fn take_document(&mut self, file: ProfileFile, document: Document);
 
-    /// Returns its edits, to be counted.
+    /// Returns the edits for counting.
     fn pending(&self) -> &dyn PendingEdits;
 
-    /// Returns its edits, to be undone.
+    /// Returns the edits for undo and redo.
     fn pending_mut(&mut self) -> &mut dyn PendingEdits;
 
     /// Discards all edits, as one step.
@@ -47,10 +47,10 @@ pub trait Drafted: HasSession {
         self.pending_mut().revert();
     }
 
-    /// Handles the write of a profile of a connected device.
+    /// Handles a profile of a connected device that has been written to a file.
     fn written_beside(&mut self, _document: Document) {}
 
-    /// Returns the key of the draft; `None` for a device that does not identify itself.
+    /// Returns the key of the draft, or `None` for a device that does not identify itself.
     fn draft_key(&self) -> Option<DraftKey> {
         match &self.session().source {
             Source::File { key, .. } => Some(DraftKey::of_file(Self::Device::KIND, key)),
@@ -65,7 +65,7 @@ pub trait Drafted: HasSession {
         }
     }
 
-    /// Looks up the draft of earlier edits.
+    /// Looks up the draft with earlier edits.
     fn load_draft(&mut self, services: &Services) {
         if let Some(key) = self.draft_key() {
             self.session_mut().drafting.load(key, services);
@@ -82,7 +82,7 @@ pub trait Drafted: HasSession {
         }
     }
 
-    /// Stores the edits if they have changed. Called in every frame.
+    /// Stores the edits if they have changed. Call this once per frame.
     fn write_draft(&mut self, services: &mut Services) {
         if !self.session().drafting.is_due() {
             return;
@@ -99,18 +99,18 @@ pub trait Drafted: HasSession {
         self.session_mut().drafting.save(key, edits, services);
     }
 
-    /// Returns whether its edits are restored after it is closed.
+    /// Returns whether edits are restored after the device has been closed.
     fn keeps_edits(&self) -> bool {
         self.session().drafting.is_loaded() && self.draft_key().is_some()
     }
 
-    /// Leaves the edits of the previous device on disk: another device is opened, or none.
+    /// Leaves the edits of the previous device on disk because another device, or none, is being opened.
     fn leave_draft(&mut self, services: &mut Services) {
         let (key, edits) = (self.draft_key(), self.edited());
         self.session_mut().drafting.leave(key, edits, services);
     }
 
-    /// Handles a written profile, or the failure. In a new file it has no earlier draft, and leaves none.
+    /// Handles a written profile, or the failure. A profile saved to a new file has no earlier draft and leaves none.
     fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services) {
         let name = self.session().name();
         self.session_mut().is_saving = false;
@@ -137,7 +137,7 @@ pub trait Drafted: HasSession {
         services.notify(severity, std::iter::once(saved).chain(saving.remarks).collect(), Some(&name));
     }
 
-    /// Notes that the profile is in this file now.
+    /// Records that the profile is now stored in this file.
     fn take_written(&mut self, file: ProfileFile, document: Document, services: &mut Services) {
         let moves = !matches!(&self.session().source, Source::File { key: own, .. } if *own == file.key);
         if moves {

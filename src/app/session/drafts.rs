@@ -1,6 +1,6 @@
-//! Edits survive a crash: they are stored beside the studio's other data as they are made, one file for each device or
-//! profile, and come back with it. Each draft has one owner: a second session with the same device, here or in another
-//! window, neither takes nor overwrites it. Only the kind of device knows what an edit is.
+//! Drafts: edits survive a crash. Each edit is stored at once with the studio's other data, in one file for each device
+//! or profile, and is restored with it. A draft has a single owner: a second session with the same device, in this or
+//! another window, neither adopts nor overwrites it. Only the kind of device knows what an edit contains.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -42,19 +42,18 @@ impl DraftKey {
 
 /// The results of tasks about drafts.
 pub enum DraftDone {
-    /// Edits of an earlier time.
     Looked {
         key: DraftKey,
         /// The claim to store it; `None`: it belongs to another window or session.
         claim: Result<Option<Claim>, FileError>,
-        /// The edits.
         result: Result<Option<String>, FileError>,
     },
-    /// A draft was kept or removed.
-    Kept { key: DraftKey, result: Result<(), FileError> },
+    Kept {
+        key: DraftKey,
+        result: Result<(), FileError>,
+    },
 }
 
-/// Persistent edits: a list.
 pub trait DraftEdits: Serialize + DeserializeOwned + Clone + PartialEq + Default + Send + 'static {
     /// Returns whether there is nothing to keep.
     fn is_nothing(&self) -> bool;
@@ -72,7 +71,6 @@ pub(crate) struct Drafting<E> {
     session: SessionId,
     /// The edits that were handed over last.
     kept: E,
-    /// A task is at it.
     busy: bool,
     /// The edits may be others than those that were handed over.
     due: bool,
@@ -80,7 +78,6 @@ pub(crate) struct Drafting<E> {
     is_loaded: bool,
     /// The claim to store it; without it, the draft belongs to another window or session.
     claim: Option<Arc<Claim>>,
-    /// The failure to store it has been reported.
     is_failure_reported: bool,
 }
 
@@ -109,7 +106,6 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
-    /// Looks up the earlier draft.
     pub(in crate::app) fn load(&mut self, key: DraftKey, services: &Services) {
         self.claim(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
     }

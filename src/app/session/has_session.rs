@@ -8,6 +8,5 @@ pub trait HasSession {
 
     fn session(&self) -> &Session<Self::Device>;
 
-    /// Returns the same, to be changed.
     fn session_mut(&mut self) -> &mut Session<Self::Device>;
 }

@@ -1,4 +1,5 @@
-//! The associated types and functions of a kind of device, so that opening, leaving and running are the same for all.
+//! The associated types and functions of a kind of device, which allow opening, running and leaving sessions to be
+//! shared.
 
 #![warn(missing_docs)]
 
@@ -10,7 +11,7 @@ use crate::link::LinkUrl;
 use crate::store::Store;
 use crate::worker::{Device, Event, JobId, OpenError, Session};
 
-/// A kind of device on the desk.
+/// A kind of device, as required by its sessions.
 pub trait Kind: Device + Sized {
     /// Its name in profiles.
     const KIND: &'static str;
@@ -27,29 +28,29 @@ pub trait Kind: Device + Sized {
     /// Whether its live values may start by themselves, on a line that has no other master.
     const STARTS_LIVE: bool = true;
 
-    /// Returns the handle of a session before the session moves to its thread.
+    /// Returns the handle that stays with the window when the session moves to its thread.
     fn session_handle(session: &Session<Self>) -> Self::SessionHandle;
 
-    /// Opens links to such devices.
+    /// Opens a link to a device of this kind.
     ///
     /// # Errors
-    /// The link cannot be opened, or is not for such a device.
+    /// The link cannot be opened, or leads to another kind of device.
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError>;
 
-    /// Returns why a link cannot be opened, and what to do.
+    /// Explains why a link cannot be opened and what to do.
     fn open_error(error: &OpenError) -> Text {
         explain::open(error)
     }
 
-    /// Returns the same, or that it has no thread to run on.
+    /// Explains why a link could not be opened, including that no thread could be started.
     fn open_failed(failed: &OpenFailed) -> Text {
         explain::open_failed(failed, Self::open_error)
     }
 
-    /// Returns a job as text.
+    /// Describes a job.
     fn job_text(job: &Self::Job) -> Text;
 
-    /// Returns whether a job changes the device's memory.
+    /// Returns whether a job changes the memory of the device.
     fn writes(_job: &Self::Job) -> bool {
         false
     }
@@ -57,21 +58,21 @@ pub trait Kind: Device + Sized {
     /// Returns the job that reads everything displayed about the device.
     fn survey() -> Self::Job;
 
-    /// Returns a step of a job as text.
+    /// Describes a step of a job.
     fn step_text(what: &Self::JobStep) -> Text;
 
-    /// Returns the result of a writing job; `None` for any other.
+    /// Describes the result of a job that writes; `None` for other jobs.
     fn result_texts(_output: &Self::Output) -> Option<(Severity, Vec<Text>)> {
         None
     }
 
-    /// Returns why a job ended early, and what to do.
+    /// Explains why a job ended early and what to do.
     fn error_texts(error: &Self::Error) -> Vec<Text>;
 
-    /// Returns why the connection failed, if nothing more can be requested over it.
+    /// Explains why the connection failed, if no more requests are possible over it.
     fn connection_error(error: &Self::Error) -> Option<Text>;
 
-    /// Returns the last message about the job in an event of a released session.
+    /// Returns the last message about the job from an event of a released session.
     fn job_endings(event: &Event<Self>) -> Option<JobEnding> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {
@@ -90,7 +91,7 @@ pub trait Kind: Device + Sized {
     }
 }
 
-/// How the last job of a released session ended.
+/// End of the last job of a released session.
 pub struct JobEnding {
     pub(in crate::app) job: JobId,
     pub(in crate::app) end: JobEnd,

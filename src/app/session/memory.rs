@@ -1,5 +1,5 @@
-//! A device whose memory is written through a review: from a change to a plan, from the plan and the consent to it to the
-//! job that carries it out, and its result. A kind defines its changes, plans and jobs, and their further consequences.
+//! Writing to a device memory through a review: from a change to a plan, from the approved plan to the job that
+//! executes it, and to its result. A kind defines its changes, plans and jobs and their further consequences.
 
 #![warn(missing_docs)]
 
@@ -18,76 +18,76 @@ type Op<T> = review::Op<<T as HasSession>::Device>;
 type Prepared<T> = <<T as HasSession>::Device as Reviewed>::Prepared;
 type Committed<T> = worker::Committed<<<T as HasSession>::Device as Reviewed>::Written>;
 
-/// Plan with the user's consent.
+/// A plan to which the user has consented.
 pub type ApprovedPlanOf<K> = worker::commit::ApprovedPlan<<K as Reviewed>::Prepared>;
 
-/// Device whose memory can be written.
+/// A device with writable memory.
 pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
-    /// Returns the review of a write.
+    /// Returns the open review, if any.
     fn review(&self) -> Option<&Review<Self::Device>> {
         self.session().review.as_ref()
     }
 
-    /// Returns the same, to be changed.
+    /// Returns the open review, mutably.
     fn review_mut(&mut self) -> &mut Option<Review<Self::Device>> {
         &mut self.session_mut().review
     }
 
-    /// Returns an operation of a plan, as text.
+    /// Describes an operation of a plan.
     fn op(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OpWords {
         Self::Device::op(prepared, op)
     }
 
-    /// Returns the review as displayed; `done` operations have been carried out.
+    /// Returns the review for display, after `done` operations have been executed.
     fn sheet(&self, done: usize) -> Option<ReviewSheet> {
         self.review().map(|review| review.sheet_with(done, |prepared, op| self.op(prepared, op)))
     }
 
-    /// Returns the change that writes the edits; `None` if there are none.
+    /// Returns the change that writes the edits, if there are any.
     fn edited_change(&self) -> Option<Change<Self>>;
 
-    /// Returns whether a change was made for another device than this one.
+    /// Returns whether a change was made for a device other than the connected one.
     fn is_for_another(&self, change: &Change<Self>) -> bool;
 
-    /// Returns whether a change was made for another type of device, if that needs its own permission.
+    /// Returns whether a change was made for another type of device, if that requires a separate permit.
     fn is_for_another_type(&self, _change: &Change<Self>) -> bool {
         false
     }
 
-    /// Returns whether a plan was made for another device than the one that was read before.
+    /// Returns whether a plan was made for a device other than the one read before.
     fn is_of_another(&self, prepared: &Prepared<Self>) -> bool {
         self.key().is_some_and(|own| own != prepared.device(own.is_virtual))
     }
 
-    /// Creates the job that makes a plan.
+    /// Creates the job that prepares the plan of a change.
     fn prepare(change: Change<Self>) -> Job<Self>;
 
-    /// Returns the job that carries a plan out.
+    /// Creates the job that executes an approved plan.
     fn commit(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
 
-    /// Forgets all known data of the device: another one replies.
+    /// Discards everything known about the device, because another one has replied.
     fn forget_device(&mut self);
 
-    /// Prepares for the display of a review.
+    /// Prepares for displaying a review.
     fn before_review(&mut self) {}
 
-    /// Returns why a change is not possible, as far as known without querying the device.
+    /// Returns why a change is impossible, as far as known without querying the device.
     fn objection(&self, _change: &Change<Self>) -> Option<Text> {
         None
     }
 
-    /// Returns why a plan cannot be carried out.
+    /// Returns why a plan cannot be executed.
     fn objection_to(&self, _prepared: &Prepared<Self>) -> Option<Text> {
         None
     }
 
-    /// Marks the values that the running plan changes to be read again, however it ends.
+    /// Marks the values that the running plan changes as unread, however the plan ends.
     fn reads_again(&mut self) {}
 
-    /// Handles the end of the plan that was carried out.
+    /// Handles the end of an executed plan.
     fn carried_out(&mut self, _committed: &Committed<Self>, _services: &mut Services) {}
 
-    /// Logs that a write has begun, with its changes.
+    /// Logs the start of a write and its changes.
     fn log_begin(&self, what: &Text, prepared: &Prepared<Self>, services: &mut Services) {
         let ops = &prepared.plan().ops;
         let operations = ops.iter().map(|op| Self::Device::op(prepared, op).item);
@@ -95,7 +95,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         services.note(Severity::Note, vec![text], Some(&self.session().name()));
     }
 
-    /// Makes the plan of the edits, for review.
+    /// Requests the plan of the edits for review.
     fn review_edits(&mut self, services: &mut Services) {
         match self.edited_change() {
             Some(change) => self.plan(change, services),
@@ -106,7 +106,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Makes the plan of a change, for review.
+    /// Requests the plan of a change for review.
     fn plan(&mut self, change: Change<Self>, services: &mut Services) {
         self.before_review();
         if let Some(why) = self.session().why_not_ready() {
@@ -123,7 +123,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Makes the plan again with one of the review's permissions toggled.
+    /// Requests the plan again with one of its permits toggled.
     fn plan_with(&mut self, permit: Permit, services: &mut Services) {
         if self.session().is_busy() {
             return;
@@ -133,15 +133,15 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Sets whether to write although the device is worn.
+    /// Sets whether to write even though the device has reached its limit of write cycles.
     fn force_wear(&mut self, force: bool) {
         if let Some(review) = self.review_mut() {
             review.force_wear = force;
         }
     }
 
-    /// Takes a plan. If the device was exchanged on the line, the plan is discarded: the change was meant for the previous
-    /// one.
+    /// Adopts a plan for review. The plan is discarded if the device has been exchanged, because the change was meant
+    /// for the previous one.
     fn planned(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
         if self.is_of_another(&prepared) {
             *self.review_mut() = None;
@@ -161,7 +161,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Handles the exchange of the device: the edits for the previous one stay on disk, if it has a serial number.
+    /// Handles an exchange of the device: the edits for the previous one stay on disk if it has a serial number.
     fn replaced_by(&mut self, serial: &str, services: &mut Services) {
         if self.pending().is_dirty() {
             let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());
@@ -175,7 +175,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         self.session_mut().forget_device();
     }
 
-    /// Carries out the plan that was drawn.
+    /// Executes the plan that the user has seen.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
         if let Some(agreed) = self.agree(shown) {
             let job = self.commit(agreed);
@@ -183,7 +183,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Gives the consent: to the plan that was displayed, which must be the one in the review.
+    /// Approves the displayed plan, which must be the one under review.
     fn agree(&self, shown: PlanId) -> Option<ApprovedPlanOf<Self::Device>> {
         let review = self.review().filter(|_| self.session().is_ready())?;
         let ReviewState::Ready(prepared) = &review.state else { return None };
@@ -195,7 +195,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         })
     }
 
-    /// Starts the job that carries out the plan in the review; returns false if it cannot be started.
+    /// Starts the job that executes the plan under review; returns `false` if it cannot be started.
     fn begin_write(&mut self, job: Job<Self>, services: &mut Services) -> bool {
         let Some(review) = self.review_mut() else { return false };
         let ReviewState::Ready(prepared) = &review.state else { return false };
@@ -210,7 +210,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         begins
     }
 
-    /// Closes the review; a running write continues, and its review stays.
+    /// Closes the review. A write in progress continues and keeps its review.
     fn close_review(&mut self) {
         let Some(review) = self.review().filter(|review| !review.is_writing()) else { return };
         let is_planning = review.is_planning();
@@ -220,7 +220,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         *self.review_mut() = None;
     }
 
-    /// Handles a plan that was carried out: the device is read again.
+    /// Handles an executed plan; the device is read again.
     fn committed(&mut self, committed: Committed<Self>, services: &mut Services) {
         let (severity, texts) = written_texts::<Self::Device>(&committed);
         let (name, stands) = (self.session().name(), self.review().is_some_and(Review::is_writing));
@@ -241,8 +241,8 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         self.submit(Self::Device::survey(), services);
     }
 
-    /// Handles the early end of planning or writing; returns true if the review reports it. A plan cancelled during
-    /// planning leaves no review.
+    /// Handles the early end of planning or writing; returns whether the review reports it. A plan cancelled during
+    /// preparation leaves no review.
     fn cut_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.review() else { return false };
         let (begun, done) = match (how, review.is_planning(), review.is_writing()) {

@@ -1,5 +1,5 @@
-//! The parts common to all sessions: source, connection, line, trace, backups and writes. Independent of the kind of
-//! device; the additions of a kind are in its own folder.
+//! Parts common to all sessions: source, connection, line, trace, backups and writes. Independent of the kind of
+//! device, which adds its own parts in its folder.
 
 mod drafted;
 mod drafts;
@@ -45,12 +45,9 @@ use crate::worker::SubmitError;
 /// The source of the data.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// A device at the end of a link.
     Link(LinkUrl),
-    /// A profile in a file.
     File {
         path: PathBuf,
-        /// The same for every path to the file.
         key: String,
         /// The document without the edits.
         document: Box<Document>,
@@ -59,7 +56,6 @@ pub enum Source {
     },
     /// Made here, and in no file yet.
     New {
-        /// A name to begin with.
         suggested: PathBuf,
     },
 }
@@ -77,9 +73,7 @@ impl Source {
 /// The state of the connection.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Phase {
-    /// The link is being opened.
     Opening,
-    /// Connected, and the device answers.
     Connected,
     /// The link is open, and the device does not reply: why, and what to do.
     Silent(Text),
@@ -91,7 +85,6 @@ pub enum Phase {
 
 /// A link that is being opened.
 pub(crate) struct Opening {
-    /// The attempt to connect.
     pub(crate) attempt: Option<u32>,
     /// Disconnects when it has ended.
     pub(crate) over: crossbeam_channel::Receiver<()>,
@@ -104,7 +97,6 @@ pub struct Session<D: Kind> {
     state: SessionState,
     pub(crate) line: Option<LiveSession<D>>,
     pub(crate) drafting: Drafting<D::Edits>,
-    /// Review of a write.
     pub review: Option<D::Review>,
 }
 
@@ -155,22 +147,18 @@ impl<D: Kind> Session<D> {
             || matches!(&self.source, Source::Link(url) if url.scheme == Scheme::Sim)
     }
 
-    /// Returns whether a job is running.
     pub fn is_busy(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.running().is_some())
     }
 
-    /// Returns whether its memory is being changed.
     pub fn is_writing(&self) -> bool {
         self.line.as_ref().and_then(LiveSession::running).is_some_and(|running| running.writes)
     }
 
-    /// Returns whether the device is polled.
     pub fn is_polling(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.polling().is_some())
     }
 
-    /// Returns whether there is something to stop.
     pub fn is_active(&self) -> bool {
         self.phase == Phase::Opening || self.is_busy() || self.is_polling()
     }
@@ -190,7 +178,6 @@ impl<D: Kind> Session<D> {
         self.is_ready() || self.phase == Phase::Offline
     }
 
-    /// Takes over the opened line.
     pub fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
         let is_sole_master = self.opening.take().is_some_and(|opening| opening.is_sole_master);
         self.trace.begin(opened.began.clone());

@@ -1,4 +1,4 @@
-//! Profiles and backups of an open device, as files: each is read and written as a task.
+//! Profiles and backups of an open device as files. Each is read or written in a task.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,6 @@ use crate::profile::{Body, Document};
 use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, StatusEntry, Store};
 
 impl SessionState {
-    /// Returns a name for a profile of it.
     pub(crate) fn suggested_file(&self) -> PathBuf {
         if let Source::File { path, .. } | Source::New { suggested: path } = &self.source {
             return path.clone();
@@ -23,7 +22,6 @@ impl SessionState {
         PathBuf::from(format!("{}.ron", words.as_deref().unwrap_or("encoder")))
     }
 
-    /// Asks the user for a file for it.
     pub(crate) fn ask_where_to_save(&self, services: &mut Services) {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
@@ -90,7 +88,6 @@ impl SessionState {
         });
     }
 
-    /// Takes the lists of backups and writes.
     pub(in crate::app) fn take_backups(&mut self, listed: DeviceHistory) {
         self.backups = Some(listed.backups.map_err(|error| explain::file(&error)));
         self.cycles = listed.cycles;
@@ -121,7 +118,6 @@ impl DeviceHistory {
     /// Entries of the logbook that are shown.
     const WRITES: u32 = 200;
 
-    /// Asks the disk.
     pub(in crate::app) fn of(key: &DeviceKey, store: &Store) -> Self {
         let backups = store.backups().list(&key.kind, &key.serial_number);
         let (writes, cycles, statuses) = match store.logbook_path() {

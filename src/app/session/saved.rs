@@ -1,4 +1,4 @@
-//! The content of a memory as a profile: saved, restored, and backed up.
+//! Memory content as a profile: saving, restoring and backing up.
 
 use std::path::{Path, PathBuf};
 
@@ -87,7 +87,6 @@ pub trait Saved: WithMemory {
         }
     }
 
-    /// Handles the end of reading a backup.
     fn take_backup(&mut self, path: &Path, result: Result<Box<Document>, ReadError>, services: &mut Services) {
         let restored = result.and_then(|own| {
             let known = own.known().map_err(ReadError::Profile)?;

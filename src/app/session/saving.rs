@@ -1,5 +1,5 @@
-//! Writing a profile to a file. Changes by others since it was opened are not replaced without a question, and a user's
-//! comments between the entries stay.
+//! Saving a profile to a file. Changes made by others since it was opened are not overwritten without asking, and
+//! comments of the user between the entries are preserved.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,6 @@ use crate::store::{FileError, FileProblem, read_file, write_text_over};
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileFile {
     pub path: PathBuf,
-    /// The same for every path to the file.
     pub key: String,
     pub text: String,
 }
@@ -39,12 +38,9 @@ pub struct Guard {
 /// Profile being written to a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saving {
-    /// Session of the profile.
     pub session: SessionId,
-    /// The file.
     pub path: PathBuf,
     pub document: Box<Document>,
-    /// What is missing from it.
     pub remarks: Vec<Text>,
     /// The open file; another one is replaced as it is.
     pub opened: Option<Guard>,

@@ -1,5 +1,5 @@
-//! Events of a line: samples, results of jobs, early ends, and loss. The kind handles results; the end of a job is reported
-//! the same way for all.
+//! Events of a line: samples, results of jobs, early ends and loss of the connection. The kind handles results; the end
+//! of a job is reported in the same way for all kinds.
 
 #![warn(missing_docs)]
 
@@ -18,74 +18,74 @@ type DeviceMessage<T> = <<T as HasSession>::Device as Device>::DeviceMessage;
 type Sample<T> = <<T as HasSession>::Device as Device>::Sample;
 type JobStep<T> = <<T as HasSession>::Device as Device>::JobStep;
 
-/// How a request on a line ended early.
+/// The reason why a request ended early.
 pub enum EarlyEnd<'e, E> {
-    /// Cancelled by the user.
+    /// The user has cancelled the request.
     Cancelled(&'e E),
-    /// It failed.
+    /// The request has failed.
     Failed(&'e E),
-    /// The connection is lost.
+    /// The connection was lost.
     Lost,
 }
 
-/// A device at the end of a line.
+/// A device that receives events from its line.
 pub trait SessionEvents: HasSession {
-    /// Takes samples, and the number of those dropped before them.
+    /// Records samples, preceded by the given number of dropped ones.
     fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
-    /// Returns the meaning of a frame in the trace; empty if it has none besides its bytes. Called once per frame, in
+    /// Explains a frame in the trace; empty if there is nothing to say beyond its bytes. Called once per frame, in
     /// order.
     fn meaning_of(&mut self, _frame: &TraceEntry) -> Explained {
         Explained::default()
     }
 
-    /// Handles a message that the device sent meanwhile.
+    /// Handles a message that the device has sent during a job.
     fn message_received(&mut self, remark: DeviceMessage<Self>, services: &mut Services);
 
-    /// Handles the end of a job.
+    /// Handles the result of a finished job.
     fn finished(&mut self, output: Output<Self>, services: &mut Services);
 
-    /// Returns whether the error means that the link is open but the device is silent.
+    /// Returns whether the error means that the link is open but the device does not reply.
     fn is_silence(&self, error: &Error<Self>) -> bool;
 
-    /// Forgets pending requests: their replies will not arrive.
+    /// Discards pending requests whose replies will not arrive.
     fn forget_requests(&mut self);
 
-    /// Handles the release of the line, before it.
+    /// Prepares for the release of the line.
     fn line_ends(&mut self) {}
 
-    /// Handles a step of the running job.
+    /// Handles progress of the running job.
     fn progressed(&mut self, _what: JobStep<Self>) {}
 
-    /// Returns whether the result of a job is an answer of the device.
+    /// Returns whether the result of a job proves that the device has replied.
     fn is_answer(_output: &Output<Self>) -> bool {
         true
     }
 
-    /// Handles the early end of a request; returns true if the review reports it.
+    /// Handles the early end of a request; returns whether the review reports it.
     fn ended_early(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
         false
     }
 
-    /// Handles the end of polling by itself.
+    /// Handles polling that ended without a request.
     fn polling_ends(&mut self) {}
 
-    /// Starts a job; reports why not and returns false if it cannot.
+    /// Starts a job; reports the reason and returns `false` if it cannot be started.
     fn try_submit(&mut self, job: Job<Self>, services: &mut Services) -> bool {
         self.session_mut().submit(job, services)
     }
 
-    /// Starts a job, or reports why not.
+    /// Starts a job, or reports why it cannot be started.
     fn submit(&mut self, job: Job<Self>, services: &mut Services) {
         self.try_submit(job, services);
     }
 
-    /// Takes the events of the line since the last call.
+    /// Processes the events of the line since the last call.
     fn pump(&mut self, services: &mut Services) {
         self.poll_line(services);
     }
 
-    /// Polls the line, for a kind that does more at such a time.
+    /// Processes the line; overridden by kinds that have more to do at that time.
     fn poll_line(&mut self, services: &mut Services) {
         // Samples from before a job come before its result; later ones come the next time.
         self.take_samples_and_frames();
@@ -97,7 +97,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Takes the samples and frames since the last call.
+    /// Fetches the samples and frames received since the last call.
     fn take_samples_and_frames(&mut self) {
         let Some(line) = &mut self.session_mut().line else { return };
         let (samples, dropped) = line.samples();
@@ -133,7 +133,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().drafting.may_have_changed();
     }
 
-    /// Handles a failed sample, after which polling is off.
+    /// Handles a failed sample; polling has stopped.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
         self.polling_ends();
         match Self::Device::connection_error(error) {
@@ -145,7 +145,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Handles a cancelled job; what was written until then is read.
+    /// Handles a cancelled job; values written before the cancellation are read again.
     fn cancelled(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         services.job_ends(self.session().id, id, JobEnd::Cancelled);
         self.session_mut().save_to = None;
@@ -179,7 +179,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Handles a lost connection; known data and edits stay.
+    /// Handles the loss of the connection; known data and edits are kept.
     fn connection_lost(&mut self, why: Text, services: &mut Services) {
         self.line_ends();
         // The last frames show the cause best.
@@ -189,7 +189,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().connection_lost(why, services);
     }
 
-    /// Releases its thread; the running job is recorded as `end`, and a plan is discarded.
+    /// Releases the thread. The running job is recorded as `end`, and a plan is discarded.
     fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.line_ends();
         self.forget_requests();

@@ -1,4 +1,4 @@
-//! The state common to all sessions.
+//! State common to all sessions.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,6 @@ use crate::store::{Backup, Entry, StatusEntry};
 
 /// State common to all sessions: identity, source of data, connection.
 pub struct SessionState {
-    /// Its number in the studio.
     pub id: SessionId,
     pub source: Source,
     pub phase: Phase,

@@ -1,5 +1,5 @@
-//! Unwrapped positions made of wrapping ones, with their rate of change; across a damaged one too, if the shaft cannot have
-//! completed a turn unnoticed.
+//! Unwrapping of positions that wrap, with their rate of change. Damaged positions are bridged if the shaft cannot have
+//! completed an unnoticed turn.
 
 use super::Meaning;
 use crate::analysis::{Motion, Rates, Time, Unwrap, Unwrapped};
@@ -7,7 +7,6 @@ use crate::analysis::{Motion, Rates, Time, Unwrap, Unwrapped};
 /// Nanoseconds over which speed is averaged.
 const WINDOW: i64 = 250_000_000;
 
-/// Unwraps positions.
 #[derive(Debug)]
 pub(super) struct Follower {
     pub(super) meaning: Meaning,

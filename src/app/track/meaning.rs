@@ -1,4 +1,4 @@
-//! The meaning of positions: their range, the size of a step, and their units.
+//! Meaning of positions: range, step size and units.
 
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Scale, Series};

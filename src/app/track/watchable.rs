@@ -1,4 +1,4 @@
-//! The values that are recorded in addition to a position, each a line of its own.
+//! Values recorded in addition to a position, each as a line of its own.
 
 use std::convert::Infallible;
 
@@ -12,7 +12,6 @@ pub trait Watchable: Clone + PartialEq {
     /// Returns whether its values are whole numbers.
     fn is_whole(&self) -> bool;
 
-    /// Returns its name and units.
     fn line(&self, group: GroupId) -> Series;
 
     /// Returns whether samples of this value continue as samples of the other, which may be displayed in other units.
@@ -35,11 +34,8 @@ impl Watchable for Infallible {
 /// A watched value, or that there is none at the moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watching {
-    /// Time of the value.
     pub at: Moment,
-    /// In the unit of its line.
     pub value: Option<Value>,
-    /// The device warned with it.
     pub is_warned: bool,
     /// Why there will never be any.
     pub never: Option<Text>,

@@ -1,4 +1,4 @@
-//! The open adapter.
+//! Support for the open adapter.
 
 pub(crate) mod commands;
 pub mod jobs;

@@ -1,4 +1,4 @@
-//! `do`: an action of a kind of device, and its arguments.
+//! `do`: an action of a kind of device with its arguments.
 
 use clap::{Args, ValueEnum};
 

@@ -1,4 +1,4 @@
-//! The command line for clap: the common part, and the options and commands of all kinds of device.
+//! Assembly of the clap command line: the common part, and the options and commands of all kinds of device.
 
 use std::ffi::OsString;
 use std::path::PathBuf;

@@ -1,5 +1,5 @@
-//! A virtual device on TCP and UDP at the same port. Packets are sent at exact times by sleeping, because a socket's
-//! time-out has the resolution of the system tick.
+//! Serves a virtual device on TCP and UDP at the same port. Packets are sent at exact times by sleeping, because socket
+//! time-outs only have the resolution of the system tick.
 
 use std::io::ErrorKind;
 use std::net::{SocketAddr, SocketAddrV4, TcpListener, ToSocketAddrs, UdpSocket};

@@ -1,11 +1,11 @@
-//! The echo of a line on which an adapter returns the bytes of the host.
+//! The echo of a line whose adapter returns the bytes sent by the host.
 
 use crate::parameter::Words;
 
 /// Whether the adapter echoes sent bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Echo {
-    /// Not known yet: determined with the first exchange.
+    /// Unknown: determined during the first exchange.
     Unknown,
     /// The adapter echoes.
     On,

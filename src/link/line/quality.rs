@@ -1,22 +1,22 @@
-//! The quality of a line: counters and reply times.
+//! Line quality: counters and reply times.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// The quality of a line, counted since the session began.
+/// Line quality, measured since the session began.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LineQuality {
-    /// Requests that were sent, repeated ones included.
+    /// Number of requests sent, including repetitions.
     pub requests: u64,
-    /// Replies that could be understood.
+    /// Number of valid replies.
     pub replies: u64,
-    /// Requests that were sent again.
+    /// Number of repeated requests.
     pub retries: u64,
-    /// Number of replies that were damaged, and of requests that the device reported as damaged.
+    /// Number of damaged replies, including requests that the device reported as damaged.
     pub damaged: u64,
     /// Number of requests without a reply.
     pub silent: u64,
-    /// Number of replies that came too late.
+    /// Number of replies that arrived too late.
     pub late: u64,
     /// The newest reply times, from the first byte of the request to that of the reply.
     answers: VecDeque<Duration>,
@@ -26,17 +26,17 @@ impl LineQuality {
     /// Answer times that are kept.
     const ANSWERS: usize = 1000;
 
-    /// Returns whether a request had to be repeated, or a reply came too late.
+    /// Returns whether a request had to be repeated, or a reply arrived too late.
     pub fn is_troubled(&self) -> bool {
         self.troubles() != [0; 4]
     }
 
-    /// Returns the counters of errors.
+    /// Returns the error counters.
     pub fn troubles(&self) -> [u64; 4] {
         [self.retries, self.damaged, self.silent, self.late]
     }
 
-    /// Returns the time within which `percent` of the newest replies came; `None` if there were none.
+    /// Returns the time within which `percent` of the most recent replies arrived, or `None` if there were none.
     pub fn answered_within(&self, percent: usize) -> Option<Duration> {
         let mut times: Vec<Duration> = self.answers.iter().copied().collect();
         times.sort_unstable();

@@ -12,18 +12,18 @@ pub(super) const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 /// The allowed delay of a reply beyond the protocol's worst case.
 pub(crate) const MARGIN: Milliseconds = Milliseconds(0..=LONGEST_MARGIN.as_millis() as u64);
 
-/// The state of a line that is kept between jobs.
+/// Line state that is kept between jobs.
 #[derive(Clone, Debug)]
 pub struct LineState {
-    /// The allowed delay of a reply beyond the protocol's worst case: USB adapters and device servers deliver late.
+    /// Tolerated delay of a reply beyond the worst case of the protocol, since USB adapters and device servers deliver
+    /// late.
     pub margin: Duration,
-    /// Whether the adapter echoes.
+    /// Whether the adapter echoes sent bytes.
     pub echo: Echo,
-    /// Number of exchanges that failed and had to be repeated or given up, since the session began.
+    /// Number of failed exchanges since the session began, whether repeated or given up.
     pub damaged: u64,
-    /// The quality of the line.
+    /// Line quality.
     pub quality: LineQuality,
-    /// The earliest time of the next request.
     pub(crate) quiet_until: Moment,
     /// Time since which no valid reply came.
     pub(super) troubled_since: Option<Moment>,
@@ -34,7 +34,6 @@ pub struct LineState {
 }
 
 impl LineState {
-    /// Creates the state of an unused line.
     pub(crate) fn new(margin: Duration) -> Self {
         LineState {
             margin,
@@ -53,20 +52,17 @@ impl LineState {
         self.troubled_since.is_some()
     }
 
-    /// Starts a job, which has its full patience.
     pub(crate) fn begin_job(&mut self) {
         self.troubled_since = None;
         self.outstanding_since = None;
     }
 
-    /// Notes that a request is sent now.
     pub(crate) fn sent(&mut self, at: Moment) {
         self.outstanding_since.get_or_insert(at);
         self.last_sent = at;
         self.quality.requests += 1;
     }
 
-    /// Notes that a valid reply has come.
     pub(crate) fn answered(&mut self) {
         self.outstanding_since = None;
         self.quality.replies += 1;

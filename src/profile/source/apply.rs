@@ -1,4 +1,4 @@
-//! Applies a change to a text, and leaves the rest of it unchanged.
+//! Application of a change to a file content, leaving everything else unchanged.
 
 use std::ops::Range;
 

@@ -1,15 +1,15 @@
-//! Changes between two texts of this program, carried over into the user's text.
+//! Transfer of changes between two generated texts to the text of the user.
 
 use super::apply::{apply, value_at};
 use super::changes::{Change, changes};
 use super::tree::comments;
 
-/// A text with other content.
+/// A text with updated content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Carried {
-    /// The text.
+    /// Updated text.
     pub text: String,
-    /// Comments of the user that have no place in it.
+    /// Comments of the user for which the new content has no location.
     pub lost: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! The differences between two texts that this program wrote, entry by entry.
+//! Differences between two texts written by this program, entry by entry.
 
 use std::fmt;
 
@@ -10,38 +10,38 @@ use super::tree::{Kind, Node, Part, comment_behind, read};
 /// Entries that identify the elements of a list; the first existing one counts.
 const NAMES: [&str; 7] = ["number", "program", "cam", "bank", "banks", "item", "name"];
 
-/// One step of the path to an entry.
+/// A step of the path to an entry.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Step {
     /// An entry of a structure, by its name as written.
     Entry(String),
-    /// An element of a list, by its identifying entry: name and value.
+    /// A list element, by the name and value of its identifying entry.
     Named(String, String),
-    /// An element of a list, by its index.
+    /// A list element, by its index.
     At(usize),
 }
 
-/// Something that is not the same in two texts.
+/// A difference between two texts.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Change {
-    /// The path.
+    /// Path of the entry.
     pub path: Vec<Step>,
-    /// The source text on the left; `None` if there is none.
+    /// Source text on the left, if the entry exists there.
     pub from: Option<String>,
-    /// The source text on the right; `None` if there is none.
+    /// Source text on the right, if the entry exists there.
     pub to: Option<String>,
-    /// The predecessors in the same structure or list on the right, the nearest first.
+    /// Preceding entries in the same structure or list on the right, nearest first.
     pub behind: Vec<Step>,
-    /// The comment after it, on the left and on the right.
+    /// Trailing comments on the left and on the right.
     #[serde(default)]
     pub comments: (Option<String>, Option<String>),
-    /// Comments on lines of their own before it, on the right.
+    /// Comment lines before the entry on the right.
     #[serde(default)]
     pub heading: Vec<String>,
 }
 
 impl Change {
-    /// Returns the path as messages name it: `fields[number: 2].status`.
+    /// Returns the path as shown in messages, such as `fields[number: 2].status`.
     pub fn place(&self) -> String {
         self.path.iter().enumerate().fold(String::new(), |place, (at, step)| match step {
             Step::Entry(name) if at == 0 => name.clone(),

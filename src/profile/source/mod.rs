@@ -1,5 +1,5 @@
-//! The text of a profile as edited by a user: its entries with their positions, the differences between two texts, and
-//! changes to a text that leave the rest as written: comments, order, notation, line ends.
+//! Source text of a profile edited by a user: entries with their locations, differences between two texts, and changes
+//! that preserve comments, order, notation and line endings.
 
 mod apply;
 mod carry;

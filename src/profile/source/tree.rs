@@ -1,5 +1,5 @@
-//! RON with the positions of its parts. It parses text that the `ron` crate has already accepted, and returns `None` if it
-//! cannot; the text is then written completely again.
+//! RON syntax tree with source locations. It parses text that the `ron` crate has already accepted, and returns `None`
+//! if it cannot; the file is then rewritten completely.
 
 use std::ops::Range;
 
@@ -14,11 +14,11 @@ pub(super) struct Node {
 /// The structure of a value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Kind {
-    /// A number, a text, a word; also a tuple.
+    /// A number, a string, an identifier or a tuple.
     Plain,
-    /// `[…]`.
+    /// A list, `[…]`.
     List(Vec<Part>),
-    /// `(name: …)` or `{key: …}`.
+    /// A structure or map, `(name: …)` or `{key: …}`.
     Entries(Vec<Part>),
 }
 
@@ -30,7 +30,6 @@ pub(super) struct Part {
     pub(super) value: Node,
     /// End of its value, or of the comma if there is one.
     pub(super) end: usize,
-    /// Whether a comma follows.
     pub(super) comma: bool,
 }
 
@@ -41,7 +40,6 @@ impl Part {
 }
 
 impl Node {
-    /// Returns the elements or entries.
     pub(super) fn parts(&self) -> &[Part] {
         match &self.kind {
             Kind::Plain => &[],
@@ -108,7 +106,6 @@ impl<'t> Reader<'t> {
         takes
     }
 
-    /// Blanks and comments.
     fn skip(&mut self) {
         loop {
             self.at += self.rest().len() - self.rest().trim_start().len();
@@ -166,7 +163,6 @@ impl<'t> Reader<'t> {
         None
     }
 
-    /// Parses a number or a name.
     fn word(&mut self) -> Option<&'t str> {
         let rest = self.rest();
         let ends = |c: char| c.is_whitespace() || "()[]{},:\"'".contains(c) || c == '/';

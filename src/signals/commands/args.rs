@@ -1,4 +1,4 @@
-//! The arguments of `analyse`.
+//! Arguments of `analyse`.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `analyse`: the quality of a recorded sine/cosine signal, offline.
+//! `analyse`: reports the quality of a recorded sine/cosine signal offline.
 
 mod args;
 
@@ -77,7 +77,6 @@ fn analyse(output: &Output, arguments: &Analyse) -> Result {
     Ok(Done::Well)
 }
 
-/// Prints remarks on how the table was read.
 fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
     if let Some(clock) = layout.clock {
         let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);

@@ -1,4 +1,4 @@
-//! The state of the Signals tab, and its actions.
+//! State and actions of the Signals tab.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,10 +26,8 @@ pub struct Signals {
     periods: Option<u32>,
     /// The periods are those of the virtual encoder: they do not apply to a capture.
     periods_of_source: bool,
-    /// The virtual encoder, or an adapter.
     pub(crate) source: Source,
     synchronise: Synchronise,
-    /// The signals over time.
     pub(super) scope: Scope,
     measurement: Option<Arc<Measurement>>,
     comparison: Option<Arc<Results>>,
@@ -133,7 +131,6 @@ impl Signals {
         }
     }
 
-    /// Returns the family whose limits apply.
     pub fn family(&self) -> Family {
         self.family
     }
@@ -144,17 +141,14 @@ impl Signals {
         self.periods
     }
 
-    /// Returns the absolute and analogue position brought together.
     pub fn synchronise(&self) -> &Synchronise {
         &self.synchronise
     }
 
-    /// Returns the capture that is shown.
     pub fn measurement(&self) -> Option<&Arc<Measurement>> {
         self.measurement.as_ref()
     }
 
-    /// Returns the virtual encoder, or an adapter.
     pub fn source(&self) -> &Source {
         &self.source
     }
@@ -174,12 +168,10 @@ impl Signals {
         self.problem.as_ref()
     }
 
-    /// Returns the reading in progress.
     pub fn reading(&self) -> Option<&Reading> {
         self.reading.as_ref()
     }
 
-    /// Returns the signals over time.
     pub fn scope(&self) -> &Scope {
         &self.scope
     }
@@ -257,7 +249,6 @@ impl Signals {
         }
     }
 
-    /// Handles the result of a task.
     pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
         match done {
             Done::Read { number, read } => {
@@ -374,7 +365,6 @@ impl Signals {
         Judge { family: self.family, periods: self.periods }
     }
 
-    /// Judges the displayed capture by the present settings.
     pub(super) fn judge_again(&mut self, services: &mut Services) {
         let Some(measurement) = self.measurement.clone() else { return };
         self.judgements = self.judgements.wrapping_add(1);

@@ -1,4 +1,4 @@
-//! The actions of the Signals tab, and the results of its tasks.
+//! Actions of the Signals tab, and the results of its tasks.
 
 use std::path::PathBuf;
 
@@ -7,10 +7,8 @@ use crate::analysis::capture::{Delimiter, TimeUnit};
 use crate::analysis::quality::Family;
 use crate::store::ReadCaptureError;
 
-/// Something to be done.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SignalsAction {
-    /// Read a capture from a file.
     Open(PathBuf),
     /// Read one of the captures that ship with the program.
     Example(Example),
@@ -20,15 +18,12 @@ pub enum SignalsAction {
     SetDecimalComma(bool),
     /// Select another column, from 1; `None`: no column.
     SetColumn(Column, Option<usize>),
-    /// Another unit of the time.
     SetTimeUnit(TimeUnit),
     /// Volts in one unit of the table; finite, not zero.
     SetVolts(f64),
     /// Find all of that out again.
     Detect,
-    /// Give up reading.
     Cancel,
-    /// Judge by the limits of another family.
     SetFamily(Family),
     /// Signal periods in one revolution, at least 1.
     SetPeriods(u32),
@@ -38,11 +33,9 @@ pub enum SignalsAction {
     DropComparison,
     /// An action about the source: the virtual encoder, or an adapter.
     Source(SourceAction),
-    /// Absolute and analogue position brought together.
     Synchronise(synchronise::SynchroniseAction),
 }
 
-/// The results of tasks.
 pub enum Done {
     /// A capture was read, or not.
     Read {
@@ -56,7 +49,6 @@ pub enum Done {
         number: u32,
         measurement: Box<Measurement>,
     },
-    /// The newest samples of the source were measured.
     Measured {
         /// Number of the start: only the latest counts.
         number: u32,
@@ -68,14 +60,11 @@ pub enum Done {
     LetGo,
 }
 
-/// A task that failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failed {
-    /// The capture of this attempt.
     Read(u32),
     /// Judging the capture that is shown again.
     Judge,
-    /// The measurement of this start.
     Measure(u32),
 }
 

@@ -1,4 +1,4 @@
-//! Samples of sine and cosine as they arrive, from the virtual encoder or an adapter.
+//! Samples of sine and cosine as they arrive from the virtual encoder or an adapter.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -52,9 +52,7 @@ impl From<Pair> for Channels {
     }
 }
 
-/// A source that runs.
 pub(super) enum Feed {
-    /// The virtual encoder.
     Virtual(Stream<Analogue>),
     Adapter {
         stream: Stream<Bridge<SineCosine>>,
@@ -172,7 +170,6 @@ impl Feed {
         }
     }
 
-    /// Returns whether the adapter lives in this process.
     pub(super) fn is_virtual(&self) -> bool {
         match self {
             Feed::Virtual(_) => true,
@@ -180,7 +177,6 @@ impl Feed {
         }
     }
 
-    /// Changes the settings of the virtual encoder.
     pub(super) fn change(&self, checked: Checked) {
         if let Feed::Virtual(stream) = self {
             stream.change(checked);

@@ -1,4 +1,4 @@
-//! Parses the entries of the Signals tab. For an invalid entry the valid ones are returned.
+//! Parsing of entries of the Signals tab. Errors state the valid values.
 
 use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, whole};

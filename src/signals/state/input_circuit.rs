@@ -1,5 +1,5 @@
-//! The calculator of a drive's input circuit: the signal frequency at a speed, and the effect of the filter there and up to
-//! the limit. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference.
+//! Calculator for the input circuit of a drive: the signal frequency at a speed, and the effect of the filter there and
+//! up to the limit. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference.
 
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, InputFilter, Response, signal_frequency_hz, speed_rpm_at};
 use crate::app::Text;
@@ -35,7 +35,6 @@ pub struct Point {
 /// The circuit of the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circuit {
-    /// At the entered speed.
     pub here: Point,
     /// The speed in revolutions per minute at which the signals reach the encoder's bandwidth.
     pub most_rpm: f64,

@@ -1,5 +1,5 @@
-//! The angle inside a period by the octant table of a drive and exactly, and their difference. SICK 8010701, interpolation;
-//! section 3 of the project's sine/cosine reference.
+//! The angle within a period, calculated with the octant table of a drive and exactly, and the difference. SICK
+//! 8010701, interpolation; section 3 of the project's sine/cosine reference.
 
 use std::sync::LazyLock;
 
@@ -13,7 +13,6 @@ pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableError {
-    /// Its intervals in one octant.
     pub intervals: usize,
     /// Largest error in electrical degrees.
     pub largest_deg: f64,
@@ -26,7 +25,6 @@ pub struct TableError {
 /// One pair of voltages, both ways.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interpolated {
-    /// By the arctangent.
     pub exact: Phase,
     pub table: Phase,
     /// Table minus exact, in electrical degrees, within ±180.

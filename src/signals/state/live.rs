@@ -1,5 +1,5 @@
-//! A live source: the virtual encoder or an adapter; its settings, its newest samples, and their measurement, which is
-//! repeated a few times per second. Samples come from `worker::stream`; drawing never waits for them.
+//! A live source, which is the virtual encoder or an adapter: its settings, its newest samples, and their measurement,
+//! which is repeated a few times per second. Samples come from `worker::stream`; drawing never waits for them.
 
 use std::sync::Arc;
 
@@ -22,9 +22,7 @@ use crate::sim::sine_cosine::{Quantity, References, Settings};
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum SourceAction {
-    /// Let the virtual encoder turn.
     Start,
-    /// Let the adapter sample.
     StartAdapter,
     /// Set another link to an adapter, as entered; a running one keeps its own.
     SetLink(String),
@@ -38,21 +36,17 @@ pub enum SourceAction {
     Hold(bool),
     /// Set another value of the virtual encoder; one out of range is refused with a message.
     Set(Quantity, f64),
-    /// Breaks or repairs a wire.
     SetOpenWire(Option<Wire>),
     /// Set or remove the resistor between the wires of a pair.
     SetTerminated(bool),
-    /// Sets the level of the references.
     SetReferences(References),
     /// Measure the newest samples of this many milliseconds, 10 to 10 000.
     SetWindow(u32),
-    /// Restore all initial settings of the virtual encoder.
     Reset,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SourceKind {
-    /// The virtual encoder.
     #[default]
     Encoder,
     Adapter,
@@ -78,12 +72,10 @@ pub struct Source {
     live: Option<Live>,
 }
 
-/// A running source.
 struct Live {
     feed: Feed,
     recent: Recent,
     held: bool,
-    /// A task measures.
     measuring: bool,
     /// The last sample of the latest measurement.
     measured: Option<Time>,
@@ -119,7 +111,6 @@ impl Source {
         Source { link: link.cloned().unwrap_or(usual.link), ..Source::default() }
     }
 
-    /// Returns the settings of the virtual encoder.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -200,7 +191,6 @@ impl Source {
         }
     }
 
-    /// Changes the settings; returns whether they are valid.
     fn change(&mut self, settings: Settings) -> bool {
         match settings.checked() {
             Ok(checked) => {
@@ -218,7 +208,6 @@ impl Source {
         }
     }
 
-    /// Starts the virtual encoder; returns whether it runs.
     fn start_encoder(&mut self, services: &mut Services) -> bool {
         let checked = match self.settings.clone().checked() {
             Ok(checked) => checked,
@@ -398,7 +387,6 @@ impl Signals {
         });
     }
 
-    /// Handles a source that has ended by itself.
     fn ended(&mut self, services: &mut Services) {
         let Some(why) = self.source.live.as_ref().map(|live| live.feed.why_ended()) else { return };
         self.source.stop(services);
@@ -408,7 +396,6 @@ impl Signals {
         services.notify(Severity::Error, vec![why], None);
     }
 
-    /// Takes the measurement of the newest samples.
     pub(super) fn measured(&mut self, number: u32, measurement: Measurement, services: &mut Services) {
         let current = self.source.runs == number;
         let Some(live) = self.source.live.as_mut().filter(|_| current) else { return };

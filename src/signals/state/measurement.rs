@@ -1,5 +1,5 @@
-//! A capture with all results computed from it once, in a task: the analysis, the diagnosis, the spectra and the picture of
-//! its Lissajous figure.
+//! A capture with all results computed from it once, in a task: analysis, diagnosis, spectra and the picture of the
+//! Lissajous figure.
 
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
@@ -22,19 +22,13 @@ use crate::signals::state::TEXTS;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     Table(TableSource),
-    /// The virtual encoder.
     Virtual,
-    Adapter {
-        name: String,
-        /// Virtual device in this process.
-        is_virtual: bool,
-    },
+    Adapter { name: String, is_virtual: bool },
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TableSource {
     File(PathBuf),
-    /// One that ships with the program.
     Example(Example),
 }
 
@@ -66,10 +60,8 @@ impl TableSource {
     }
 }
 
-/// Capture with its results.
 #[derive(Clone, Debug)]
 pub struct Measurement {
-    /// The samples.
     pub capture: Arc<Capture>,
     results: Arc<Results>,
 }
@@ -83,7 +75,6 @@ pub struct Results {
     /// The analysis, or why there is none.
     pub analysis: Result<Analysis, AnalysisError>,
     pub diagnosis: Diagnosis,
-    /// Diagnostic criteria.
     pub judge: Judge,
     /// Mean level of REFSIN and of REFCOS in volts, if they were recorded.
     pub levels_v: Option<(f64, f64)>,
@@ -103,7 +94,6 @@ pub struct Results {
 /// Criteria for judging a signal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Judge {
-    /// Family with its limits.
     pub family: Family,
     /// Signal periods per revolution; `None` if not known.
     pub periods: Option<u32>,

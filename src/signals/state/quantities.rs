@@ -1,5 +1,5 @@
-//! The measured quantities of a signal as a list: each with its unit, its limit and its verdict. Limits as in
-//! `signal::quality`; SICK 8010701 for amplitudes and bandwidth.
+//! Measured quantities of a signal, each with its unit, limit and verdict. Limits as in `signal::quality`; SICK 8010701
+//! for amplitudes and bandwidth.
 
 use super::Results;
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
@@ -9,22 +9,17 @@ use crate::analysis::signal_analysis::{Analysis, LEAST_OCTANTS};
 /// A number that was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// Id of its text.
     pub word: &'static str,
-    /// The number, in its unit.
     pub value: f64,
     /// Decimals that mean something.
     pub decimals: usize,
     pub unit: Unit,
-    /// The same in another unit, shown beside it.
     pub also: Option<(f64, usize, Unit)>,
-    /// Its limit.
     pub bound: Option<Bound>,
     /// Whether it is within the limit; `None` without a limit.
     pub verdict: Option<Verdict>,
 }
 
-/// Units of quantities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// None.

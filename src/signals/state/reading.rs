@@ -1,4 +1,4 @@
-//! Reading a capture, as a task: its progress, its cancellation, and the built-in captures.
+//! Reading of a capture in a task: progress, cancellation, and the built-in captures.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,7 +11,6 @@ use crate::store::{ReadCaptureError, capture_head, read_capture};
 /// A capture that ships with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Example {
-    /// A signal within all limits.
     Healthy,
     /// One with offsets, unequal amplitudes and a phase error.
     WithErrors,
@@ -20,7 +19,6 @@ pub enum Example {
 impl Example {
     pub const ALL: [Example; 2] = [Example::Healthy, Example::WithErrors];
 
-    /// Returns the id of its text.
     pub fn word(self) -> &'static str {
         match self {
             Example::Healthy => "signals.example_healthy",

@@ -1,4 +1,4 @@
-//! The newest samples of a running source, without gaps and without copying: the batches as received, shared with the
+//! The newest samples of a running source, without gaps and without copying: received batches, shared with the
 //! measurement.
 
 use std::collections::VecDeque;
@@ -14,7 +14,6 @@ use crate::worker::stream::Batch;
 #[derive(Default)]
 pub(super) struct Recent {
     chunks: VecDeque<Arc<Channels>>,
-    /// Samples in them.
     count: usize,
     /// Time of the last of them.
     newest: Option<Time>,

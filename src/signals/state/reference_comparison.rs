@@ -44,7 +44,6 @@ pub struct AbsoluteOffset {
     pub offset_steps: f64,
     /// Largest distance of a sample from it, in 1/32 period.
     pub farthest_steps: f64,
-    /// Number of samples used.
     pub samples: usize,
 }
 
@@ -53,7 +52,6 @@ pub struct AbsoluteOffset {
 pub enum NoOffset {
     /// There is no sample with a signal.
     NoSignal,
-    /// The differences are everywhere in the period.
     Scattered,
 }
 

@@ -1,5 +1,5 @@
-//! The signals over time, as lines of a recorder: differences, the length of the amplitude vector, and the four wires if
-//! they were recorded. SICK 8010701: SIN, REFSIN, COS, REFCOS.
+//! Signals over time as recorder lines: differences, the length of the amplitude vector, and the four wires if
+//! recorded. SICK 8010701: SIN, REFSIN, COS, REFCOS.
 
 use super::feed::Channels;
 use crate::analysis::Time;

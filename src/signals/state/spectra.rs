@@ -1,5 +1,4 @@
-//! The spectra of both channels, thinned out for a picture: in each range of frequencies the highest line, so that no peak
-//! is lost.
+//! Spectra of both channels, reduced for drawing: the highest line of each frequency range, so that no peak is lost.
 
 use crate::analysis::position_error::Samples;
 use crate::analysis::spectrum::{SpectralLine, Spectrum, SpectrumError, sample_rate_hz};

@@ -1,5 +1,6 @@
-//! Absolute and analogue position combined, from entries or from an encoder at rest, and the mean lead of one over the
-//! other in many readings. SICK 8010701, forming the absolute position; section 4 of the project's sine/cosine reference.
+//! Combination of absolute and analogue position, from entries or from an encoder at rest, and the mean lead of one
+//! over the other in many readings. SICK 8010701, forming the absolute position; section 4 of the project's sine/cosine
+//! reference.
 
 use crate::analysis::arctan::{Phase, exact};
 use crate::analysis::quality::{Limits, Verdict};
@@ -10,7 +11,6 @@ use crate::signals::state::TEXTS;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum SynchroniseAction {
-    /// An entry was edited.
     Edit(Box<Form>),
     /// Take the offset over that is measured from readings.
     UseOffset,
@@ -25,7 +25,6 @@ pub enum SynchroniseAction {
 pub struct Form {
     /// The absolute position in steps: decimal, or hexadecimal with `0x` or `h`.
     pub absolute: String,
-    /// How the analogue position is entered.
     pub phase_input: PhaseInput,
     /// The phase, in periods or degrees.
     pub phase: String,
@@ -35,7 +34,6 @@ pub struct Form {
     pub cosine_v: String,
     /// Signal periods per revolution.
     pub periods: String,
-    /// Revolutions.
     pub turns: String,
     /// Lead of the absolute position when both are right, in 1/32 period.
     pub offset: String,
@@ -58,27 +56,20 @@ pub enum PhaseInput {
     Volts,
 }
 
-/// The page's state.
 #[derive(Debug, Default)]
 pub struct Synchronise {
-    /// The entries.
     pub form: Form,
     /// Why the last reading of an encoder failed.
     pub problem: Option<Text>,
-    /// Readings of one encoder: absolute positions and phases.
     readings: Vec<(u64, Phase)>,
-    /// Encoder of the readings.
     origin: Option<SineCosineOrigin>,
 }
 
 /// The result of the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchronisation {
-    /// The absolute position.
     pub absolute: u64,
-    /// The analogue one.
     pub phase: Phase,
-    /// The period of the absolute position.
     pub period: u64,
     /// Its place in the period, 0 to 31.
     pub step: u64,
@@ -269,7 +260,6 @@ impl Synchronise {
         }
     }
 
-    /// Readings that the offset is measured from.
     pub fn readings(&self) -> usize {
         self.readings.len()
     }

@@ -1,4 +1,4 @@
-//! The table of a capture: its first lines, its detected format, and the user's corrections.
+//! The table of a capture: its first lines, its detected format, and corrections by the user.
 
 use super::TableSource;
 use crate::analysis::capture::{Columns, Delimiter, Layout, TableHints, decode_head};
@@ -9,7 +9,6 @@ pub struct Table {
     pub place: TableSource,
     /// Its first lines as text; long ones are truncated.
     pub head: Vec<String>,
-    /// The settings made by the user.
     pub hints: TableHints,
     /// Format of the table; `None` if it cannot be detected.
     pub layout: Option<Layout>,
@@ -20,17 +19,12 @@ pub struct Table {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
     Time,
-    /// Sine, or SIN against ground.
     Sine,
-    /// Cosine, or COS against ground.
     Cosine,
-    /// REFSIN against ground.
     RefSine,
-    /// REFCOS against ground.
     RefCosine,
     /// The shaft's angle by a reference encoder.
     ReferenceAngle,
-    /// The absolute position.
     Absolute,
 }
 
@@ -55,12 +49,10 @@ impl Table {
         Table { place, head: lines, hints, layout, half_chosen: (None, None) }
     }
 
-    /// Returns the delimiter between two columns.
     pub fn delimiter(&self) -> Option<Delimiter> {
         self.hints.delimiter.or(self.layout.as_ref().map(|layout| layout.delimiter))
     }
 
-    /// Returns the columns that are taken.
     pub fn columns(&self) -> Option<Columns> {
         self.hints.columns.or(self.layout.as_ref().map(|layout| layout.columns))
     }
@@ -79,7 +71,6 @@ impl Table {
         }
     }
 
-    /// Returns the number of columns.
     pub fn width(&self) -> usize {
         let delimiter = self.delimiter().map_or(',', |delimiter| char::from(delimiter.byte()));
         let fields = |line: &String| match delimiter {

@@ -1,4 +1,4 @@
-//! Tasks of the Signals tab. Each returns a result, also one that could not be started or was aborted: nothing waits
+//! Tasks of the Signals tab. Each returns a result, even if it could not be started or was aborted, so nothing waits
 //! forever.
 
 use super::{Done, TAB};

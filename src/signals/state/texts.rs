@@ -1,4 +1,4 @@
-//! The texts of the Signals tab.
+//! Text catalogue of the Signals tab.
 
 use crate::app::Catalogue;
 

@@ -1,4 +1,4 @@
-//! The adapter as a source: its link, its sample rate, and its errors.
+//! The adapter as a source: link, sample rate and errors.
 
 use egui::Ui;
 

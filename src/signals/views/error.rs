@@ -1,4 +1,4 @@
-//! The position error inside one period, raw and corrected, and its harmonics.
+//! Position error within one period, raw and corrected, and its harmonics.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! The calculator of a drive's input circuit. Nothing is measured here.
+//! Calculator for the input circuit of a drive. Nothing is measured here.
 
 use egui::{RichText, Ui};
 

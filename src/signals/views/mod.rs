@@ -1,4 +1,4 @@
-//! The Signals tab: its pages, one per aspect of a sine and a cosine. It needs no encoder and no session.
+//! The Signals tab: one page per aspect of sine and cosine. It requires no encoder and no session.
 
 mod adapter;
 mod error;
@@ -24,16 +24,13 @@ use crate::ui::{Theme, icons, page};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// The signals over time, and their spectrum.
     Scope,
     /// The Lissajous figure and the numbers with their limits.
     #[default]
     Quality,
     /// The position error inside a period.
     Error,
-    /// Absolute and analogue position brought together.
     Synchronise,
-    /// The calculator of a drive's input.
     InputCircuit,
 }
 

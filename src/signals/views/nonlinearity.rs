@@ -1,4 +1,4 @@
-//! DNL and INL over the revolution, compared with a reference encoder: the curve and the ± values.
+//! DNL and INL over the revolution, compared with a reference encoder: curves and ± values.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! Numbers in rows: name, value, value of the compared capture, limit, and a mark for the verdict.
+//! Rows of numbers: name, value, value of the compared capture, limit, and a mark for the verdict.
 
 use egui::{RichText, Ui, WidgetInfo};
 
@@ -84,7 +84,6 @@ fn comparison(ui: &mut Ui, theme: &Theme, quantity: &Quantity, other: Option<&Qu
     ui.label(theme.mono(format!("{sign}{}", theme.number(difference, quantity.decimals))));
 }
 
-/// Returns a number with its unit.
 pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) -> String {
     unit_behind(theme.number(rounded(value, decimals), decimals), unit)
 }
@@ -95,7 +94,6 @@ fn rounded(value: f64, decimals: usize) -> f64 {
     if (value * scale).abs() < 0.5 { 0.0 } else { value }
 }
 
-/// Returns the text of a limit.
 fn bound_words(theme: &Theme, bound: Bound, unit: Unit) -> String {
     let plain = |value: f64| theme.plain((value * 1e6).round() / 1e6);
     let words = match bound {

@@ -1,5 +1,5 @@
-//! The angle by a drive's table and exactly: the errors of tables of several sizes, and one pair of voltages by both
-//! methods.
+//! The angle calculated with the octant table of a drive and exactly: the errors of tables of several sizes, and one
+//! pair of voltages by both methods.
 
 use egui::Ui;
 
@@ -10,7 +10,6 @@ use crate::signals::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, choice, entry, labelled_entry, paragraph, problem, row, split};
 
-/// The entered text.
 pub(super) struct OctantUiState {
     sine: String,
     cosine: String,

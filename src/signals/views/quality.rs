@@ -1,4 +1,4 @@
-//! The quality of the signal: the Lissajous figure, the findings as text, and every number with its limit.
+//! Signal quality: the Lissajous figure, the findings, and every number with its limit.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The signals over time, and below them their spectrum.
+//! The signals over time and their spectrum.
 
 use egui::{Ui, vec2};
 
@@ -91,7 +91,6 @@ fn spectrum(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measure
     view.volts = wanted;
 }
 
-/// Converts into the unit shown.
 fn shown(volts: bool, peak_v: f64) -> f64 {
     if volts { peak_v } else { dbv(peak_v) }
 }

@@ -1,4 +1,4 @@
-//! The source of the samples, above every page about them: reading, its progress, and its errors.
+//! The source of the samples, shown above every page that uses them: reading, progress and errors.
 
 use egui::{RichText, Ui};
 
@@ -17,9 +17,7 @@ use crate::ui::{Theme, icons};
 #[derive(Default)]
 pub(super) struct SourceUiState {
     table: table::TableUiState,
-    /// The virtual encoder's settings are shown.
     settings: bool,
-    /// The settings of the adapter are open.
     adapter: bool,
 }
 
@@ -132,7 +130,6 @@ fn present(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiSta
     });
 }
 
-/// Draws the origin of the samples.
 fn title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let palette = theme.palette;
     if live(signals).is_some() {
@@ -257,7 +254,6 @@ fn compared(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Act
     });
 }
 
-/// Draws the menu of sources of samples.
 fn source_menu(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     let word = say(theme, "signals.source");
     let menu = ui.menu_button(format!("{word}  {}", icons::CARET_DOWN), |ui| {

@@ -1,4 +1,4 @@
-//! Absolute and analogue position combined: from entries, or from the encoder.
+//! Combination of absolute and analogue position, from entries or from the encoder.
 
 use egui::Ui;
 

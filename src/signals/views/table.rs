@@ -1,4 +1,4 @@
-//! The detected format of the table of a capture, beside its first lines; each property can be corrected.
+//! Detected format of a capture's table, next to its first lines; each property can be corrected.
 
 use egui::{ScrollArea, Ui};
 
@@ -13,7 +13,6 @@ use crate::ui::{Theme, icons};
 /// The state of the card between frames.
 #[derive(Default)]
 pub(super) struct TableUiState {
-    /// Whether it is shown.
     pub(super) is_open: bool,
     volts: Draft,
 }

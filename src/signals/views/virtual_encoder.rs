@@ -1,4 +1,4 @@
-//! The virtual encoder's settings: its motion, and its faults.
+//! Settings of the virtual encoder: its motion and its faults.
 
 use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 

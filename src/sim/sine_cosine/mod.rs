@@ -1,17 +1,18 @@
-//! A virtual analogue source: the four wires of a sine/cosine encoder that turns at a speed, with errors that can be set.
-//! Deterministic: the same settings, changes and sample numbers give the same voltages, regardless of the block sizes
-//! requested. This module uses no clock, thread or device.
+//! A virtual analogue source: the four wires of a sine/cosine encoder that turns at a given speed, with adjustable
+//! errors. Deterministic: the same settings, changes and sample numbers yield the same voltages, regardless of the
+//! block sizes requested. This module uses no clock, thread or device.
 //!
-//! The model is that of Heydemann (Applied Optics 20, 3382), section 7 of the project's sine/cosine reference, with θ the
-//! true angle: cosine channel R·cos θ + p, sine channel R·sin(θ − α)/r + q. Both tracks have the same shape a quarter of a
-//! period apart, so that a third harmonic h results in cos θ − h·cos 3θ and sin θ + h·sin 3θ.
+//! The model is that of Heydemann (Applied Optics 20, 3382), section 7 of the project's sine/cosine reference, with θ
+//! the true angle: cosine channel R·cos θ + p, sine channel R·sin(θ − α)/r + q. Both tracks have the same shape a
+//! quarter of a period apart, so a third harmonic h results in cos θ − h·cos 3θ and sin θ + h·sin 3θ.
 //!
-//! Angles are whole parts of a turn and times are whole nanoseconds, so that no error accumulates with time.
+//! Angles are integer fractions of a turn and times are whole nanoseconds, so no error accumulates over time.
 //!
-//! Assumptions without a manual: at a receiver with a resistor between the wires of a pair an open wire takes the voltage
-//! of its partner, so that their difference is zero; without the resistor it stays at the mean level, at which the
-//! receiver's bias holds it. Interference and hum reach SIN and COS and not their references, which is the part that a
-//! receiver does not reject; the interference is half as strong in the cosine channel and has the opposite sign there.
+//! Assumptions without a manual: at a receiver with a resistor between the wires of a pair, an open wire takes the
+//! voltage of its partner, so that their difference is zero; without the resistor it stays at the mean level, at which
+//! the bias of the receiver holds it. Interference and hum reach SIN and COS but not their references, which is the
+//! part that a receiver does not reject; the interference is half as strong in the cosine channel, with the opposite
+//! sign.
 
 mod settings;
 
@@ -30,7 +31,7 @@ const CYCLE: u64 = 1_000 * 1_000_000_000;
 /// Changes that are remembered.
 const REMEMBERED: usize = 64;
 
-/// The source. Its samples are counted from 0.
+/// The analogue source. Its samples are numbered from 0.
 #[derive(Clone, Debug)]
 pub struct Source {
     start: Time,
@@ -38,7 +39,6 @@ pub struct Source {
     segments: VecDeque<Segment>,
 }
 
-/// Samples between two changes.
 #[derive(Clone, Debug)]
 struct Segment {
     /// The first sample of the segment.
@@ -70,19 +70,19 @@ impl Source {
         self.segments.push_back(segment);
     }
 
-    /// Returns the settings in force after the latest change.
+    /// Returns the settings after the latest change.
     pub fn settings(&self) -> Option<&Settings> {
         self.segments.back().map(|segment| segment.checked.settings())
     }
 
-    /// Returns the time of a sample; `None` if the changes before it are no longer stored.
+    /// Returns the time of a sample, or `None` if the changes before it are no longer stored.
     pub fn time(&self, index: u64) -> Option<Time> {
         let segment = self.segment(index)?;
         Some(self.start.plus(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
     }
 
-    /// Returns `count` samples from `first` on; `None` if the changes before them are no longer stored. The latest 64
-    /// changes are.
+    /// Returns `count` samples from `first` on, or `None` if the changes before them are no longer stored. The latest
+    /// 64 changes are.
     pub fn samples(&self, first: u64, count: usize) -> Option<Wires> {
         let column = || Vec::with_capacity(count.min(1 << 20));
         let mut wires =
@@ -99,7 +99,6 @@ impl Source {
         Some(wires)
     }
 
-    /// Returns the segment of a sample.
     fn segment(&self, index: u64) -> Option<&Segment> {
         self.segments.iter().rev().find(|segment| segment.from <= index)
     }

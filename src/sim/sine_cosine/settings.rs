@@ -1,15 +1,15 @@
-//! The settings of the virtual sine/cosine source: plain data, and their ranges.
+//! Settings of the virtual sine/cosine source with their ranges. Plain data.
 
 use crate::analysis::wiring::Wire;
 
-/// All settings. Voltages are peak values unless named rms.
+/// Settings of the source. Voltages are peak values unless stated as rms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Signal periods per revolution; a whole number.
+    /// Signal periods per revolution, a whole number.
     pub periods: f64,
-    /// Speed in revolutions per minute, in steps of 0.001; negative: the angle falls.
+    /// Speed in revolutions per minute, in steps of 0.001; the angle falls for negative values.
     pub speed_rpm: f64,
-    /// Samples per second. A sample takes whole nanoseconds: see [`Settings::period_ns`].
+    /// Sample rate in hertz. The sample period is a whole number of nanoseconds: see [`Settings::period_ns`].
     pub rate_hz: f64,
     /// R: differential amplitude of the cosine channel in volts.
     pub amplitude_v: f64,
@@ -25,41 +25,41 @@ pub struct Settings {
     pub level_v: f64,
     /// Third harmonic in percent of the amplitude.
     pub third_harmonic_percent: f64,
-    /// Rise and fall of the amplitude once per revolution, in percent.
+    /// Amplitude modulation once per revolution, in percent.
     pub modulation_percent: f64,
     /// White noise of each differential channel in volts rms.
     pub noise_v: f64,
-    /// Frequency of an interference in hertz, in steps of 0.001.
+    /// Frequency of the interference in hertz, in steps of 0.001.
     pub interference_hz: f64,
     /// Amplitude of the interference on the sine channel in volts; the cosine channel has half of it with the opposite
     /// sign.
     pub interference_v: f64,
-    /// Frequency of the mains in hertz, in steps of 0.001.
+    /// Mains frequency in hertz, in steps of 0.001.
     pub hum_hz: f64,
-    /// Amplitude of the hum in volts, the same in both channels and in phase.
+    /// Hum amplitude in volts, equal and in phase in both channels.
     pub hum_v: f64,
     /// Eccentricity of the scale: amplitude of the once-per-revolution angle error in mechanical seconds of arc.
     pub eccentricity_arcsec: f64,
-    /// A broken wire.
+    /// Broken wire, if any.
     pub open_wire: Option<Wire>,
-    /// The receiver has a resistor between the wires of a pair (120 Ω), as the manuals ask for.
+    /// Whether the receiver has a resistor between the wires of a pair (120 Ω), as the manuals require.
     pub terminated: bool,
-    /// Level of the references.
+    /// Level of the reference wires.
     pub references: References,
-    /// Seed of the noise: the same seed gives the same noise.
+    /// Seed of the noise: equal seeds yield equal noise.
     pub seed: u64,
 }
 
-/// The level of REFSIN and REFCOS.
+/// Level of REFSIN and REFCOS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum References {
-    /// The mean level, as for HIPERFACE encoders: the signal is on SIN and COS only.
+    /// The mean level, as for HIPERFACE encoders: only SIN and COS carry the signal.
     Level,
-    /// The inverted signal, as for encoders with complementary outputs: each wire has half of it.
+    /// The inverted signal, as for encoders with complementary outputs: each wire carries half of it.
     Complement,
 }
 
-/// A setting that is a number.
+/// A numeric setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// [`Settings::periods`].
@@ -98,26 +98,26 @@ pub enum Quantity {
     Eccentricity,
 }
 
-/// A setting outside its range.
+/// A setting is outside its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{quantity:?} must be from {least} to {most}, not {value}")]
 pub struct SettingError {
-    /// The quantity.
+    /// Name of the setting.
     pub quantity: Quantity,
-    /// The value as set.
+    /// Given value.
     pub value: f64,
-    /// Least value.
+    /// Minimum value.
     pub least: f64,
-    /// Greatest value.
+    /// Maximum value.
     pub most: f64,
 }
 
-/// Settings all of which are in their ranges.
+/// Settings that are all within their ranges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checked(Settings);
 
 impl Quantity {
-    /// Every quantity, in the order of the settings.
+    /// All quantities in the order of the settings.
     pub const ALL: [Quantity; 17] = [
         Quantity::Periods,
         Quantity::Speed,
@@ -138,7 +138,7 @@ impl Quantity {
         Quantity::Eccentricity,
     ];
 
-    /// Returns the symbol of the unit, the same in every language; empty for a number.
+    /// Returns the unit symbol, which is the same in every language; empty for a plain number.
     pub const fn unit(self) -> &'static str {
         match self {
             Quantity::Periods | Quantity::GainRatio => "",
@@ -157,7 +157,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the least and greatest value.
+    /// Returns the minimum and maximum value.
     pub const fn range(self) -> (f64, f64) {
         match self {
             Quantity::Periods => (1.0, 65_536.0),
@@ -184,23 +184,23 @@ impl Settings {
         *self.clone().place(quantity)
     }
 
-    /// Returns the same settings with another value of a quantity.
+    /// Returns a copy of the settings with another value of a quantity.
     #[must_use]
     pub fn with(mut self, quantity: Quantity, value: f64) -> Self {
         *self.place(quantity) = value;
         self
     }
 
-    /// Returns the sample period in whole nanoseconds: 100 kHz gives 10 000 ns, 44.1 kHz gives 22 676 ns.
+    /// Returns the sample period in whole nanoseconds: 100 kHz yields 10 000 ns, 44.1 kHz yields 22 676 ns.
     pub fn period_ns(&self) -> i64 {
         (1e9 / self.rate_hz).round() as i64
     }
 
-    /// Returns the settings if all of them are in their ranges.
+    /// Validates the settings.
     ///
     /// # Errors
-    /// [`SettingError`] with the first setting that is not, and with its range. The number of periods is also refused if it
-    /// is not whole.
+    /// [`SettingError`] with the first setting outside its range, and the range. The number of periods is also refused
+    /// if it is not whole.
     pub fn checked(self) -> Result<Checked, SettingError> {
         for quantity in Quantity::ALL {
             let (value, (least, most)) = (self.get(quantity), quantity.range());
@@ -236,7 +236,7 @@ impl Settings {
 }
 
 impl Checked {
-    /// Returns the checked settings.
+    /// Returns the validated settings.
     pub fn settings(&self) -> &Settings {
         &self.0
     }

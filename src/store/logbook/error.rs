@@ -1,4 +1,4 @@
-//! The reasons why the logbook cannot be used: SQLite's result codes, sorted by what a user can do about them.
+//! Reasons why the logbook cannot be used: SQLite result codes grouped by what the user can do about them.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,6 @@ use crate::store::FileError;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("logbook {}: {problem}", path.display())]
 pub struct LogbookError {
-    /// The logbook's file.
     pub path: PathBuf,
     pub problem: LogbookProblem,
 }
@@ -35,14 +34,10 @@ pub enum LogbookProblem {
     DiskFull,
     /// The file is not a database, or a damaged one.
     #[error("is damaged: {what}")]
-    Damaged {
-        /// The message of the database.
-        what: String,
-    },
+    Damaged { what: String },
     /// A newer version of the program created it. It is unchanged.
     #[error("has schema {found}, written by a newer version; this version supports schemas up to {known}")]
     Newer {
-        /// The schema's number in the file.
         found: i64,
         /// The last one this version knows.
         known: i64,
@@ -55,7 +50,6 @@ pub enum LogbookProblem {
     Database {
         /// SQLite's extended result code; `None` if the value was refused before it reached SQLite.
         code: Option<i32>,
-        /// The database's words.
         what: String,
     },
 }

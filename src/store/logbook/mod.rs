@@ -1,9 +1,9 @@
-//! The logbook: the writes of this program into each device, and the write cycles that they took. An intent is recorded
-//! before the first byte is sent and concluded afterwards, so that a program that dies in between leaves a trace. It is
-//! SQLite, so that two windows can share it and any tool can read it.
+//! The logbook: this program's writes to each device, and the write cycles that they took. An intent is recorded before
+//! the first byte is sent and concluded afterwards, so a program that dies in between leaves a trace. The format is
+//! SQLite, so two windows can share the logbook and any tool can read it.
 //!
-//! It never receives an access code: `what` and the text of a failure are made from the plan, not from frames. It never
-//! decides whether a device may be written: if it fails, the caller refuses writes that are not forced.
+//! It never contains access codes: `what` and failure messages are made from the plan, not from frames. It never
+//! decides whether a device may be written to: if it fails, the caller refuses writes that are not forced.
 
 mod error;
 mod schema;
@@ -59,11 +59,9 @@ impl fmt::Display for EntryId {
 /// The end of a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Written and read back.
     Done,
     /// Failure, with the reason as a text.
     Failed(String),
-    /// The user stopped it.
     Cancelled,
 }
 
@@ -76,7 +74,6 @@ pub struct Entry {
     pub at: Timestamp,
     /// The planned write, as text.
     pub description: String,
-    /// Write cycles that were to be spent.
     pub planned_cycles: u64,
     /// The backup taken before; characters of its path that are not Unicode are replaced.
     pub backup: Option<PathBuf>,
@@ -87,7 +84,6 @@ pub struct Entry {
 /// The end of a write and its time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Conclusion {
-    /// Time of the end.
     pub at: Timestamp,
     pub outcome: Outcome,
     /// Write cycles that were spent; not zero for a write that failed half-way.
@@ -97,7 +93,6 @@ pub struct Conclusion {
 /// Status codes that reading removed from a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatusEntry {
-    /// Time at which they were read.
     pub at: Timestamp,
     /// The codes, as text, in the device's order.
     pub codes: String,

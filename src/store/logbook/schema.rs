@@ -1,4 +1,4 @@
-//! The logbook's tables, and the migration of an older logbook. `user_version` holds the schema's number.
+//! Tables of the logbook, and the migration of older logbooks. `user_version` holds the schema number.
 
 use std::path::Path;
 use std::time::Duration;
@@ -51,7 +51,6 @@ const STEPS: [&str; 2] = [
 /// The schema this version knows.
 pub(super) const KNOWN: i64 = STEPS.len() as i64;
 
-/// Opens a database and updates its schema.
 pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, LogbookProblem> {
     if let Some(folder) = path.parent() {
         create_folder(folder).map_err(LogbookProblem::Folder)?;

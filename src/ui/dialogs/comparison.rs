@@ -12,7 +12,6 @@ const LIST: f32 = 340.0;
 /// Most characters of a value in one line; the tooltip has the rest.
 const SHOWN: usize = 40;
 
-/// Draws the dialog, where there is a comparison.
 pub(in crate::ui) fn comparison_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let Some(shown) = studio.comparison() else { return };
     let Some(device) = studio.device(shown.session()) else { return };

@@ -23,7 +23,6 @@ pub use form::TypedConnectForm;
 #[derive(Default)]
 pub(in crate::ui) struct ConnectView {
     forms: HashMap<Tab, Box<dyn ConnectForm>>,
-    /// The rarely used settings are unfolded.
     more: bool,
 }
 
@@ -76,7 +75,6 @@ pub(in crate::ui) fn connect_ui(
     });
 }
 
-/// Draws the choice of the device kind.
 fn devices(ui: &mut Ui, theme: &Theme, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
     for own in tabs.of_devices() {
         let word = tabs.title(theme, own);

@@ -80,7 +80,6 @@ fn kind(question: &FileQuestion) -> Text {
     }
 }
 
-/// Returns the title of the dialog.
 fn title(question: &FileQuestion) -> Text {
     match question {
         FileQuestion::Open => Text::new("file.open_title"),

@@ -6,7 +6,6 @@ use crate::app::{Action, Studio};
 use crate::ui::controls::{at_the_right, button, modal, name, paragraph};
 use crate::ui::{Theme, icons};
 
-/// Draws the open question.
 pub(in crate::ui) fn question_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let Some(question) = &studio.question else { return };
     modal(ctx, theme, "question", 420.0, |ui| {

@@ -28,7 +28,6 @@ const ONE_ROW: f32 = 280.0;
 /// Seconds after which an unchanged position is marked.
 const NOTICED: f32 = 0.4;
 
-/// Draws the panel.
 pub(in crate::ui) fn live_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -75,7 +74,6 @@ fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     waits && share >= 1.0
 }
 
-/// Draws the plot of a device's recording.
 pub(in crate::ui) fn plot_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -17,13 +17,10 @@ const TIME: &str = "%H:%M:%S%.3f";
 pub(in crate::ui) struct TraceView {
     /// Whose frames they are, and how many had gone when it was drawn last.
     of: Option<(SessionId, u64)>,
-    /// Distance that it is scrolled by.
     offset: f32,
-    /// It was scrolled away from the newest frame.
     is_behind: bool,
 }
 
-/// Draws the panel.
 pub(in crate::ui) fn trace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     let shown = studio.selected_device().filter(|device| !device.trace().lines().is_empty());
     let Some((session, trace)) = shown.map(|device| (device.id(), device.trace())) else {

@@ -28,7 +28,6 @@ pub(super) struct Lane {
     pub(super) rect: Rect,
     pub(super) lines: Vec<LineId>,
     pub(super) range: (f64, f64),
-    /// Between two ticks.
     pub(super) step: f64,
     /// No samples are visible in it.
     pub(super) empty: bool,
@@ -40,11 +39,9 @@ impl Lane {
     }
 }
 
-/// The plot's parts.
 pub(super) struct Layout {
     pub(super) lanes: Vec<Lane>,
     pub(super) time: TimeAxis,
-    /// The lanes together.
     pub(super) chart: Rect,
 }
 
@@ -141,7 +138,6 @@ pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, red
     }
 }
 
-/// Letters of the longest label of a value.
 fn letters(lanes: &[Lane]) -> usize {
     let longest = |lane: &Lane| {
         let label = |value| axes::value_label(value, lane.step, crate::app::Language::English).len();

@@ -28,7 +28,6 @@ pub struct PlotUiState {
     reduced: lanes::Reduced,
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
-    /// The requested picture of it.
     shot: snapshot::Screenshot,
     /// It fills the page; `None`: it cannot.
     large: Option<bool>,

@@ -16,7 +16,6 @@ const CLICK: f32 = 5.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Drag {
     Cursor(Cursor),
-    /// A box to zoom into.
     Box {
         from: Pos2,
         to: Pos2,

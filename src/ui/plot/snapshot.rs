@@ -7,7 +7,6 @@ use egui::{ColorImage, Context, Rect, Ui};
 
 use crate::app::{Action, Picture};
 
-/// Requested picture.
 #[derive(Default)]
 pub(super) enum Screenshot {
     #[default]

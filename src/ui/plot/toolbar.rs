@@ -61,7 +61,6 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
     state(ui, context);
 }
 
-/// Draws a button that stays in.
 fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &str, id: &'static str) -> bool {
     let word = context.theme.say(id);
     let button = egui::Button::selectable(on, icon).frame_when_inactive(true).min_size(egui::vec2(28.0, 28.0));

@@ -74,7 +74,6 @@ pub(super) struct Pen {
     pub(super) colour: Color32,
     /// From the samples' own unit to the displayed one.
     pub(super) factor: f64,
-    /// Flagged samples are marked.
     pub(super) marks: bool,
     /// Colours of invalid samples, and of those with a warning.
     pub(super) bad: Color32,

@@ -7,7 +7,6 @@ use crate::app::recorder::{LineId, Recorder, RecorderAction, Trigger, When};
 use crate::ui::controls::{entry, options, primary, text_entry};
 use crate::ui::{Theme, icons};
 
-/// The text being entered.
 pub(super) struct Form {
     line: LineId,
     when: When,

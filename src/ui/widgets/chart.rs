@@ -19,15 +19,11 @@ use crate::ui::widgets::series;
 pub struct Chart<'a> {
     /// Series, the main one first.
     pub traces: &'a [Trace],
-    /// Accessible name.
     pub label: &'a str,
-    /// Accessible value.
     pub value: &'a str,
     /// Height in points.
     pub height: f32,
-    /// Unit of the horizontal axis.
     pub x_unit: &'a str,
-    /// Unit of the vertical axis.
     pub y_unit: &'a str,
     /// Ends of the horizontal axis; `None`: fitted.
     pub x_range: Option<(f64, f64)>,
@@ -41,15 +37,12 @@ pub struct Chart<'a> {
     pub bars: bool,
 }
 
-/// One series.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    /// Its name in the legend.
     pub name: String,
     pub points: Vec<(f64, f64)>,
     /// Index of the series' colour.
     pub colour: usize,
-    /// Its line is dashed, its bars are hollow.
     pub dashed: bool,
 }
 
@@ -201,7 +194,6 @@ fn tick(theme: &Theme, mark: GridMark) -> String {
     theme.number(mark.value, decimals)
 }
 
-/// Returns a number with four figures.
 fn figures(theme: &Theme, value: f64) -> String {
     let decimals = (3.0 - value.abs().max(1e-6).log10().floor()).clamp(0.0, 9.0) as usize;
     theme.number(value, decimals)

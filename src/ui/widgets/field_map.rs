@@ -24,23 +24,19 @@ use strip::Strip;
 
 #[derive(Clone, Debug, Default)]
 pub struct MapField {
-    /// Its number, shown in it.
     pub number: u8,
     /// Number of its blocks; without any, one is drawn.
     pub blocks: usize,
-    /// Accessible name.
     pub label: String,
     /// Shown below the number; of its parts, separated by ` · `, as many as fit.
     pub caption: String,
     /// Index of the colour, one of eight.
     pub colour: usize,
-    /// Write protected.
     pub locked: bool,
     /// Its access code is not known.
     pub unreadable: bool,
     /// It has edits that are not written.
     pub edited: bool,
-    /// Shown under the pointer.
     pub tooltip: String,
 }
 
@@ -51,11 +47,8 @@ pub struct FieldMap<'a> {
     pub fields: &'a [MapField],
     /// Blocks after the last field that belong to none.
     pub free_blocks: usize,
-    /// Accessible name of the free space.
     pub free_label: &'a str,
-    /// Tooltip of the free space.
     pub free_tooltip: &'a str,
-    /// Number of the selected field.
     pub selected: Option<u8>,
     pub block_bytes: usize,
     /// Sizes in blocks that the last field may be dragged to; `None`: no handle.
@@ -66,7 +59,6 @@ pub struct FieldMap<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapEvent {
     Select(u8),
-    /// Selects the free space.
     SelectFree,
     /// Another size of the last field, different from the present one.
     ResizeLast {

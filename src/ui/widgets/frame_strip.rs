@@ -27,7 +27,6 @@ use place::{Placed, SpaceNeeded, place};
 pub struct StripField {
     /// Name, shown below its bits.
     pub name: String,
-    /// Value, shown below its name.
     pub value: String,
     /// Number of bits, at least 1.
     pub bits: usize,
@@ -35,14 +34,12 @@ pub struct StripField {
     pub colour: Option<usize>,
     /// It reports something: a fault, a warning, or that all is well.
     pub lit: Option<Verdict>,
-    /// Shown under the pointer.
     pub tooltip: String,
 }
 
 /// A whole frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameStrip<'a> {
-    /// Accessible name.
     pub label: &'a str,
     /// Its fields, in the order of transmission.
     pub fields: &'a [StripField],

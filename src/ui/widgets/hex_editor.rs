@@ -38,7 +38,6 @@ pub struct HexModel<'a> {
     pub device: &'a [u8],
     /// The displayed bytes, with the edits.
     pub wanted: &'a [u8],
-    /// Ranges that mean something.
     pub marks: &'a [HexMark<'a>],
     /// Why the bytes cannot be edited; `None` if they can.
     pub read_only: Option<&'a Text>,
@@ -50,7 +49,6 @@ pub struct HexModel<'a> {
 /// Range with a meaning: it has a bracket, and its tooltip shows the meaning.
 #[derive(Clone, Debug)]
 pub struct HexMark<'a> {
-    /// Addresses.
     pub range: Range<usize>,
     pub words: &'a str,
 }
@@ -70,10 +68,7 @@ pub enum HexEdit {
     /// The last undone step done again.
     Redo,
     /// Restore the device's bytes; at least one of them is changed.
-    Revert {
-        /// Addresses.
-        range: Range<usize>,
-    },
+    Revert { range: Range<usize> },
 }
 
 impl<'a> HexModel<'a> {
@@ -144,7 +139,6 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
     edits
 }
 
-/// Draws the header and the lines.
 fn body(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) -> Response {
     let (header, _) = ui.allocate_exact_size(Vec2::new(grid.width, grid.row + theme.space.inside), Sense::hover());
     paint::header(ui, theme, grid, header, model, view);

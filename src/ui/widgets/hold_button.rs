@@ -1,11 +1,12 @@
-//! A button that is active while it is held: for motion that ends when the finger leaves it.
+//! A button that is active while it is held, for motion that ends when the finger leaves it.
 //!
 //! * **Size**: as given, at least 56 points high, for use with gloves.
-//! * **Keyboard**: Space or Enter, held while it has the keyboard focus; a key counts only after it was seen up there
-//!   ([`HoldState`]), and the caption shows this until then.
-//! * **Pointer**: the first button, or a touch; leaving the button ends it, and returning does not start it again.
+//! * **Keyboard**: Space or Enter, held while the button has the keyboard focus; a key counts only after its release
+//!   was seen there ([`HoldState`]), which the caption states until then.
+//! * **Pointer**: the first button, or a touch; leaving the button ends the hold, and returning does not start it
+//!   again.
 //! * **Accessible**: a button with its label; a click by a screen reader has no duration and does nothing.
-//! * **Painting**: the label, and its effect below; filled with the accent while it is held.
+//! * **Painting**: the label with its effect below; filled with the accent while held.
 
 use egui::accesskit::Role;
 use egui::{
@@ -21,11 +22,8 @@ use crate::ui::{Theme, stop_debounce};
 /// A hold button to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldButton<'a> {
-    /// The large text.
     pub word: &'a str,
-    /// The small text below it.
     pub caption: &'a str,
-    /// Accessible name.
     pub label: &'a str,
     /// Whether it may be pressed.
     pub enabled: bool,
@@ -36,7 +34,6 @@ pub struct HoldButton<'a> {
 pub(in crate::ui) struct HoldSurroundings {
     /// Something covers the window: none of them can be pressed.
     pub(in crate::ui) covered: bool,
-    /// Something moves or is about to.
     pub(in crate::ui) moving: bool,
 }
 
@@ -46,7 +43,6 @@ struct HoldMemory {
     state: HoldState,
     /// The pass in which it was drawn last.
     pass: u64,
-    /// Their state then.
     modifiers: Modifiers,
 }
 
@@ -55,7 +51,6 @@ struct HoldMemory {
 struct Drawn {
     /// The button with the keyboard focus, and the pass in which it had it.
     keyboard: Option<(Id, u64)>,
-    /// The pass in which the pointer held one.
     pointer: Option<u64>,
 }
 

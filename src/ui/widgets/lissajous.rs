@@ -1,11 +1,11 @@
 //! Sine over cosine: the figure of the samples, with the ring in which the amplitude vector should stay.
 //!
 //! * **Size**: a square of the given width.
-//! * **Keyboard**: none; Tab skips it.
-//! * **Pointer**: the place under it is shown in volts, as length and as angle.
+//! * **Keyboard**: none; Tab skips the figure.
+//! * **Pointer**: shows the hovered location in volts, as length and as angle.
 //! * **Accessible**: an image with the given label and value.
-//! * **Painting**: samples as a density, brighter for more, the fitted ellipse as a line, the good ring as a band between
-//!   two lines, the limits of a fault dashed; zero in the middle, the same scale for both axes.
+//! * **Painting**: samples as a density, brighter for more, the fitted ellipse as a line, the good ring as a band
+//!   between two lines, fault limits dashed; zero in the middle, the same scale on both axes.
 
 use egui::accesskit::Role;
 use egui::epaint::{Mesh, PathStroke};
@@ -21,19 +21,15 @@ use crate::ui::widgets::series;
 /// A Lissajous figure to be drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Lissajous<'a> {
-    /// One signal, or two to be compared.
     pub figures: &'a [Figure],
     /// Least and largest good length of the amplitude vector, in volts.
     pub ok_v: (f64, f64),
     /// Lengths outside these are a fault, in volts.
     pub fault_v: (f64, f64),
-    /// Accessible name.
     pub label: &'a str,
-    /// Accessible value.
     pub value: &'a str,
 }
 
-/// One signal.
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
     /// Samples as a picture in the colour of the series, and the square that it shows.
@@ -42,7 +38,6 @@ pub struct Figure {
     pub curve: Vec<(f64, f64)>,
     /// Index of the series' colour.
     pub colour: usize,
-    /// Its curve is dashed.
     pub dashed: bool,
 }
 

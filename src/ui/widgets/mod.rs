@@ -1,5 +1,5 @@
-//! Widgets that egui does not have. Each draws its input, stores nothing but its own selection, and returns the user's
-//! request; none knows a device. They share the appearance of keyboard focus, hatching and series colours.
+//! Widgets that egui does not provide. Each draws its input, stores only its own selection, and returns the request of
+//! the user; none knows a device. They share the appearance of keyboard focus, hatching and series colours.
 
 mod bit_cell;
 mod chart;
@@ -41,7 +41,6 @@ pub(crate) fn focus_ring(painter: &Painter, theme: &Theme, rect: Rect, corners: 
     painter.rect_stroke(rect.expand(1.0), corners, Stroke::new(2.0, theme.palette.accent), StrokeKind::Outside);
 }
 
-/// Draws diagonal lines.
 pub(crate) fn hatch(painter: &Painter, theme: &Theme, rect: Rect, colour: Color32) {
     let painter = painter.with_clip_rect(rect.shrink(1.0).intersect(painter.clip_rect()));
     let mut x = rect.left() - rect.height();

@@ -1,17 +1,17 @@
-//! Registers as a table, grouped by their banks: address, name, value as hex, as a number and decoded, access, default. Or
-//! parameters that are numbers: number, name, value, unit, range, factory setting. Thousands of them scroll as easily as
-//! ten: a register is requested only while it is visible.
+//! Registers as a table, grouped by bank: address, name, value in hex, decimal and decoded, access and default. Or
+//! numeric parameters: number, name, value, unit, range and factory setting. Thousands of rows scroll as easily as ten:
+//! a register is requested only while it is visible.
 //!
-//! * **Size**: the available width, the given height; the least important columns are hidden, and shown in the tooltip. The
-//!   reason for refusing a value is in [`RegisterView::problem`], to be shown by the caller.
-//! * **Keyboard**: arrows, Page, Home and End go from line to line; right and left unfold and fold bit fields and groups;
-//!   Enter, F2 or a character edits the value, Enter takes it, and so does an arrow up or down, which goes on to that
-//!   line; Escape gives it up; Backspace takes the device's value back; Ctrl+C copies.
-//! * **Pointer**: a press selects, on a heading or a caret folds, on the box of a number edits; a double click edits.
-//! * **Accessible**: a table with the given label, whose value is the selection; a row for each visible register, with its
-//!   value and state; a button for each group.
-//! * **Painting**: edited values underlined and in the colour of edits; a change since the last reading has a dot, a cost
-//!   of a write cycle a flash, storage without supply a disk. Editable numbers are in boxes.
+//! * **Size**: the available width and the given height; the least important columns are hidden, and shown in the
+//!   tooltip. [`RegisterView::problem`] contains the reason for refusing a value, to be shown by the caller.
+//! * **Keyboard**: arrows, Page, Home and End move from line to line; right and left unfold and fold bit fields and
+//!   groups; Enter, F2 or a character edits the value, Enter accepts it, as does an arrow up or down, which moves on to
+//!   that line; Escape cancels the entry; Backspace restores the value of the device; Ctrl+C copies.
+//! * **Pointer**: a press selects, on a heading or caret folds, on the box of a number edits; a double click edits.
+//! * **Accessible**: a table with the given label, whose value is the selection; a row for each visible register, with
+//!   its value and state; a button for each group.
+//! * **Painting**: edited values are underlined in the colour of edits; a dot marks a change since the last reading, a
+//!   flash a write cycle, a disk non-volatile storage. Editable numbers are in boxes.
 
 mod columns;
 mod editor;
@@ -37,21 +37,16 @@ use view::Selected;
 /// Location of a register: its group, and its index in the group.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterLocation {
-    /// Number of the group.
     pub group: usize,
-    /// Number in the group.
     pub row: usize,
 }
 
 #[derive(Clone, Copy)]
 pub struct RegisterTable<'a> {
-    /// Accessible name.
     pub label: &'a str,
-    /// Banks.
     pub groups: &'a [RegisterGroup],
     /// Returns a register of a group; called for visible or unfolded ones.
     pub row: &'a dyn Fn(RegisterLocation) -> RegisterRow,
-    /// The kind of the values.
     pub kind: RegisterKind,
 }
 
@@ -63,16 +58,12 @@ pub enum RegisterKind {
         /// Number of bytes of the widest register: all of them must be visible.
         widest: usize,
     },
-    /// Numbers that have a range.
     Numbers,
 }
 
-/// A bank.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterGroup {
-    /// Heading of the group.
     pub title: String,
-    /// A note at the end of the heading.
     pub note: String,
     pub rows: usize,
 }
@@ -87,15 +78,12 @@ pub struct RegisterRow {
     pub value: String,
     /// For bytes: the same as a number.
     pub decimal: String,
-    /// The meaning of the value, with its unit.
     pub meaning: String,
     /// `R`, `W`, `RW`.
     pub access: String,
     /// The factory setting, in the form of the value; empty if not known.
     pub default: String,
-    /// For numbers: the allowed range.
     pub range: String,
-    /// Its value differs from the default.
     pub differs: bool,
     /// Its value has changed since the previous reading.
     pub changed: bool,
@@ -119,21 +107,18 @@ pub struct RegisterBits {
     pub name: String,
     pub value: String,
     pub meaning: String,
-    /// It reports something important.
     pub lit: bool,
 }
 
 /// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterEvent {
-    /// The device's value back in an edited register.
     Revert(RegisterLocation),
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RegisterOutput {
     pub event: Option<RegisterEvent>,
-    /// The visible groups.
     pub groups: Range<usize>,
     /// Columns are hidden, for want of width.
     pub hides_columns: bool,
@@ -157,7 +142,6 @@ fn value_width(theme: &Theme, kind: RegisterKind) -> f32 {
 }
 
 impl RegisterRow {
-    /// Returns the text for a screen reader.
     fn words(&self, theme: &Theme) -> String {
         let mut parts = vec![self.value.clone(), self.decimal.clone(), self.meaning.clone()];
         parts.extend(self.differs.then(|| theme.say("widget.register_differs")));
@@ -213,7 +197,6 @@ pub fn register_table(
     output
 }
 
-/// Draws the visible lines.
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
 fn body(
     ui: &mut Ui,

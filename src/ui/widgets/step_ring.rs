@@ -1,11 +1,11 @@
-//! One period as a ring of 32 steps: the places of the absolute and of the analogue position.
+//! One period as a ring of 32 steps, with the locations of the absolute and the analogue position.
 //!
 //! * **Size**: a square of the given width.
-//! * **Keyboard**: none; Tab skips it.
+//! * **Keyboard**: none; Tab skips the ring.
 //! * **Pointer**: none.
 //! * **Accessible**: an image with the given label and value.
-//! * **Painting**: one segment per step, zero at the top and clockwise, that of the absolute position filled; the analogue
-//!   position as a hand; between the two an arc in the given colour, which shows their distance.
+//! * **Painting**: one segment per step, zero at the top and clockwise, the segment of the absolute position filled;
+//!   the analogue position as a hand; an arc in the given colour between both shows their distance.
 
 use egui::accesskit::Role;
 use egui::epaint::PathStroke;
@@ -23,11 +23,8 @@ pub struct StepRing<'a> {
     pub phase: f64,
     /// From the analogue to the absolute position, in periods; `None`: ambiguous direction.
     pub apart: Option<f64>,
-    /// Colour of the arc between them.
     pub colour: Color32,
-    /// Accessible name.
     pub label: &'a str,
-    /// Accessible value.
     pub value: &'a str,
 }
 

@@ -1,12 +1,13 @@
-//! A guided procedure as a list of steps: done, present and later ones, and measured values compared with their limits.
+//! A guided procedure as a list of steps: completed, present and future ones, and measured values compared with their
+//! limits.
 //!
 //! * **Size**: the available width; one line per step, the present one as high as its content.
-//! * **Keyboard**: Tab goes from button to button.
-//! * **Pointer**: the buttons; a tooltip tells why one is disabled.
+//! * **Keyboard**: Tab moves from button to button.
+//! * **Pointer**: the buttons; a tooltip explains why one is disabled.
 //! * **Accessible**: a label for each step, with its state; a progress indicator for each gauge, with its value and the
 //!   allowed range; buttons with the given labels.
-//! * **Painting**: a rail with a dot per step, filled, ringed or hollow, its icon in the colour of its result; on a gauge
-//!   the allowed band, the best part of it stronger, and a hand at the value, in the colour of a warning outside.
+//! * **Painting**: a rail with a dot per step, filled, ringed or hollow, its icon in the colour of the result; a gauge
+//!   shows the allowed band, its best part stronger, and a hand at the value, in the warning colour outside.
 
 mod gauge;
 
@@ -24,11 +25,9 @@ use crate::ui::{Theme, icons};
 pub struct StepRow {
     pub title: String,
     pub state: StepState,
-    /// The state in a word, for screen readers.
     pub word: String,
     /// The present task, the result, or why it failed; may be empty.
     pub note: String,
-    /// The values measured for it.
     pub gauges: Vec<Gauge>,
     /// Completed share, 0 to 1; `None` if it does not run or the share is not known.
     pub progress: Option<f32>,
@@ -50,7 +49,6 @@ pub enum StepState {
 /// Measured value with its allowed range.
 #[derive(Clone, Debug)]
 pub struct Gauge {
-    /// Name of the measured value.
     pub name: String,
     /// The value; `None` if there is none now.
     pub value: Option<f64>,
@@ -61,11 +59,9 @@ pub struct Gauge {
     pub best: Option<RangeInclusive<f64>>,
     /// The allowed range as text: `498…502 rpm`.
     pub limits: String,
-    /// Ends of the scale, beyond the allowed range.
     pub scale: RangeInclusive<f64>,
 }
 
-/// A procedure.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Steps<'a> {
     /// Its steps in order.
@@ -86,7 +82,6 @@ pub enum StepsEvent {
 }
 
 impl Gauge {
-    /// Returns whether the value is there and allowed.
     pub fn fits(&self) -> bool {
         self.value.is_some_and(|value| self.allowed.contains(&value))
     }
@@ -119,7 +114,6 @@ impl StepState {
 const DOT: f32 = 9.0;
 const RAIL: f32 = 32.0;
 
-/// Draws the list and returns the pressed button.
 pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     let mut dots: Vec<Pos2> = Vec::new();

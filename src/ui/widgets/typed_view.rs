@@ -1,9 +1,9 @@
-//! Bytes read as numbers and as text, lowest byte first and highest byte first.
+//! Bytes interpreted as numbers and text, little-endian and big-endian.
 //!
-//! * **Size**: three columns of fixed width, so that a changing value does not move; one line per type.
-//! * **Keyboard**: Tab and arrows go from value to value; Enter copies it.
+//! * **Size**: three columns of fixed width, so changing values do not move; one line per type.
+//! * **Keyboard**: Tab and arrows move from value to value; Enter copies one.
 //! * **Pointer**: a click copies a value; the tooltip shows a truncated one completely.
-//! * **Accessible**: a button for each value, named by type and byte order, with the value as its value.
+//! * **Accessible**: a button for each value, named by type and byte order.
 //! * **Painting**: a type for which there are too few bytes shows a dash.
 
 use egui::accesskit::Role;

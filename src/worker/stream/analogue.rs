@@ -1,5 +1,5 @@
-//! The virtual sine/cosine source as a producer: paced by the clock, like a real one. Samples missed while the computer was
-//! busy or asleep are made up for, up to a quarter of a second; older ones are lost and counted.
+//! The virtual sine/cosine source as a producer, paced by the clock like a real one. Samples missed while the computer
+//! was busy or asleep are made up for, up to a quarter of a second; older ones are lost and counted.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ const BATCH_NS: i64 = 10_000_000;
 /// Nanoseconds of delay that are caught up.
 const LATE_NS: i64 = 250_000_000;
 
-/// Error: settings of due samples are no longer stored, because the source was changed too often meanwhile.
+/// The settings of due samples are no longer stored, because the source was changed too often in the meantime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the settings of samples that are due are forgotten")]
 pub struct SettingsDropped;
@@ -28,7 +28,7 @@ pub struct Analogue {
 }
 
 impl Analogue {
-    /// Creates a source that begins at `start` on the clock of its stream.
+    /// Creates a source that starts at `start` on the clock of its stream.
     pub fn new(checked: Checked, start: Moment) -> Self {
         Analogue { source: Source::new(checked, Time::from(start)), next: 0 }
     }

@@ -1,5 +1,5 @@
-//! An adapter as a producer: it is opened, identified and configured on the stream's own thread, so that nothing waits for
-//! it; its stream is ended there as well. Damaged or lost samples are reported as missing before the next batch.
+//! An adapter as a source of samples. It is opened, identified, configured and finally stopped on the stream's own
+//! thread, so that nothing waits for it. Damaged or lost samples are reported as missing before the next batch.
 
 mod open;
 
@@ -22,7 +22,6 @@ pub trait Stretch: Send + 'static {
     /// The samples of a batch.
     type Samples: SampleCount;
 
-    /// Returns the requested setting of the adapter.
     fn wanted(&self) -> StreamRequest;
 
     /// Returns the samples of a packet; `None` if it does not belong to this stream.
@@ -45,10 +44,8 @@ pub struct Pair {
 /// Why an adapter does not stream, or no longer does.
 #[derive(Debug, thiserror::Error)]
 pub enum BridgeError {
-    /// The link.
     #[error(transparent)]
     Open(#[from] OpenError),
-    /// The adapter or the wire to it.
     #[error(transparent)]
     Tap(#[from] TapError),
 }
@@ -56,7 +53,6 @@ pub enum BridgeError {
 /// Opens the wire to an adapter.
 pub type Open = Box<dyn FnOnce() -> Result<Box<dyn ByteLink>, OpenError> + Send>;
 
-/// An adapter that streams.
 pub struct Bridge<S> {
     stretch: S,
     supply: Option<SupplyVoltage>,

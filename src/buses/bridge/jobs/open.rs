@@ -1,4 +1,4 @@
-//! Opening an adapter that streams from a link URL: `bridge:` to a real one, `sim:` to the virtual one.
+//! Opening of a streaming adapter from a link URL: `bridge:` for a real one, `sim:` for the virtual one.
 
 use std::sync::Arc;
 use std::time::Duration;

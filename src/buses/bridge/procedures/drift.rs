@@ -1,6 +1,6 @@
-//! The drift of an adapter's clock against the local one. A packet cannot have been sampled after its arrival: the one with
-//! the shortest transit shows the offset of the clocks, and a later one the drift. The offset is followed slowly, so that
-//! samples stay equidistant and no time goes backwards.
+//! Drift of an adapter's clock against the local clock. A packet cannot have been sampled after it arrived: the packet
+//! with the shortest transit reveals the offset of the clocks, and a later one the drift. The offset is tracked slowly,
+//! so that samples stay equidistant and time never runs backwards.
 
 use crate::analysis::Time;
 
@@ -11,7 +11,6 @@ pub(super) struct Drift {
     ahead_ns: Option<i128>,
     /// The minimum offset of the packets in this section, and in the previous one.
     least: Option<(i128, Option<i128>)>,
-    /// Start of the section, by the adapter's clock.
     since_ns: i128,
     /// The packet before, by the adapter's clock.
     before_ns: i128,

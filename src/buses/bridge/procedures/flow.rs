@@ -1,5 +1,5 @@
-//! The data that an adapter streams: the samples of one stream in order, and the number of missing ones before them
-//! (reference "bridge", 3), in local time (`drift`).
+//! Stream data of an adapter: the samples of one stream in order, each batch preceded by the number of missing ones
+//! (reference "bridge", 3), in local time (see `drift`).
 
 use std::time::Duration;
 
@@ -36,13 +36,11 @@ pub struct Portion {
     pub data: Data,
 }
 
-/// A stream that runs.
 #[derive(Clone, Debug)]
 pub(crate) struct Flow {
     streamed: Streamed,
     period_ns: i64,
     continuity: Continuity,
-    /// Number of the next sample.
     next: u64,
     /// Samples that are missing before the next.
     missing: u64,

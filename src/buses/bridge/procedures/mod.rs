@@ -1,6 +1,6 @@
-//! The host's side of the open adapter, for any bus behind it (reference "bridge"): a request, the reply with the same
-//! sequence number, and one repetition if none arrives. Stream data are handled by `flow`; between a request and its reply
-//! they are dropped.
+//! Host side of the open adapter, for any bus behind it (reference "bridge"): a request, the reply with the same
+//! sequence number, and one repetition if none arrives. Stream data are handled by `flow`; between a request and its
+//! reply they are dropped.
 
 mod drift;
 pub(crate) mod flow;
@@ -51,38 +51,16 @@ pub enum AdapterError {
     /// No reply to two requests.
     #[error("the adapter does not answer")]
     Silent,
-    /// It uses another version of the protocol.
     #[error("the adapter uses version {got} of the bridge protocol, this program version {expected}")]
-    Version {
-        /// This program's.
-        expected: u8,
-        /// The adapter's.
-        got: u8,
-    },
-    /// It lacks the required capability.
+    Version { expected: u8, got: u8 },
     #[error("the adapter {name} does not support BiSS")]
-    NoBiss {
-        /// Name of the adapter.
-        name: String,
-    },
-    /// It lacks the required capability.
+    NoBiss { name: String },
     #[error("the adapter {name} does not support SSI")]
-    NoSsi {
-        /// Name of the adapter.
-        name: String,
-    },
-    /// It lacks the required capability.
+    NoSsi { name: String },
     #[error("the adapter {name} cannot sample analogue signals")]
-    NoAnalog {
-        /// Name of the adapter.
-        name: String,
-    },
-    /// It lacks the required capability.
+    NoAnalog { name: String },
     #[error("the adapter {name} cannot supply an encoder")]
-    NoSupply {
-        /// Name of the adapter.
-        name: String,
-    },
+    NoSupply { name: String },
     /// It supplies more than the encoder tolerates; it was told to switch that off.
     #[error("the adapter supplied {measured} mV instead of {given} mV; the encoder tolerates {greatest} mV")]
     Overvoltage {
@@ -93,7 +71,6 @@ pub enum AdapterError {
         /// Millivolts that the encoder tolerates.
         greatest: u16,
     },
-    /// A running stream has stopped sending.
     #[error("the adapter no longer sends data")]
     Mute,
     /// The sample numbers of a stream started again.
@@ -102,28 +79,13 @@ pub enum AdapterError {
     /// Streamed data is not of this version.
     #[error("the data from the adapter cannot be decoded: {cause}")]
     Data { cause: BodyError },
-    /// It refuses a request.
     #[error("the adapter refuses operation 0x{:02X} with code {}: {text}", operation.byte(), code.byte())]
-    Refused {
-        /// The requested operation.
-        operation: Operation,
-        code: ErrorCode,
-        text: String,
-    },
+    Refused { operation: Operation, code: ErrorCode, text: String },
     /// Its reply is not of this version.
     #[error("the reply of the adapter to operation 0x{:02X} cannot be decoded: {cause}", operation.byte())]
-    Reply {
-        /// The requested operation.
-        operation: Operation,
-        cause: BodyError,
-    },
-    /// It replies to another request.
+    Reply { operation: Operation, cause: BodyError },
     #[error("the adapter answers operation 0x{:02X} with operation 0x{:02X}", requested.byte(), got.byte())]
-    Other {
-        requested: Operation,
-        /// The operation of the reply.
-        got: Operation,
-    },
+    Other { requested: Operation, got: Operation },
 }
 
 /// An adapter's fault, or that of the wire to it.

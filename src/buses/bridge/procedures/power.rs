@@ -1,4 +1,4 @@
-//! The encoder's supply, if an adapter switches it: its state at the start of the session, and at its end.
+//! Encoder supply of an adapter that can switch it: the state at the start and at the end of a session.
 
 use crate::parameter::Words;
 
@@ -24,11 +24,9 @@ impl SupplyAfter {
 /// The known state of an adapter's supply.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Power {
-    /// The user's choice.
     pub(super) after: SupplyAfter,
     /// The encoder had power before the session; `None` if it is not known.
     pub(super) found: Option<bool>,
-    /// This session has switched it on.
     pub(super) given: bool,
 }
 

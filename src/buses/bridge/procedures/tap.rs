@@ -1,4 +1,4 @@
-//! An adapter used only for a stream: its identity, its capabilities, its configuration, and then its data.
+//! An adapter that only provides a stream: its identity, its capabilities, its configuration and its data.
 
 use std::time::Duration;
 
@@ -12,7 +12,6 @@ use crate::units::{Moment, SupplyVoltage};
 /// Stream and how its signals are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StreamRequest {
-    /// Frames of BiSS.
     Biss {
         /// Clock in hertz.
         clock_hz: u32,
@@ -22,7 +21,6 @@ pub enum StreamRequest {
         /// Microseconds from one to the next.
         period_us: u32,
     },
-    /// Sine and cosine.
     Analog {
         /// Samples per second.
         sample_hz: u32,
@@ -35,7 +33,6 @@ const POWER_UP: Duration = Duration::from_secs(1);
 /// The streaming adapter and its actual setting.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Streaming {
-    /// The adapter.
     pub hello: Hello,
     /// Nanoseconds from one sample to the next.
     pub period_ns: i64,
@@ -48,10 +45,8 @@ pub struct Streaming {
 /// Why there is no stream, or no longer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TapError {
-    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
-    /// The wire.
     #[error(transparent)]
     Link(#[from] LinkError),
     #[error(transparent)]

@@ -1,21 +1,21 @@
-//! Consistent overhead byte stuffing (Cheshire & Baker, IEEE/ACM Transactions on Networking 7, 1999): bytes without a 00
-//! among them, so that 00 can end a packet.
+//! Consistent overhead byte stuffing (Cheshire & Baker, IEEE/ACM Transactions on Networking 7, 1999). Encoded bytes
+//! contain no 00, which therefore can terminate a packet.
 
 /// Bytes that one code byte can be followed by.
 const BLOCK: usize = 254;
 
-/// Why bytes are not COBS-encoded.
+/// The reason why bytes are not valid COBS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CobsError {
-    /// 00 ends a packet and never occurs within one.
+    /// The byte 00 occurs at this index, although it only terminates packets.
     #[error("00 stands within the packet, at byte {0}")]
     Zero(usize),
-    /// A code byte asks for more bytes than there are.
+    /// The code byte at this index requires more bytes than follow.
     #[error("the packet ends {0} bytes too early")]
     Short(usize),
 }
 
-/// Stuffs bytes, without the 00 that ends a packet.
+/// Encodes bytes, without the terminating 00.
 pub fn encode(bytes: &[u8]) -> Vec<u8> {
     let mut stuffed = Vec::with_capacity(bytes.len() + bytes.len() / BLOCK + 1);
     // A last block of full length needs no empty one after it.
@@ -41,7 +41,7 @@ pub fn encode(bytes: &[u8]) -> Vec<u8> {
     stuffed
 }
 
-/// Removes the stuffing. The 00 that ends a packet is not among the bytes.
+/// Decodes bytes that do not include the terminating 00.
 ///
 /// # Errors
 /// [`CobsError`].

@@ -1,9 +1,8 @@
-//! Checks whether the packets of a stream follow each other without a gap. A gap is never bridged silently (reference
-//! 3).
+//! Continuity check of stream packets. A gap is never bridged silently (reference 3).
 
 use super::data::Data;
 
-/// The position in a stream.
+/// Expected position in a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Continuity {
     next: u32,
@@ -12,21 +11,21 @@ pub struct Continuity {
 /// The gap before a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gap {
-    /// Nothing.
+    /// The packet follows without a gap.
     None,
-    /// Number of missing samples.
+    /// This number of samples is missing.
     Missing(u32),
-    /// The packet's samples precede earlier ones: the stream was restarted, or the packet is late.
+    /// The samples precede earlier ones: the stream was restarted, or the packet is late.
     Backwards,
 }
 
 impl Continuity {
-    /// Creates the check for the start of a stream, whose first sample is number 0.
+    /// Creates the check for the start of a stream, where the first sample has the number 0.
     pub const fn at_start() -> Self {
         Continuity { next: 0 }
     }
 
-    /// Returns the gap before these samples; the next packet is expected after them.
+    /// Returns the gap before these samples and expects the next packet after them.
     pub fn follow(&mut self, data: &Data) -> Gap {
         let (first, count, lost) = data.extent();
         let ahead = first.wrapping_sub(self.next);

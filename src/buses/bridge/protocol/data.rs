@@ -1,4 +1,4 @@
-//! Packets of streams, sent without a request (reference 3).
+//! Stream packets, which are sent without a request (reference 3).
 
 use super::fields::{BodyError, Fields};
 use super::packet::Packet;
@@ -7,58 +7,58 @@ use super::reply::BissStatus;
 /// Samples of a stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Data {
-    /// Words of SSI.
+    /// SSI words.
     Ssi(SsiData),
-    /// Frames of BiSS.
+    /// BiSS frames.
     Biss(BissData),
     /// Analogue samples.
     Analog(AnalogData),
 }
 
-/// Words of SSI, equally far apart.
+/// SSI words at equal intervals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SsiData {
-    /// Number of the first, counted from the start of the stream, modulo 2³².
+    /// Number of the first word, counted from the start of the stream, modulo 2³².
     pub first_index: u32,
-    /// Time of the first, in microseconds of the adapter's clock.
+    /// Time of the first word, in microseconds of the adapter's clock.
     pub t0_us: u64,
-    /// Microseconds from one to the next.
+    /// Interval in microseconds.
     pub period_us: u32,
-    /// Samples that the adapter has lost since its last packet.
+    /// Number of samples that the adapter has lost since its previous packet.
     pub lost: u16,
-    /// Bytes of a value on the wire, 1…8.
+    /// Width of a value on the wire, 1…8 bytes.
     pub width: u8,
-    /// Right-justified; at most 255.
+    /// Right-justified values; at most 255.
     pub values: Vec<u64>,
 }
 
-/// Frames of BiSS, equally far apart.
+/// BiSS frames at equal intervals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissData {
-    /// Number of the first, counted from the start of the stream, modulo 2³².
+    /// Number of the first frame, counted from the start of the stream, modulo 2³².
     pub first_index: u32,
-    /// Time of the first, in microseconds of the adapter's clock.
+    /// Time of the first frame, in microseconds of the adapter's clock.
     pub t0_us: u64,
-    /// Microseconds from one to the next.
+    /// Interval in microseconds.
     pub period_us: u32,
-    /// Samples that the adapter has lost since its last packet.
+    /// Number of samples that the adapter has lost since its previous packet.
     pub lost: u16,
-    /// Bytes of a value on the wire without its status, 1…8.
+    /// Width of a value on the wire without its status, 1…8 bytes.
     pub width: u8,
-    /// Data and CRC right-justified, with the status of each; at most 255.
+    /// Status, data and CRC of each frame, right-justified; at most 255.
     pub values: Vec<(BissStatus, u64)>,
 }
 
-/// Analogue samples, with the interval of their configuration.
+/// Analogue samples at the configured interval.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AnalogData {
-    /// Number of the first, counted from the start of the stream, modulo 2³².
+    /// Number of the first sample, counted from the start of the stream, modulo 2³².
     pub first_index: u32,
-    /// Time of the first, in microseconds of the adapter's clock.
+    /// Time of the first sample, in microseconds of the adapter's clock.
     pub t0_us: u64,
-    /// Samples that the adapter has lost since its last packet.
+    /// Number of samples that the adapter has lost since its previous packet.
     pub lost: u16,
-    /// Pairs of sine and cosine, each as a fraction of full scale; at most 255 pairs.
+    /// Pairs of sine and cosine as fractions of full scale; at most 255.
     pub samples: Vec<(i16, i16)>,
 }
 
@@ -67,7 +67,7 @@ impl Data {
     const BISS: u8 = 0xA5;
     const ANALOG: u8 = 0xB2;
 
-    /// Returns the number of the first sample, how many there are, and how many the adapter has lost before them.
+    /// Returns the number of the first sample, the sample count, and the number of samples lost before them.
     pub const fn extent(&self) -> (u32, usize, u16) {
         match self {
             Data::Ssi(data) => (data.first_index, data.values.len(), data.lost),

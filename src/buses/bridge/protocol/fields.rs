@@ -1,41 +1,41 @@
-//! Bodies field by field: integers with their low byte first, texts with their length before them.
+//! Encoding of packet bodies field by field: little-endian integers, strings prefixed with their length.
 
-/// Why a body does not belong to its operation.
+/// The reason why a body does not match its operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BodyError {
-    /// Another length than the operation has.
+    /// The length does not match the operation.
     #[error("operation 0x{op:02X}: a body of {got} bytes has the wrong length")]
     Length {
-        /// The operation.
+        /// Operation code.
         op: u8,
-        /// Bytes there were.
+        /// Received length in bytes.
         got: usize,
     },
-    /// A value that its field cannot have.
+    /// The operation code is unknown.
     #[error("0x{0:02X} is not an operation")]
     Operation(u8),
-    /// A value that its field cannot have.
+    /// The value of a field is invalid.
     #[error("operation 0x{op:02X}: {field} cannot be {got}")]
     Value {
-        /// The operation.
+        /// Operation code.
         op: u8,
         /// Name of the field.
         field: &'static str,
-        /// The value.
+        /// Received value.
         got: u8,
     },
-    /// Bytes that are no UTF-8.
+    /// A string is not valid UTF-8.
     #[error("operation 0x{op:02X}: a string is not valid UTF-8")]
     Text {
-        /// The operation.
+        /// Operation code.
         op: u8,
     },
     /// The adapter uses another version of the protocol.
     #[error("the adapter uses version {got} of the bridge protocol, this program version {expected}")]
     Version {
-        /// This program's.
+        /// Version that this program supports.
         expected: u8,
-        /// The adapter's.
+        /// Version of the adapter.
         got: u8,
     },
 }

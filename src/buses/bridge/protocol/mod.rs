@@ -1,5 +1,6 @@
-//! The bridge protocol, version 1: how a small open adapter gives a PC the clocked buses SSI and BiSS, analogue signals
-//! and a serial line (the project's own reference, `protocol/bridge.md`). Integers have their low byte first.
+//! The bridge protocol, version 1, through which a small open adapter gives a PC access to the clocked buses SSI and
+//! BiSS, to analogue signals and to a serial line (the project's own reference, `protocol/bridge.md`). Integers are
+//! little-endian.
 //!
 //! ```text
 //! COBS( seq  op  body…  crc16 ) 00

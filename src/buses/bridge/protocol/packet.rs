@@ -1,36 +1,36 @@
-//! The packet: sequence number, operation, body, checksum (reference 1).
+//! Packets: sequence number, operation, body and checksum (reference 1).
 
 use super::cobs::{self, CobsError};
 
-/// Longest body.
+/// Maximum length of a body in bytes.
 pub const MAX_BODY: usize = 512;
 
-/// A packet whose checksum was right.
+/// A packet with a valid checksum.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packet {
-    /// Chosen by the host and repeated in the reply; unsolicited packets have their own count.
+    /// Sequence number, chosen by the host and repeated in the reply; unsolicited packets are counted separately.
     pub seq: u8,
-    /// The operation; in a reply its bit 7 is set.
+    /// Operation code; bit 7 is set in a reply.
     pub op: u8,
-    /// Up to [`MAX_BODY`] bytes.
+    /// Body of up to [`MAX_BODY`] bytes.
     pub body: Vec<u8>,
 }
 
-/// Why bytes are not a packet.
+/// The reason why bytes are not a valid packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PacketError {
-    /// The stuffing is broken.
+    /// The byte stuffing is invalid.
     #[error(transparent)]
     Cobs(#[from] CobsError),
-    /// Fewer than the four bytes that every packet has, or more than the longest.
+    /// The packet is shorter than four bytes or longer than the maximum.
     #[error("{0} bytes are not the length of a packet")]
     Length(usize),
-    /// The checksum does not fit.
+    /// The checksum does not match.
     #[error("CRC {got:04X} where {expected:04X} was expected")]
     Crc {
-        /// The checksum calculated from the other bytes.
+        /// Checksum calculated over the received bytes.
         expected: u16,
-        /// The checksum received.
+        /// Received checksum.
         got: u16,
     },
 }
@@ -41,7 +41,7 @@ impl Packet {
     /// A stuffed packet never has more.
     pub(super) const MAX_STUFFED: usize = MAX_BODY + Self::OVERHEAD + (MAX_BODY + Self::OVERHEAD) / 254 + 1;
 
-    /// Parses the bytes between two 00.
+    /// Parses the bytes between two terminators.
     ///
     /// # Errors
     /// [`PacketError`].
@@ -65,7 +65,7 @@ impl Packet {
         Ok(Packet { seq, op, body: bytes })
     }
 
-    /// Returns the stuffed bytes, followed by the terminating 00.
+    /// Returns the stuffed bytes, including the terminating 00.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.body.len() + Self::OVERHEAD);
         bytes.extend([self.seq, self.op]);
@@ -77,7 +77,7 @@ impl Packet {
     }
 }
 
-/// Returns CRC-16/IBM-3740: x¹⁶ + x¹² + x⁵ + 1 from FFFFh on, highest bit first.
+/// Calculates CRC-16/IBM-3740: x¹⁶ + x¹² + x⁵ + 1, initial value FFFFh, most significant bit first.
 pub fn crc16(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |crc: u16, byte| {
         let [high, _] = crc.to_be_bytes();

@@ -1,8 +1,8 @@
-//! Packets from a stream of bytes. Damaged ones are dropped and counted (reference 1).
+//! Packet reassembly from a stream of bytes. Damaged packets are dropped and counted (reference 1).
 
 use super::packet::{Packet, PacketError};
 
-/// Bytes received that are not a whole packet yet.
+/// Received bytes that do not yet form a complete packet.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     bytes: Vec<u8>,
@@ -16,12 +16,12 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Takes the received bytes.
+    /// Appends received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }
 
-    /// Returns the next whole packet.
+    /// Returns the next complete packet.
     pub fn next_packet(&mut self) -> Option<Packet> {
         loop {
             let behind = self.bytes.get(self.searched..).unwrap_or_default();
@@ -53,12 +53,12 @@ impl Receiver {
         }
     }
 
-    /// Takes the bytes of the damaged packet dropped last; `None` if there was none since.
+    /// Returns the bytes of the last damaged packet, if any since the previous call.
     pub const fn take_broken(&mut self) -> Option<Vec<u8>> {
         self.broken.take()
     }
 
-    /// Returns the number of broken packets so far.
+    /// Returns the number of damaged packets so far.
     pub const fn dropped(&self) -> u64 {
         self.dropped
     }

@@ -1,4 +1,4 @@
-//! The replies of an adapter, and everything else it sends (reference 2 and 3).
+//! Messages from an adapter: replies and unsolicited packets (reference 2 and 3).
 
 use super::VERSION;
 use super::data::Data;
@@ -9,170 +9,170 @@ use super::request::Operation;
 /// A message from an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Message {
-    /// The answer to the request with the same sequence number.
+    /// The reply to the request with the same sequence number.
     Reply(Reply),
     /// The refusal of the request with the same sequence number.
     Error {
-        /// The request's operation.
+        /// Operation code of the request.
         op: u8,
-        /// The error code.
+        /// Error code.
         code: ErrorCode,
-        /// The message as text.
+        /// Error message.
         text: String,
     },
-    /// Data of a stream.
+    /// Stream data.
     Data(Data),
 }
 
-/// A reply.
+/// A reply to a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// The identity of the adapter.
+    /// Identity of the adapter.
     Hello(Hello),
-    /// The encoder's supply.
+    /// State of the encoder supply.
     Supply {
-        /// On or off.
+        /// Whether the supply is on.
         on: bool,
-        /// Measured.
+        /// Measured voltage in millivolts.
         millivolt: u16,
-        /// Measured.
+        /// Measured current in milliamperes.
         milliampere: u16,
     },
-    /// The actual clock of SSI.
+    /// Actual SSI clock.
     SsiConfig {
         /// Clock in hertz.
         clock_hz: u32,
     },
-    /// One SSI word.
+    /// An SSI word.
     SsiRead {
-        /// Microseconds of the adapter's clock.
+        /// Time in microseconds of the adapter's clock.
         t_us: u64,
-        /// Right-justified, the bit received last in bit 0.
+        /// Right-justified word with the last received bit in bit 0.
         raw: u64,
     },
-    /// SSI words will come.
+    /// The stream of SSI words has started.
     SsiStream {
-        /// Microseconds from one to the next in fact.
+        /// Actual interval in microseconds.
         period_us: u32,
     },
-    /// The actual clock of BiSS.
+    /// Actual BiSS clock.
     BissConfig {
         /// Clock in hertz.
         clock_hz: u32,
     },
-    /// One BiSS frame.
+    /// A BiSS frame.
     BissRead {
-        /// Microseconds of the adapter's clock.
+        /// Time in microseconds of the adapter's clock.
         t_us: u64,
-        /// Status of the frame.
+        /// Frame status.
         status: BissStatus,
-        /// Data and CRC, right-justified; the CRC is not checked.
+        /// Data and CRC, right-justified; the CRC has not been checked.
         raw: u64,
     },
-    /// A register's value.
+    /// Value of a register.
     BissRegisterRead {
-        /// The value.
+        /// Register value.
         value: u8,
     },
-    /// A register was written.
+    /// A register has been written.
     BissRegisterWrite {
-        /// Its value as returned by the encoder.
+        /// Value returned by the encoder.
         value: u8,
     },
-    /// BiSS frames will come.
+    /// The stream of BiSS frames has started.
     BissStream {
-        /// Microseconds from one to the next in fact.
+        /// Actual interval in microseconds.
         period_us: u32,
     },
-    /// The actual sampling of analogue signals.
+    /// Actual analogue sampling.
     AnalogConfig {
-        /// Samples per second.
+        /// Sample rate in hertz.
         sample_hz: u32,
-        /// Full scale: the voltage of a value of 32 767.
+        /// Full scale in microvolts, the voltage of the value 32 767.
         full_scale_microvolt: u32,
-        /// Bits of the converter.
+        /// Resolution of the converter in bits.
         bits: u8,
     },
-    /// Analogue samples will come, or no more.
+    /// The analogue stream has started or stopped.
     AnalogStream {
-        /// On or off.
+        /// Whether the stream is running.
         on: bool,
     },
-    /// The actual setting of the serial line.
+    /// Actual setting of the serial line.
     UartConfig {
-        /// Bits per second.
+        /// Baud rate.
         baud: u32,
     },
     /// Bytes received on the serial line.
     UartTransfer {
-        /// Start of the reply's first start bit, by the clock of the analogue samples.
+        /// Start of the first start bit of the reply, by the clock of the analogue samples, in microseconds.
         t_us: u64,
-        /// Bytes received.
+        /// Received bytes.
         rx: Vec<u8>,
     },
 }
 
-/// The identity and the capabilities of an adapter.
+/// Identity and capabilities of an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hello {
-    /// The capabilities.
+    /// Capabilities of the adapter.
     pub capabilities: Capabilities,
-    /// Fastest clock in hertz.
+    /// Maximum clock in hertz.
     pub max_clock_hz: u32,
-    /// Most samples per second.
+    /// Maximum sample rate in hertz.
     pub max_sample_hz: u32,
-    /// The name.
+    /// Name of the adapter.
     pub name: String,
-    /// Its serial number.
+    /// Serial number of the adapter.
     pub serial: String,
-    /// Its firmware.
+    /// Firmware version of the adapter.
     pub firmware: String,
 }
 
-/// Capabilities of an adapter; unknown bits are kept.
+/// Capabilities of an adapter; unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities(u32);
 
-/// Status of reading a BiSS frame; an unknown status is kept.
+/// Status of reading a BiSS frame; unknown values are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BissStatus(u8);
 
-/// Why an adapter refuses; an unknown code is kept.
+/// Code of a refusal; unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorCode(u8);
 
 impl Capabilities {
-    /// SSI.
+    /// SSI words.
     pub const SSI: Capabilities = Capabilities(1 << 0);
-    /// Position data of BiSS.
+    /// BiSS position data.
     pub const BISS: Capabilities = Capabilities(1 << 1);
-    /// Registers over BiSS.
+    /// BiSS register access.
     pub const BISS_REGISTERS: Capabilities = Capabilities(1 << 2);
-    /// Analogue signals.
+    /// Analogue sampling.
     pub const ANALOG: Capabilities = Capabilities(1 << 3);
-    /// A serial line, RS-485.
+    /// RS-485 serial line.
     pub const UART: Capabilities = Capabilities(1 << 4);
-    /// A supply that can be switched.
+    /// Switchable encoder supply.
     pub const SUPPLY: Capabilities = Capabilities(1 << 5);
-    /// A state, not a capability: the encoder's supply is on. An adapter that does not report it has this bit clear.
+    /// State rather than capability: the encoder supply is on. Adapters that do not report it leave this bit clear.
     pub const SUPPLIED: Capabilities = Capabilities(1 << 6);
 
-    /// Creates it: any word is a set of capabilities.
+    /// Creates a set of capabilities from its word; every value is valid.
     pub const fn new(word: u32) -> Self {
         Capabilities(word)
     }
 
-    /// Returns all bits.
+    /// Returns the capabilities as a word.
     pub const fn word(self) -> u32 {
         self.0
     }
 
-    /// Returns whether all of these are included.
+    /// Returns whether all of `others` are included.
     pub const fn has(self, others: Capabilities) -> bool {
         self.0 & others.0 == others.0
     }
 
-    /// Returns the union of both.
+    /// Returns the union of both sets.
     #[must_use]
     pub const fn and(self, others: Capabilities) -> Self {
         Capabilities(self.0 | others.0)
@@ -180,46 +180,46 @@ impl Capabilities {
 }
 
 impl BissStatus {
-    /// A frame was read.
+    /// The frame was read.
     pub const OK: BissStatus = BissStatus(0);
-    /// No encoder acknowledged.
+    /// The encoder did not acknowledge.
     pub const NO_ACKNOWLEDGE: BissStatus = BissStatus(1);
-    /// The data line stays at 0.
+    /// The data line is stuck at 0.
     pub const STUCK_LOW: BissStatus = BissStatus(2);
-    /// The data line stays at 1.
+    /// The data line is stuck at 1.
     pub const STUCK_HIGH: BissStatus = BissStatus(3);
 
-    /// Creates it: any byte is a status.
+    /// Creates a status from its byte; every value is valid.
     pub const fn new(byte: u8) -> Self {
         BissStatus(byte)
     }
 
-    /// Returns its byte.
+    /// Returns the status as a byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
 }
 
 impl ErrorCode {
-    /// The adapter cannot do that.
+    /// The adapter does not support the operation.
     pub const NOT_SUPPORTED: ErrorCode = ErrorCode(1);
-    /// A value that it does not take.
+    /// The adapter does not accept a value of the request.
     pub const BAD_ARGUMENT: ErrorCode = ErrorCode(2);
     /// A stream is running.
     pub const BUSY: ErrorCode = ErrorCode(3);
-    /// The encoder does not answer.
+    /// The encoder does not reply.
     pub const NO_ANSWER: ErrorCode = ErrorCode(4);
-    /// The encoder replied wrongly: a CRC of the control frame.
+    /// The reply of the encoder is invalid: CRC error in the control frame.
     pub const WRONG_ANSWER: ErrorCode = ErrorCode(5);
     /// The adapter was too slow.
     pub const OVERRUN: ErrorCode = ErrorCode(6);
 
-    /// Creates it: any byte is a code.
+    /// Creates an error code from its byte; every value is valid.
     pub const fn new(byte: u8) -> Self {
         ErrorCode(byte)
     }
 
-    /// Returns its byte.
+    /// Returns the error code as a byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -232,7 +232,7 @@ impl Message {
     /// Parses a packet from an adapter.
     ///
     /// # Errors
-    /// [`BodyError`] if the operation is unknown or its body does not fit; [`BodyError::Version`] for a HELLO of another
+    /// [`BodyError`] if the operation is unknown or its body is invalid; [`BodyError::Version`] for a HELLO of another
     /// version, whatever else it contains.
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         if packet.op == Self::ERROR {
@@ -261,7 +261,7 @@ impl Message {
 }
 
 impl Reply {
-    /// Returns the operation that it answers.
+    /// Returns the operation to which this is the reply.
     pub const fn operation(&self) -> Operation {
         match self {
             Reply::Hello(_) => Operation::Hello,

@@ -1,162 +1,162 @@
-//! The requests of a host to an adapter (reference 2).
+//! Requests of a host to an adapter (reference 2).
 
 use super::fields::{BodyError, Fields};
 use super::packet::Packet;
 
-/// The operations, by their numbers in a request.
+/// Operations with their codes in a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Operation {
-    /// Requests the identity.
+    /// Request the identity.
     Hello = 0x01,
-    /// The encoder's supply.
+    /// Switch the encoder supply, or read its state.
     Supply = 0x02,
-    /// Configures the clock of SSI.
+    /// Configure the SSI clock.
     SsiConfig = 0x10,
-    /// One SSI word.
+    /// Read an SSI word.
     SsiRead = 0x11,
-    /// SSI words without being asked.
+    /// Start or end a stream of SSI words.
     SsiStream = 0x12,
-    /// Configures the clock of BiSS.
+    /// Configure the BiSS clock.
     BissConfig = 0x20,
-    /// One BiSS frame.
+    /// Read a BiSS frame.
     BissRead = 0x21,
-    /// A register over BiSS.
+    /// Read a BiSS register.
     BissRegisterRead = 0x22,
-    /// Write a register over BiSS.
+    /// Write a BiSS register.
     BissRegisterWrite = 0x23,
-    /// BiSS frames without being asked.
+    /// Start or end a stream of BiSS frames.
     BissStream = 0x24,
-    /// Configures the sampling of analogue signals.
+    /// Configure analogue sampling.
     AnalogConfig = 0x30,
-    /// Analogue samples without being asked.
+    /// Start or end a stream of analogue samples.
     AnalogStream = 0x31,
-    /// Configures the serial line.
+    /// Configure the serial line.
     UartConfig = 0x40,
-    /// Bytes out and in on the serial line.
+    /// Send and receive bytes on the serial line.
     UartTransfer = 0x41,
 }
 
-/// A request.
+/// A request to an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// Requests the identity.
+    /// Request the identity.
     Hello,
-    /// The encoder's supply. HELLO does not change it.
+    /// Switch the encoder supply. HELLO does not change it.
     Supply {
-        /// On or off.
+        /// Whether to switch the supply on.
         on: bool,
-        /// Its voltage. Only one allowed by the encoder's description may be requested.
+        /// Voltage in millivolts. Request only a voltage that the description of the encoder allows.
         millivolt: u16,
     },
-    /// Configures the clock of SSI.
+    /// Configure the SSI clock.
     SsiConfig {
-        /// Bits of a word, 1…64.
+        /// Number of bits in a word, 1…64.
         clocks: u8,
         /// Clock in hertz.
         clock_hz: u32,
-        /// Pause between two words in microseconds.
+        /// Pause between two words, in microseconds.
         pause_us: u16,
-        /// When the data line is sampled.
+        /// Clock edge at which the data line is sampled.
         flags: SsiFlags,
     },
-    /// One SSI word.
+    /// Read an SSI word.
     SsiRead,
-    /// SSI words without being asked.
+    /// Start or end a stream of SSI words.
     SsiStream {
         /// Interval in microseconds; 0 ends the stream.
         period_us: u32,
     },
-    /// Configures the clock of BiSS.
+    /// Configure the BiSS clock.
     BissConfig {
         /// Clock in hertz.
         clock_hz: u32,
-        /// Position, error and warning, without the CRC.
+        /// Number of bits of position, error and warning, without the CRC.
         data_bits: u8,
-        /// Bits of the CRC.
+        /// Width of the CRC in bits.
         crc_bits: u8,
         /// Time-out in microseconds.
         timeout_us: u16,
     },
-    /// One BiSS frame.
+    /// Read a BiSS frame.
     BissRead,
-    /// A register over BiSS.
+    /// Read a BiSS register.
     BissRegisterRead {
-        /// The encoder's number on the line.
+        /// Number of the encoder on the line.
         slave: u8,
-        /// 00h…7Fh.
+        /// Register address, 00h…7Fh.
         address: u8,
     },
-    /// Write a register over BiSS.
+    /// Write a BiSS register.
     BissRegisterWrite {
-        /// The encoder's number on the line.
+        /// Number of the encoder on the line.
         slave: u8,
-        /// 00h…7Fh.
+        /// Register address, 00h…7Fh.
         address: u8,
-        /// Its new value.
+        /// New value of the register.
         value: u8,
     },
-    /// BiSS frames without being asked.
+    /// Start or end a stream of BiSS frames.
     BissStream {
         /// Interval in microseconds; 0 ends the stream.
         period_us: u32,
     },
-    /// Configures the sampling of analogue signals.
+    /// Configure analogue sampling.
     AnalogConfig {
-        /// Samples per second.
+        /// Sample rate in hertz.
         sample_hz: u32,
     },
-    /// Analogue samples without being asked.
+    /// Start or end a stream of analogue samples.
     AnalogStream {
-        /// On or off.
+        /// Whether to start the stream.
         on: bool,
     },
-    /// Configures the serial line.
+    /// Configure the serial line.
     UartConfig {
-        /// Bits per second.
+        /// Baud rate.
         baud: u32,
-        /// 0 none, 1 odd, 2 even; others are kept.
+        /// Parity: 0 none, 1 odd, 2 even; other values are preserved.
         parity: u8,
-        /// Microseconds until the line may be driven in the other direction.
+        /// Time in microseconds before the line may be driven in the other direction.
         turnaround_us: u16,
     },
-    /// Bytes out and in on the serial line.
+    /// Send and receive bytes on the serial line.
     UartTransfer {
-        /// Microseconds until the first byte has to be there.
+        /// Time-out for the first byte, in microseconds.
         timeout_us: u32,
-        /// Microseconds of silence that end the reply.
+        /// Silence that ends the reply, in microseconds.
         idle_us: u32,
         /// Bytes to send.
         tx: Vec<u8>,
     },
 }
 
-/// When the data line of SSI is sampled; unknown bits are kept.
+/// Sampling of the SSI data line; unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SsiFlags(u8);
 
 impl SsiFlags {
-    /// Bit 0: at the clock's falling edge, as usual.
+    /// Bit 0: sampling at the falling clock edge, as usual.
     pub const FALLING_EDGE: SsiFlags = SsiFlags(0x01);
 
-    /// Creates it: any byte is a set of flags.
+    /// Creates a set of flags from its byte; every value is valid.
     pub const fn new(byte: u8) -> Self {
         SsiFlags(byte)
     }
 
-    /// Returns all eight bits.
+    /// Returns the flags as a byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Returns whether the data line is sampled at the clock's falling edge.
+    /// Returns whether the data line is sampled at the falling clock edge.
     pub const fn falling_edge(self) -> bool {
         self.0 & Self::FALLING_EDGE.0 != 0
     }
 }
 
 impl Operation {
-    /// Every operation.
+    /// All operations.
     pub const ALL: [Operation; 14] = [
         Operation::Hello,
         Operation::Supply,
@@ -174,22 +174,22 @@ impl Operation {
         Operation::UartTransfer,
     ];
 
-    /// Set in the operation of a reply.
+    /// The bit that is set in the operation code of a reply.
     pub const REPLY_BIT: u8 = 0x80;
 
-    /// Returns its number in a request.
+    /// Returns the operation code of a request.
     pub const fn byte(self) -> u8 {
         self as u8
     }
 
-    /// Returns the request with this number.
+    /// Returns the operation with this code.
     pub fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|operation| operation.byte() == byte)
     }
 }
 
 impl Request {
-    /// Returns the operation.
+    /// Returns the operation of the request.
     pub const fn operation(&self) -> Operation {
         match self {
             Request::Hello => Operation::Hello,
@@ -250,10 +250,10 @@ impl Request {
         Packet { seq, op: self.operation().byte(), body }
     }
 
-    /// Reads the request in a packet.
+    /// Parses a request.
     ///
     /// # Errors
-    /// [`BodyError`] if the operation is unknown or its body does not fit.
+    /// [`BodyError`] if the operation is unknown or its body is invalid.
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         let operation = Operation::from_byte(packet.op).ok_or(BodyError::Operation(packet.op))?;
         let mut fields = Fields::new(packet.op, &packet.body);

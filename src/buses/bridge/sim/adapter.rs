@@ -1,7 +1,7 @@
-//! The adapter: requests in, replies and streams out, byte by byte, with its faults. Chosen here, where the reference says
-//! nothing: a reply is sent a quarter of a millisecond after its request, one that needs a control frame after the 47
-//! cycles of that; HELLO ends all streams and does not change the supply; SSI and BiSS share their wires, so a stream of
-//! one keeps both busy.
+//! The virtual adapter: requests, replies and streams byte by byte, with injected faults. Where the reference is
+//! silent, this adapter replies a quarter of a millisecond after a request, or after the 47 cycles of a control frame
+//! if the request needs one; HELLO ends all streams and leaves the supply unchanged; SSI and BiSS share their wires, so
+//! a stream on one occupies both.
 
 use std::any::Any;
 use std::time::Duration;
@@ -110,7 +110,6 @@ impl Adapter {
         device.downcast_ref()
     }
 
-    /// Returns the same, to change it.
     pub fn device_mut<T: BissDevice>(&mut self) -> Option<&mut T> {
         let device: &mut dyn Any = &mut **self.bus.biss.as_mut()?;
         device.downcast_mut()
@@ -128,7 +127,6 @@ impl Adapter {
         self.follow_motor();
     }
 
-    /// The sine/cosine encoder is on the same shaft.
     fn follow_motor(&mut self) {
         self.bus.follow_motor(self.now);
         let rpm = self.motor().rpm();
@@ -179,7 +177,6 @@ impl Adapter {
         }
     }
 
-    /// Over the noisy line.
     fn send(&mut self, at: Moment, packet: &Packet) {
         let bytes = noisy(&self.faults, &mut self.rng, &packet.emit());
         self.to_host.insert(at, bytes);

@@ -1,5 +1,5 @@
-//! Devices attached to the adapter: on its clocked buses and its serial line. The adapter does not know which ones exist;
-//! each parses its own settings of a `sim:` link.
+//! Devices attached to the clocked buses and the serial line of the adapter. The adapter names none of them; each
+//! parses its own settings of a `sim:` link.
 
 use std::any::Any;
 
@@ -19,16 +19,13 @@ pub trait BissDevice: Any + Send {
     /// Returns the position of its shaft in steps, and the steps per revolution; `None` without power.
     fn place(&mut self, at: Moment) -> Option<(u64, u64)>;
 
-    /// Returns the motor of the shaft.
     fn motor(&self) -> Motor;
 
     /// Turns it at another speed from `now` on.
     fn set_rpm(&mut self, now: Moment, rpm: f64);
 
-    /// Replaces the faults.
     fn set_faults(&mut self, faults: &Faults);
 
-    /// Removes the supply.
     fn disconnect(&mut self);
 
     /// Restores the supply of a device that has lost it.
@@ -88,10 +85,8 @@ impl Clone for Box<dyn SerialDevice> {
 
 /// A device that hangs on an adapter, by the connector.
 pub enum Attached {
-    /// Device on BiSS.
     Biss(Box<dyn BissDevice>),
     Ssi(Box<dyn SsiDevice>),
-    /// Device at the serial line.
     Serial(Box<dyn SerialDevice>),
 }
 

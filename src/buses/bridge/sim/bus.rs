@@ -1,5 +1,5 @@
-//! The bits of one frame of BiSS or SSI, as clocked out of the encoder by the adapter, independent of their meaning.
-//! Damaged wires and noise are applied here.
+//! The bits of one BiSS or SSI frame as the adapter clocks them out of the encoder, independent of their meaning. Wire
+//! damage and noise are applied here.
 
 use fastrand::Rng;
 
@@ -17,7 +17,6 @@ pub(super) struct Bus {
     pub(super) ssi: Option<Box<dyn SsiDevice>>,
     /// The shaft that turns while nothing is attached to BiSS.
     shaft: Shaft,
-    /// The encoders have power.
     pub(super) is_supplied: bool,
     line: EncoderWiring,
     noise: f64,

@@ -1,4 +1,4 @@
-//! The clocking of the buses: the available clocks, and the duration of a frame.
+//! Clocking of the buses: available clock frequencies and frame durations.
 
 use std::time::Duration;
 
@@ -10,11 +10,9 @@ const CRYSTAL_HZ: u32 = 60_000_000;
 /// Longest time that the encoder works on a frame.
 const ACKNOWLEDGE_US: u32 = 7;
 
-/// The setting of BiSS.
 #[derive(Clone, Copy)]
 pub(super) struct BissSetting {
     pub(super) clock_hz: u32,
-    /// Data and CRC.
     pub(super) bits: u8,
     pub(super) timeout_us: u16,
 }

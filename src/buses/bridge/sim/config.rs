@@ -1,4 +1,4 @@
-//! The adapter's own settings in the query of a `sim:` link. Attached devices have others.
+//! The adapter's own settings in the query of a `sim:` link. Attached devices have their own.
 
 use crate::buses::bridge::protocol::VERSION;
 use crate::expected::Quantity;
@@ -13,7 +13,6 @@ parameters! {
             "line" => Words(&[("good", EncoderWiring::Good), ("open", EncoderWiring::Open), ("low", EncoderWiring::Low), ("high", EncoderWiring::High)]);
         /// The share of frames with a bit inverted.
         pub(super) noise: f64 = 0.0, "noise" => Decimal(Quantity::DamagedFrames, 0.0..=1.0);
-        /// The adapter switches the encoder's supply.
         pub(super) switched_supply: bool = false, "supply" => Words(&[("external", false), ("switched", true)]);
         /// Version of the bridge protocol as reported by the adapter.
         pub(super) version: u8 = VERSION, "version" => Whole(Quantity::Version, 0..=255);

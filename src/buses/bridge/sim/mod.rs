@@ -1,18 +1,18 @@
-//! A virtual adapter with the bridge protocol (the project's own reference, `protocol/bridge.md`), with a sine/cosine
-//! encoder on the shaft of the devices on its buses and its serial line. Without a device at the serial line, that is
-//! refused as not supported.
+//! A virtual adapter for the bridge protocol (the project's own reference, `protocol/bridge.md`), with a sine/cosine
+//! encoder on the shaft of the attached devices. Without a device on the serial line, requests for the line are refused
+//! as not supported.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
-//! | `attached` | what can hang on it, as it sees that |
-//! | `config` | the settings of a `sim:` link that are its own |
-//! | `settings` | all settings of such a link, and the adapter as they say |
-//! | `shaft` | what turns where nothing hangs on BiSS |
-//! | `bus` | what one frame of BiSS or SSI carries |
-//! | `clocking` | clocks and how long a frame takes |
-//! | `stream` | samples at equal distances, in packets |
+//! | `attached` | devices that can be attached, as the adapter sees them |
+//! | `config` | the adapter's own settings in a `sim:` link |
+//! | `settings` | all settings of such a link, and the adapter built from them |
+//! | `shaft` | the shaft if no device is attached to BiSS |
+//! | `bus` | the bits of one BiSS or SSI frame |
+//! | `clocking` | clock frequencies and frame durations |
+//! | `stream` | equidistant samples in packets |
 //! | `uart` | the serial line |
-//! | `adapter` | requests and replies, byte for byte |
+//! | `adapter` | requests and replies, byte by byte |
 
 mod adapter;
 mod attached;

@@ -1,4 +1,4 @@
-//! A virtual adapter with its attached devices, as in the query of a `sim:` link.
+//! Construction of a virtual adapter with its attached devices from the query of a `sim:` link.
 
 use super::adapter::Adapter;
 use super::attached::{Attachable, Attached};

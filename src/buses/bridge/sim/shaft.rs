@@ -1,4 +1,4 @@
-//! The shaft of an adapter without a device on BiSS: its position as an exact function of time.
+//! The shaft of an adapter without a BiSS device: its position as an exact function of time.
 
 use crate::sim::Motor;
 use crate::units::Moment;

@@ -1,5 +1,5 @@
-//! Samples at equal intervals, in packets of five milliseconds or as many as fit. Samples that the host does not fetch for
-//! more than a second are lost, which is reported.
+//! Equidistant samples in packets of five milliseconds, or as many samples as fit. Samples that the host does not fetch
+//! within a second are lost and reported as such.
 
 use std::time::Duration;
 
@@ -13,7 +13,6 @@ const FLUSH: Duration = Duration::from_millis(5);
 /// The data that the adapter buffers for a host that does not fetch it.
 const BACKLOG: Duration = Duration::from_secs(1);
 
-/// The clocked bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Ssi,
@@ -25,7 +24,6 @@ pub(super) enum Kind {
 struct Pace {
     start: Moment,
     period: Duration,
-    /// Samples in a packet.
     capacity: u64,
     /// First sample of the next packet.
     first: u64,
@@ -81,7 +79,6 @@ pub(super) struct Clocked {
     pub(super) kind: Kind,
     pace: Pace,
     width: u8,
-    /// Samples that were taken for the next packet.
     taken: Vec<(BissStatus, u64)>,
 }
 
@@ -154,7 +151,6 @@ impl Analog {
         self.pace.due()
     }
 
-    /// Changes the settings from a time on.
     pub(super) fn change(&mut self, now: Moment, settings: Checked) {
         let elapsed = now.since(self.pace.start).as_nanos();
         let index = elapsed.div_ceil(self.pace.period.as_nanos().max(1));

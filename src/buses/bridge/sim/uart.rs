@@ -1,4 +1,5 @@
-//! The adapter's serial line with its device. Chosen here: the time-out counts from the end of sending.
+//! The serial line of the adapter with its device. An assumption of this implementation: the time-out starts when
+//! sending ends.
 
 use std::time::Duration;
 
@@ -6,7 +7,6 @@ use super::attached::SerialDevice;
 use crate::buses::bridge::protocol::MAX_BODY;
 use crate::units::{Baud, CharacterFormat, Moment, Parity};
 
-/// Line with its settings.
 #[derive(Clone)]
 pub(super) struct Uart {
     line: Box<dyn SerialDevice>,

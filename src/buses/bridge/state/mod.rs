@@ -1,4 +1,4 @@
-//! Texts of an adapter's messages and errors, for any bus behind it.
+//! Texts for messages and errors of an adapter, for any bus behind it.
 
 mod error;
 mod texts;

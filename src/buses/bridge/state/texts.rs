@@ -1,4 +1,4 @@
-//! The texts of the adapter.
+//! Text catalogue of the adapter.
 
 use crate::app::Catalogue;
 

@@ -1,4 +1,4 @@
-//! Texts of the traffic to an adapter, for any bus behind it.
+//! Descriptions of the traffic to an adapter, for any bus behind it.
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};

@@ -1,4 +1,4 @@
-//! CIP messages as text: requests, replies, opened and closed connections.
+//! Descriptions of CIP messages: requests, replies, opened and closed connections.
 
 use super::Device;
 use crate::bits::hex;

@@ -1,4 +1,5 @@
-//! `decode ethernet-ip`: explains frames, cyclic packets and CIP messages, offline. Their kind is determined by trying.
+//! `decode ethernet-ip`: explains frames, cyclic packets and CIP messages offline, and detects which of them the input
+//! is.
 
 mod cip;
 
@@ -16,7 +17,6 @@ use crate::cli::output::{Output, count};
 
 pub(crate) struct DecodedBytes {
     pub(crate) lines: Vec<String>,
-    /// Further keys for a script.
     pub(crate) more: Map<String, Json>,
     /// Process data of a cyclic packet, with whether they go to the target.
     pub(crate) data: Option<(Vec<u8>, bool)>,
@@ -25,7 +25,6 @@ pub(crate) struct DecodedBytes {
 /// Returns the name of an attribute of a class and its value, or why there is none.
 pub(crate) type AttributeWords = fn(u16, u16, &[u8]) -> Option<(String, std::result::Result<String, String>)>;
 
-/// Device of the packets.
 #[derive(Clone, Copy)]
 pub(crate) enum Device {
     Any,
@@ -35,7 +34,6 @@ pub(crate) enum Device {
 
 const NEITHER: &str = "no frame, no cyclic packet and no CIP message of EtherNet/IP";
 
-/// EtherNet/IP of any device.
 pub(crate) struct EthernetIpDecoder;
 
 impl ProtocolDecoder for EthernetIpDecoder {

@@ -1,4 +1,4 @@
-//! Decides which packets of a cyclic connection count: none twice, and none overtaken by a newer one.
+//! Filtering of cyclic packets: duplicates and packets overtaken by newer ones are dropped.
 
 /// The packets received on one connection.
 #[derive(Clone, Copy, Debug, Default)]
@@ -8,20 +8,20 @@ pub struct Arrivals {
     stale: u64,
 }
 
-/// The verdict on a packet.
+/// The verdict on a received packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
-    /// With its data count.
+    /// The packet is new.
     New {
-        /// Packets before it that have not come (they may still, and are stale then).
+        /// Number of preceding packets that have not arrived. They may still arrive, and are stale then.
         missing: u32,
     },
-    /// Newer ones, or itself, have come before.
+    /// The packet, or a newer one, has already been received.
     Stale,
 }
 
 impl Arrivals {
-    /// Takes the sequence number of a packet. Numbers wrap: a newer one is less than half of them ahead.
+    /// Classifies a packet by its sequence number. Numbers wrap: a newer one is ahead by less than half of their range.
     pub fn take(&mut self, sequence: u32) -> Arrival {
         let ahead = match self.newest {
             None => 1,
@@ -37,12 +37,12 @@ impl Arrivals {
         Arrival::New { missing }
     }
 
-    /// Packets that did not come, or too late.
+    /// Returns the number of packets that did not arrive, or arrived too late.
     pub const fn lost(&self) -> u64 {
         self.lost
     }
 
-    /// Packets that did not count.
+    /// Returns the number of stale packets.
     pub const fn stale(&self) -> u64 {
         self.stale
     }

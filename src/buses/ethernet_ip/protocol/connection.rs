@@ -1,62 +1,62 @@
-//! The fields with which a connection is requested (reference 7; bits as by ODVA, `P`).
+//! Fields of a connection request (reference 7; bit layout by ODVA, `P`).
 
 use std::time::Duration;
 
-/// 16 bits that describe one direction. Unknown bits are kept.
+/// The 16 bits that describe one direction of a connection. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct NetworkParameters(u16);
 
-/// Bits 14 and 13.
+/// Type of connection, bits 14 and 13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum NetworkType {
     /// 0: no data in this direction.
     Null,
     /// 1: to all listeners.
     Multicast,
-    /// 2: to the other side only.
+    /// 2: to the other node only.
     PointToPoint,
     /// 3: reserved.
     Reserved,
 }
 
-/// Bits 11 and 10.
+/// Priority, bits 11 and 10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum NetworkPriority {
-    /// 0.
+    /// 0: low.
     Low,
-    /// 1.
+    /// 1: high.
     High,
-    /// 2: used for cyclic data.
+    /// 2: scheduled, used for cyclic data.
     Scheduled,
-    /// 3.
+    /// 3: urgent.
     Urgent,
 }
 
-/// Byte that defines when data are sent, and by which side.
+/// Transport class and trigger: when data are produced, and by which node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Transport(u8);
 
-/// Bits 6 to 4 of it.
+/// Trigger, bits 6 to 4 of [`Transport`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Trigger {
-    /// 0: at an interval.
+    /// 0: cyclic.
     Cyclic,
-    /// 1: on a change.
+    /// 1: on a change of state.
     ChangeOfState,
-    /// 2: on request of the application.
+    /// 2: by the application.
     Application,
-    /// Another number.
+    /// A reserved value.
     Unknown(u8),
 }
 
-/// Number of intervals without data after which a connection ends: 4 · 2ⁿ.
+/// Connection time-out multiplier: the connection ends after 4 · 2ⁿ intervals without data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ConnectionTimeout(u8);
 
-/// Time-out of a request: two bytes, priority with the length of a tick, and ticks.
+/// Time-out of a request in two bytes: priority and tick length, and number of ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RequestTimeout {
-    /// Bits 3 to 0: a tick is 2ⁿ milliseconds; the others are kept.
+    /// Bits 3 to 0: exponent n of the tick length, 2ⁿ milliseconds; other bits are preserved.
     pub priority_and_tick: u8,
     /// Number of ticks.
     pub ticks: u8,
@@ -67,11 +67,11 @@ const VARIABLE: u16 = 1 << 9;
 const SIZE: u16 = 0x01FF;
 
 impl NetworkParameters {
-    /// The most bytes that a connection may have.
+    /// Maximum connection size in bytes.
     pub const MOST: u16 = SIZE;
 
-    /// Creates the parameters of a connection of fixed size with one owner; `None` beyond 511 bytes. The size includes
-    /// the sequence count and the run/idle header.
+    /// Creates the parameters of an exclusive-owner connection with a fixed size, or `None` beyond 511 bytes. The size
+    /// includes the sequence count and the run/idle header.
     pub const fn new(kind: NetworkType, priority: NetworkPriority, size: u16) -> Option<Self> {
         let kind = match kind {
             NetworkType::Null => 0,
@@ -98,7 +98,7 @@ impl NetworkParameters {
         self.0
     }
 
-    /// Returns the type of the connection: point-to-point, multicast or null.
+    /// Returns the connection type.
     pub const fn kind(self) -> NetworkType {
         match self.0 >> 13 & 3 {
             0 => NetworkType::Null,
@@ -108,7 +108,7 @@ impl NetworkParameters {
         }
     }
 
-    /// Returns the priority.
+    /// Returns the priority of the connection.
     pub const fn priority(self) -> NetworkPriority {
         match self.0 >> 10 & 3 {
             0 => NetworkPriority::Low,
@@ -118,12 +118,12 @@ impl NetworkParameters {
         }
     }
 
-    /// Returns the number of bytes, with sequence count and run/idle header.
+    /// Returns the connection size in bytes, including the sequence count and the run/idle header.
     pub const fn size(self) -> u16 {
         self.0 & SIZE
     }
 
-    /// Returns whether less data than the size may be sent.
+    /// Returns whether less data than the connection size may be sent.
     pub const fn is_variable(self) -> bool {
         self.0 & VARIABLE != 0
     }
@@ -135,7 +135,7 @@ impl NetworkParameters {
 }
 
 impl Transport {
-    /// Class 1, cyclic, as a client: used for cyclic data.
+    /// Class 1, cyclic, client: used for cyclic data.
     pub const CYCLIC: Transport = Transport(0x01);
 
     /// Parses the byte.
@@ -148,12 +148,12 @@ impl Transport {
         self.0
     }
 
-    /// Returns 1: data with a count and without a reply; 3: messages.
+    /// Returns the transport class: 1 for data with a sequence count and without a reply, 3 for messages.
     pub const fn class(self) -> u8 {
         self.0 & 0x0F
     }
 
-    /// Returns when data are sent.
+    /// Returns the trigger for producing data.
     pub const fn trigger(self) -> Trigger {
         match self.0 >> 4 & 7 {
             0 => Trigger::Cyclic,
@@ -163,7 +163,7 @@ impl Transport {
         }
     }
 
-    /// The one that is asked is the server.
+    /// Returns whether the target is the server.
     pub const fn server(self) -> bool {
         self.0 & 0x80 != 0
     }
@@ -173,17 +173,17 @@ impl ConnectionTimeout {
     /// The largest number: 512 intervals.
     const MOST: u8 = 7;
 
-    /// Returns the slot with this number; `None` beyond 7.
+    /// Creates the multiplier with this exponent, or `None` beyond 7.
     pub const fn new(number: u8) -> Option<Self> {
         if number <= ConnectionTimeout::MOST { Some(ConnectionTimeout(number)) } else { None }
     }
 
-    /// Returns the number to send.
+    /// Returns the exponent to send.
     pub const fn number(self) -> u8 {
         self.0
     }
 
-    /// Returns 4 to 512.
+    /// Returns the multiplier, 4 to 512 intervals.
     pub const fn intervals(self) -> u32 {
         4 << self.0
     }
@@ -198,7 +198,7 @@ impl RequestTimeout {
     /// 250 ticks of 8 ms: two seconds.
     pub const TWO_SECONDS: RequestTimeout = RequestTimeout { priority_and_tick: 3, ticks: 250 };
 
-    /// Returns the duration.
+    /// Returns the time-out as a duration.
     pub const fn duration(self) -> Duration {
         let tick_ms = 1u64 << (self.priority_and_tick & 0x0F);
         Duration::from_millis(tick_ms * self.ticks as u64)

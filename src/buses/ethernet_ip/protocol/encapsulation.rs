@@ -1,51 +1,51 @@
-//! The frame around every explicit message: command, session, status, context (reference 7).
+//! The encapsulation frame around every explicit message: command, session, status and context (reference 7).
 
 use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::items::{Item, Items};
 use super::status::EncapsulationStatus;
 
-/// The command of a frame. Unknown commands are kept.
+/// Command of a frame. Unknown commands are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Command(u16);
 
-/// A frame.
+/// An encapsulation frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// The command; the same in the reply.
+    /// Command, which the reply repeats.
     pub command: Command,
-    /// Given by the target with the reply to RegisterSession; 0 before and without one.
+    /// Session handle, assigned by the target in the RegisterSession reply; otherwise 0.
     pub session: u32,
-    /// 0 in a request.
+    /// Status; 0 in a request.
     pub status: EncapsulationStatus,
-    /// Chosen by the originator and repeated in the reply.
+    /// Sender context, chosen by the originator and repeated in the reply.
     pub context: [u8; 8],
-    /// 0.
+    /// Options; always 0.
     pub options: u32,
     /// The data after the header, at most [`Frame::MAX_DATA`] bytes: [`Frame::emit`] truncates longer data.
     pub data: Vec<u8>,
 }
 
-/// The content of a frame.
+/// Content of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// Empty: a list request, the end of a session, a refusal.
+    /// No data: a list request, the end of a session, or a refusal.
     Empty,
-    /// RegisterSession, both ways.
+    /// RegisterSession, request or reply.
     Register {
-        /// 1.
+        /// Protocol version, 1.
         version: u16,
-        /// 0.
+        /// Options, 0.
         options: u16,
     },
-    /// A list that was asked for.
+    /// The requested list.
     List(Items),
-    /// SendRRData and SendUnitData, both ways.
+    /// SendRRData or SendUnitData, request or reply.
     Data {
-        /// 0: CIP.
+        /// Interface handle, 0 for CIP.
         interface: u32,
-        /// Seconds; 0 if CIP has its own time-out.
+        /// Time-out in seconds; 0 if CIP has its own.
         timeout_s: u16,
-        /// Address and content.
+        /// Address item and data item.
         items: Items,
     },
     /// Data of an unknown command.
@@ -65,69 +65,68 @@ const NAMES: [(Command, &str); 8] = [
 ];
 
 impl Command {
-    /// Nothing is asked for.
+    /// No operation.
     pub const NOP: Command = Command(0x00);
     /// Requests the list of services.
     pub const LIST_SERVICES: Command = Command(0x04);
-    /// Requests the identity; also by broadcast.
+    /// Requests the identity; may be broadcast.
     pub const LIST_IDENTITY: Command = Command(0x63);
-    /// Requests the list of interfaces besides CIP.
+    /// Requests the list of interfaces other than CIP.
     pub const LIST_INTERFACES: Command = Command(0x64);
-    /// A session begins.
+    /// Opens a session.
     pub const REGISTER_SESSION: Command = Command(0x65);
-    /// A session ends.
+    /// Closes a session.
     pub const UNREGISTER_SESSION: Command = Command(0x66);
-    /// A request or a reply.
+    /// Carries an unconnected request or reply.
     pub const SEND_RR_DATA: Command = Command(0x6F);
-    /// A message of an explicit connection.
+    /// Carries a message of an explicit connection.
     pub const SEND_UNIT_DATA: Command = Command(0x70);
 
-    /// Creates it: any number is a command.
+    /// Creates a command from its code; every value is valid.
     pub const fn new(number: u16) -> Self {
         Command(number)
     }
 
-    /// Returns its number.
+    /// Returns the command code.
     pub const fn number(self) -> u16 {
         self.0
     }
 
-    /// Returns the name by ODVA; `None` for an unknown code.
+    /// Returns the name used by ODVA, or `None` for an unknown code.
     pub fn name(self) -> Option<&'static str> {
         NAMES.iter().find(|(command, _)| *command == self).map(|(_, name)| *name)
     }
 }
 
 impl Frame {
-    /// Bytes of the header.
+    /// Header length in bytes.
     pub const HEADER: usize = 24;
-    /// The most that may follow it.
+    /// Maximum length of the data in bytes.
     pub const MAX_DATA: usize = 65511;
-    /// The version of the protocol.
+    /// Protocol version.
     pub const VERSION: u16 = 1;
 
-    /// Creates a request outside of any session.
     fn request(command: Command, context: [u8; 8], body: &Body) -> Self {
         Frame { command, session: 0, status: EncapsulationStatus::OK, context, options: 0, data: body.emit() }
     }
 
-    /// Creates a request for the identity.
+    /// Creates an identity request.
     pub fn list_identity(context: [u8; 8]) -> Self {
         Frame::request(Command::LIST_IDENTITY, context, &Body::Empty)
     }
 
-    /// Creates the request that begins a session.
+    /// Creates the request that opens a session.
     pub fn register(context: [u8; 8]) -> Self {
         let body = Body::Register { version: Frame::VERSION, options: 0 };
         Frame::request(Command::REGISTER_SESSION, context, &body)
     }
 
-    /// Creates the frame that ends a session. There is no reply.
+    /// Creates the frame that closes a session. There is no reply.
     pub fn unregister(session: u32) -> Self {
         Frame { session, ..Frame::request(Command::UNREGISTER_SESSION, [0; 8], &Body::Empty) }
     }
 
-    /// Creates a CIP message in a session.
+    /// Creates a frame with an unconnected CIP message.
     pub fn unconnected(session: u32, context: [u8; 8], message: Vec<u8>) -> Self {
         let items = Items(vec![Item::Null, Item::UnconnectedData(message)]);
         Frame {
@@ -136,27 +135,27 @@ impl Frame {
         }
     }
 
-    /// Creates the reply to this frame, in its session.
+    /// Creates the reply to this frame in its session.
     pub fn reply(&self, body: &Body) -> Self {
         Frame { status: EncapsulationStatus::OK, options: 0, data: body.emit(), ..self.clone() }
     }
 
-    /// Creates a refusing reply.
+    /// Creates a reply that refuses the request.
     pub fn refusal(&self, status: EncapsulationStatus) -> Self {
         Frame { status, options: 0, data: Vec::new(), ..self.clone() }
     }
 
-    /// Returns whether this is the reply to that request: command and context are equal, and the session as well once
+    /// Returns whether this frame is the reply to `request`: command and context are equal, and so is the session once
     /// there is one.
     pub fn answers(&self, request: &Frame) -> bool {
         let session = request.session == 0 || request.session == self.session;
         self.command == request.command && self.context == request.context && session
     }
 
-    /// Returns the length of the frame that begins with these bytes; `None` if the header is incomplete.
+    /// Returns the length of the frame that begins with these bytes, or `None` if the header is incomplete.
     ///
     /// # Errors
-    /// [`PacketError::Value`]: longer than any frame.
+    /// [`PacketError::Value`] if the length exceeds the maximum.
     pub fn length(bytes: &[u8]) -> Result<Option<usize>, PacketError> {
         let Some(header) = bytes.first_chunk::<{ Frame::HEADER }>() else { return Ok(None) };
         let [_, _, low, high, ..] = header;
@@ -167,10 +166,10 @@ impl Frame {
         }
     }
 
-    /// Reads a whole frame.
+    /// Parses a complete frame.
     ///
     /// # Errors
-    /// [`PacketError`] if the bytes are not one frame.
+    /// [`PacketError`] if the bytes are not exactly one frame.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         Frame::length(bytes)?;
         let mut fields = Fields::new(WHAT, bytes);
@@ -184,7 +183,7 @@ impl Frame {
         fields.end(Frame { command, session, status, context, options, data })
     }
 
-    /// Returns its bytes.
+    /// Returns the frame as bytes.
     pub fn emit(&self) -> Vec<u8> {
         let data = self.data.get(..Frame::MAX_DATA).unwrap_or(&self.data);
         let mut bytes = Vec::with_capacity(Frame::HEADER + data.len());
@@ -199,10 +198,10 @@ impl Frame {
         bytes
     }
 
-    /// Parses the content.
+    /// Parses the data of the frame.
     ///
     /// # Errors
-    /// [`PacketError`] if the data do not belong to the command.
+    /// [`PacketError`] if the data do not match the command.
     pub fn body(&self) -> Result<Body, PacketError> {
         if self.data.is_empty() {
             return Ok(Body::Empty);
@@ -229,7 +228,7 @@ impl Frame {
 const WHAT: Structure = Structure::Encapsulation;
 
 impl Body {
-    /// Returns its bytes.
+    /// Returns the data as bytes.
     pub fn emit(&self) -> Vec<u8> {
         match self {
             Body::Empty => Vec::new(),
@@ -245,7 +244,7 @@ impl Body {
         }
     }
 
-    /// Returns the CIP message in it.
+    /// Returns the CIP message, if the data contain one.
     pub fn message(&self) -> Option<&[u8]> {
         match self {
             Body::Data { items, .. } => items.unconnected_data(),

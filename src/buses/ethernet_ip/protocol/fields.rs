@@ -1,6 +1,6 @@
-//! Packets field by field.
+//! Parsing and emitting packets field by field.
 
-/// A structure of EtherNet/IP.
+/// A structure of EtherNet/IP, named in errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "each has its English name")]
 pub enum Structure {
@@ -48,7 +48,7 @@ pub enum Structure {
     Path,
 }
 
-/// A field of a structure that not every value fits.
+/// A field with a restricted range of values, named in errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "each has its English name")]
 pub enum PacketField {
@@ -64,33 +64,33 @@ pub enum PacketField {
     TimeoutMultiplier,
 }
 
-/// Why bytes cannot be parsed.
+/// The reason why bytes cannot be parsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PacketError {
-    /// They end too early.
+    /// The bytes end prematurely.
     #[error("{what} is cut off after {got} bytes")]
     Short {
         /// The structure being parsed.
         what: Structure,
-        /// Bytes there were.
+        /// Number of bytes available.
         got: usize,
     },
-    /// Something is left.
+    /// Bytes remain after the structure.
     #[error("{what} has {left} extra bytes")]
     Long {
         /// The structure being parsed.
         what: Structure,
-        /// Bytes left over.
+        /// Number of remaining bytes.
         left: usize,
     },
-    /// A value that its field cannot have.
+    /// The value of a field is invalid.
     #[error("{what}: {field} cannot be 0x{got:X}")]
     Value {
         /// The structure being parsed.
         what: Structure,
         /// Name of the field.
         field: PacketField,
-        /// The value.
+        /// Received value.
         got: u32,
     },
 }

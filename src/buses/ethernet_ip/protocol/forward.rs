@@ -1,5 +1,5 @@
-//! ForwardOpen and ForwardClose: opening and closing a cyclic connection (reference 7). The target chooses the number of
-//! the packets to it, the originator of those from it.
+//! ForwardOpen and ForwardClose: opening and closing a cyclic connection (reference 7). The target chooses the
+//! connection id of packets sent to it, the originator that of packets from the target.
 
 use std::time::Duration;
 
@@ -8,87 +8,87 @@ use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::message::{Reply, Request, Service};
 use super::path::Path;
 
-/// Identifies a connection and its originator: the same in every message about it.
+/// Identification of a connection and its originator, repeated in every message about the connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Owner {
-    /// Chosen by the originator, another for each connection.
+    /// Connection serial number, chosen by the originator and unique to each connection.
     pub connection_serial: u16,
-    /// The originator's maker.
+    /// Vendor ID of the originator.
     pub vendor: u16,
-    /// The originator's serial number.
+    /// Serial number of the originator.
     pub serial_number: u32,
 }
 
-/// A connection is asked for.
+/// A request to open a connection.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ForwardOpen {
     /// Time-out of the request.
     pub timeout: RequestTimeout,
-    /// 0: the target chooses.
+    /// Requested connection id; 0 leaves the choice to the target.
     pub to_target_id: u32,
     /// Connection id of packets to the originator.
     pub to_originator_id: u32,
     /// The originator and the connection.
     pub owner: Owner,
-    /// Time without data after which it ends.
+    /// Time without data after which the connection ends.
     pub connection_timeout: ConnectionTimeout,
-    /// Microseconds between two packets to the target.
+    /// Requested interval of packets to the target, in microseconds.
     pub to_target_interval_us: u32,
     /// Parameters towards the target.
     pub to_target: NetworkParameters,
-    /// Microseconds between two packets to the originator.
+    /// Requested interval of packets to the originator, in microseconds.
     pub to_originator_interval_us: u32,
     /// Parameters towards the originator.
     pub to_originator: NetworkParameters,
-    /// When data are sent.
+    /// Transport class and trigger.
     pub transport: Transport,
-    /// The assemblies.
+    /// Path to the assemblies.
     pub path: Path,
 }
 
-/// A connection has begun.
+/// A successful reply to ForwardOpen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ForwardOpened {
     /// Connection id of packets to the target.
     pub to_target_id: u32,
     /// Connection id of packets to the originator.
     pub to_originator_id: u32,
-    /// Whose connection it is.
+    /// Owner of the connection.
     pub owner: Owner,
-    /// Microseconds between two packets to the target, as they are expected.
+    /// Actual interval of packets to the target, in microseconds.
     pub to_target_interval_us: u32,
-    /// Microseconds between two packets to the originator, as they will come.
+    /// Actual interval of packets to the originator, in microseconds.
     pub to_originator_interval_us: u32,
-    /// Data of the application.
+    /// Application data.
     pub application: Vec<u16>,
 }
 
-/// A connection was not opened, or not closed; the status of the reply tells why.
+/// A refusal to open or close a connection. The status of the reply gives the reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForwardRefused {
     /// Owner of the connection.
     pub owner: Owner,
-    /// Words of the path that remained at the error.
+    /// Number of path words that remained unprocessed when the error occurred.
     pub remaining_path_words: u8,
 }
 
-/// A connection is to end.
+/// A request to close a connection.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ForwardClose {
     /// Time-out of the request.
     pub timeout: RequestTimeout,
-    /// Whose connection it is.
+    /// Owner of the connection.
     pub owner: Owner,
-    /// The assemblies.
+    /// Path to the assemblies.
     pub path: Path,
 }
 
-/// A connection has ended.
+/// A successful reply to ForwardClose.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ForwardClosed {
-    /// Whose connection it was.
+    /// Owner of the connection.
     pub owner: Owner,
-    /// Data of the application.
+    /// Application data.
     pub application: Vec<u16>,
 }
 
@@ -110,7 +110,7 @@ impl RequestTimeout {
 }
 
 impl ForwardOpen {
-    /// Returns how long the target waits for data before it ends the connection.
+    /// Returns the time without data after which the target ends the connection.
     pub fn to_target_timeout(&self) -> Duration {
         self.connection_timeout.after(Duration::from_micros(self.to_target_interval_us.into()))
     }
@@ -150,7 +150,7 @@ impl ForwardOpen {
         })
     }
 
-    /// Returns the request.
+    /// Builds the CIP request.
     pub fn request(&self) -> Request {
         let mut data = vec![self.timeout.priority_and_tick, self.timeout.ticks];
         data.extend([self.to_target_id, self.to_originator_id].into_iter().flat_map(u32::to_le_bytes));
@@ -167,10 +167,10 @@ impl ForwardOpen {
 }
 
 impl ForwardOpened {
-    /// Reads the data of the reply.
+    /// Parses the data of the reply.
     ///
     /// # Errors
-    /// [`PacketError`] if they are incomplete or too long.
+    /// [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ForwardOpenReply, data);
         let (to_target_id, to_originator_id) = (fields.u32()?, fields.u32()?);
@@ -201,10 +201,10 @@ impl ForwardOpened {
 }
 
 impl ForwardRefused {
-    /// Parses the data of a refusing reply.
+    /// Parses the data of a refusal; many devices send none.
     ///
     /// # Errors
-    /// [`PacketError`] if they are incomplete or too long; many devices send none.
+    /// [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::Refusal, data);
         let owner = Owner::take(&mut fields)?;
@@ -222,7 +222,7 @@ impl ForwardRefused {
         data
     }
 
-    /// Returns the reply to `request` with an extended status.
+    /// Builds the reply to `request` with an extended status.
     pub fn reply(&self, request: &Request, extended: u16) -> Reply {
         Reply {
             extended: vec![extended],
@@ -248,7 +248,7 @@ impl ForwardClose {
         fields.end(ForwardClose { timeout, owner, path })
     }
 
-    /// Returns the request.
+    /// Builds the CIP request.
     pub fn request(&self) -> Request {
         let mut data = vec![self.timeout.priority_and_tick, self.timeout.ticks];
         self.owner.push_to(&mut data);
@@ -262,10 +262,10 @@ impl ForwardClose {
 }
 
 impl ForwardClosed {
-    /// Reads the data of the reply.
+    /// Parses the data of the reply.
     ///
     /// # Errors
-    /// [`PacketError`] if they are incomplete or too long.
+    /// [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ForwardCloseReply, data);
         let owner = Owner::take(&mut fields)?;

@@ -1,12 +1,12 @@
-//! The identity of a device: the identity object (class 1) and the item of the ListIdentity reply (`P ODVA`).
+//! Device identity: the identity object (class 1) and the item of the ListIdentity reply (`P ODVA`).
 
 use super::fields::{Fields, PacketError, Structure, push_short_text, text};
 use super::items::SocketAddress;
 
-/// The identity object, attributes 1 to 7.
+/// Attributes 1 to 7 of the identity object.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// Vendor ID by ODVA's list. Halstrup-Walcher is 1010.
+    /// Vendor ID in ODVA's list. Halstrup-Walcher is 1010.
     pub vendor: u16,
     /// Device type.
     pub device_type: u16,
@@ -14,54 +14,54 @@ pub struct Identity {
     pub product_code: u16,
     /// Revision of the device.
     pub revision: Revision,
-    /// The device's state bit by bit.
+    /// Status word of the device.
     pub status: u16,
-    /// Different for every device of a maker.
+    /// Serial number, unique among the devices of a vendor.
     pub serial_number: u32,
-    /// Up to 32 ASCII characters.
+    /// Product name, up to 32 ASCII characters.
     pub product_name: String,
 }
 
 /// Major and minor revision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Revision {
-    /// Major.
+    /// Major revision.
     pub major: u8,
-    /// Minor.
+    /// Minor revision.
     pub minor: u8,
 }
 
-/// Item 000Ch.
+/// Identity item, type 000Ch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IdentityItem {
-    /// The version of the encapsulation protocol: 1.
+    /// Version of the encapsulation protocol: 1.
     pub version: u16,
     /// Address for explicit messages.
     pub socket: SocketAddress,
-    /// The identity.
+    /// Identity of the device.
     pub identity: Identity,
-    /// Attribute 8: 3 is operational, 255 unknown.
+    /// Device state, attribute 8: 3 is operational, 255 unknown.
     pub state: u8,
 }
 
 impl Identity {
-    /// The class of the object.
+    /// Class code of the identity object.
     pub const CLASS: u16 = 0x01;
 
-    /// Parses its part of a Get_Attributes_All reply: attributes 1 to 7, and anything that a device appends.
+    /// Parses attributes 1 to 7 of a Get_Attributes_All reply; ignores attributes that a device appends.
     ///
     /// # Errors
-    /// [`PacketError`] if they are incomplete.
+    /// [`PacketError`] if the attributes are incomplete.
     pub fn parse_all(bytes: &[u8]) -> Result<Self, PacketError> {
         Identity::take(&mut Fields::new(Structure::IdentityObject, bytes))
     }
 
-    /// Attributes 1 to 7, as Get_Attributes_All has them.
+    /// Returns attributes 1 to 7 in the format of Get_Attributes_All.
     pub fn emit_all(&self) -> Vec<u8> {
         (1..=7).filter_map(|attribute| self.attribute(attribute)).flatten().collect()
     }
 
-    /// Returns an attribute as in a Get_Attribute_Single reply; `None` if it does not exist.
+    /// Returns an attribute in the format of Get_Attribute_Single, or `None` if it does not exist.
     pub fn attribute(&self, number: u16) -> Option<Vec<u8>> {
         let bytes = match number {
             1 => self.vendor.to_le_bytes().to_vec(),

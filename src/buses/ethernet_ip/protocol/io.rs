@@ -1,40 +1,40 @@
-//! Packets of a cyclic connection of class 1, over UDP (reference 7).
+//! Cyclic packets of a class 1 connection over UDP (reference 7).
 
 use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::items::{Item, Items};
 
-/// A packet.
+/// A cyclic packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IoPacket {
-    /// Connection number chosen by its receiver.
+    /// Connection id, chosen by the receiver.
     pub connection: u32,
-    /// Higher by one with every packet.
+    /// Sequence number, incremented with every packet.
     pub sequence: u32,
-    /// Incremented with new data (`U`: with every packet).
+    /// Data sequence count, incremented with new data (`U`: with every packet).
     pub count: u16,
-    /// Before the data, in packets that have one.
+    /// Run/idle header, if the format has one.
     pub header: Option<RunIdle>,
     /// Process data.
     pub data: Vec<u8>,
 }
 
-/// The header before the data, as the device's EDS defines it (`U`: a header to the target, none back).
+/// Header in front of the data, as defined by the EDS of the device (`U`: a header towards the target, none from it).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RealTimeFormat {
-    /// 32 bits.
+    /// The 32-bit run/idle header.
     Header,
-    /// Nothing.
+    /// No header.
     Modeless,
 }
 
-/// 32 bits before the data; unknown ones are kept.
+/// The 32-bit run/idle header; unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RunIdle(u32);
 
 impl RunIdle {
     /// Bit 0 is set: the data are valid.
     pub const RUN: RunIdle = RunIdle(1);
-    /// Bit 0 is clear: the program of the sender does not run, and its data are not valid.
+    /// Bit 0 is clear: the application of the sender is not running, and the data are not valid.
     pub const IDLE: RunIdle = RunIdle(0);
 
     /// Parses the word.
@@ -47,14 +47,15 @@ impl RunIdle {
         self.0
     }
 
-    /// Returns whether the data count.
+    /// Returns whether the data are valid.
     pub const fn runs(self) -> bool {
         self.0 & 1 == 1
     }
 }
 
 impl IoPacket {
-    /// Returns the bytes that a connection's size includes besides the data: the sequence count, and the header.
+    /// Returns the number of bytes that a connection size includes in addition to the data: the sequence count and the
+    /// header.
     pub const fn overhead(format: RealTimeFormat) -> u16 {
         match format {
             RealTimeFormat::Header => 6,
@@ -62,10 +63,10 @@ impl IoPacket {
         }
     }
 
-    /// Parses a packet. It may also contain socket addresses.
+    /// Parses a packet, which may also contain socket addresses.
     ///
     /// # Errors
-    /// [`PacketError`] if it is not a sequenced address and connected data, or incomplete.
+    /// [`PacketError`] if the packet is incomplete or does not consist of a sequenced address and connected data.
     pub fn parse(bytes: &[u8], format: RealTimeFormat) -> Result<Self, PacketError> {
         const WHAT: Structure = Structure::CyclicPacket;
         let items = Items::parse(bytes)?;
@@ -85,7 +86,7 @@ impl IoPacket {
         Ok(IoPacket { connection, sequence, count, header, data: fields.tail().to_vec() })
     }
 
-    /// Returns its bytes.
+    /// Returns the packet as bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut data = self.count.to_le_bytes().to_vec();
         data.extend(self.header.iter().flat_map(|header| header.0.to_le_bytes()));

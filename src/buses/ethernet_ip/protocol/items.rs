@@ -1,15 +1,15 @@
-//! The common packet format: a list of items, each with its type and length (reference 7).
+//! Common packet format: a list of items, each with its type and length (reference 7).
 
 use core::net::Ipv4Addr;
 
 use super::fields::{Fields, PacketError, Structure};
 use super::identity::IdentityItem;
 
-/// List of items. An address precedes its data.
+/// A list of items. An address precedes its data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Items(pub Vec<Item>);
 
-/// Item. Unknown types are kept.
+/// An item. Unknown types are preserved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Item {
     /// 0000h: the address of an unconnected message.
@@ -28,28 +28,28 @@ pub enum Item {
     SocketToOriginator(SocketAddress),
     /// 8002h: the address of cyclic data.
     SequencedAddress {
-        /// Connection number chosen by its receiver.
+        /// Connection id, chosen by the receiver.
         connection: u32,
-        /// Incremented with every packet, even if its data are old.
+        /// Sequence number, incremented with every packet even if the data have not changed.
         sequence: u32,
     },
-    /// Another type.
+    /// An item of unknown type.
     Unknown {
-        /// Its number.
+        /// Type code.
         kind: u16,
-        /// As received.
+        /// Data as received.
         data: Vec<u8>,
     },
 }
 
-/// A socket address, in the order of the network.
+/// A socket address in network byte order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SocketAddress {
-    /// 2: IP, version 4.
+    /// Address family; 2 is IPv4.
     pub family: u16,
-    /// Its port.
+    /// Port number.
     pub port: u16,
-    /// Its address; 0.0.0.0 for the sender of the frame.
+    /// IPv4 address; 0.0.0.0 stands for the sender of the frame.
     pub address: Ipv4Addr,
 }
 
@@ -63,10 +63,10 @@ const SOCKET_TO_ORIGINATOR: u16 = 0x8001;
 const SEQUENCED_ADDRESS: u16 = 0x8002;
 
 impl Items {
-    /// Reads a list that fills the bytes.
+    /// Parses a list that fills the bytes.
     ///
     /// # Errors
-    /// [`PacketError`] if an item is incomplete, does not have its type's length, or bytes remain.
+    /// [`PacketError`] if an item is incomplete or has the wrong length for its type, or if bytes remain.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::Items, bytes);
         let count = fields.u16()?;
@@ -78,7 +78,7 @@ impl Items {
         fields.end(Items(items))
     }
 
-    /// Returns the bytes. An item is truncated at 65535 bytes.
+    /// Returns the list as bytes. Items longer than 65535 bytes are truncated.
     pub fn emit(&self) -> Vec<u8> {
         let most = usize::from(u16::MAX);
         // A frame has fewer than that many.
@@ -93,7 +93,7 @@ impl Items {
         bytes
     }
 
-    /// Returns the CIP message in it.
+    /// Returns the unconnected CIP message, if the list contains one.
     pub fn unconnected_data(&self) -> Option<&[u8]> {
         self.0.iter().find_map(|item| match item {
             Item::UnconnectedData(data) => Some(data.as_slice()),
@@ -101,7 +101,7 @@ impl Items {
         })
     }
 
-    /// Returns the address for data to the target.
+    /// Returns the socket address for data to the target.
     pub fn socket_to_target(&self) -> Option<SocketAddress> {
         self.0.iter().find_map(|item| match item {
             Item::SocketToTarget(address) => Some(*address),
@@ -109,7 +109,7 @@ impl Items {
         })
     }
 
-    /// Returns the address for data to the originator.
+    /// Returns the socket address for data to the originator.
     pub fn socket_to_originator(&self) -> Option<SocketAddress> {
         self.0.iter().find_map(|item| match item {
             Item::SocketToOriginator(address) => Some(*address),
@@ -168,11 +168,11 @@ impl Item {
 }
 
 impl SocketAddress {
-    /// The family of IP, version 4.
+    /// Address family of IPv4.
     pub const INTERNET: u16 = 2;
     pub(super) const LENGTH: usize = 16;
 
-    /// Creates an address of IP, version 4.
+    /// Creates an IPv4 address.
     pub const fn new(address: Ipv4Addr, port: u16) -> Self {
         SocketAddress { family: SocketAddress::INTERNET, port, address }
     }

@@ -1,34 +1,34 @@
-//! CIP requests and their replies (reference 7).
+//! CIP requests and replies (reference 7).
 
 use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::path::{LogicalKind, Path};
 use super::status::GeneralStatus;
 
-/// The service requested of an object. Unknown services are kept.
+/// The service of a request. Unknown services are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Service(u8);
 
-/// A request.
+/// A CIP request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Request {
     /// The service.
     pub service: Service,
-    /// Path of the object.
+    /// Path to the object.
     pub path: Path,
-    /// Data of the service.
+    /// Service data.
     pub data: Vec<u8>,
 }
 
-/// A reply.
+/// A CIP reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reply {
     /// The service requested.
     pub service: Service,
-    /// The status.
+    /// General status.
     pub status: GeneralStatus,
-    /// Further words, defined by the service; up to 255.
+    /// Extended status words, defined by the service; at most 255.
     pub extended: Vec<u16>,
-    /// Data of the reply.
+    /// Reply data.
     pub data: Vec<u8>,
 }
 
@@ -58,7 +58,7 @@ const CLASSES: [(u16, &str); 6] = [
     (0xF6, "Ethernet link"),
 ];
 
-/// Returns the name of a class; `None` if it is unknown, such as a manufacturer's own.
+/// Returns the name of a class, or `None` if it is unknown or vendor-specific.
 pub fn class_name(class: u16) -> Option<&'static str> {
     CLASSES.iter().find(|(number, _)| *number == class).map(|(_, name)| *name)
 }
@@ -68,30 +68,30 @@ impl Service {
     pub const GET_ALL: Service = Service(0x01);
     /// Sets all attributes.
     pub const SET_ALL: Service = Service(0x02);
-    /// Restarts the device.
+    /// Resets the device.
     pub const RESET: Service = Service(0x05);
-    /// An attribute is read.
+    /// Reads one attribute.
     pub const GET: Service = Service(0x0E);
-    /// An attribute is set.
+    /// Sets one attribute.
     pub const SET: Service = Service(0x10);
-    /// Of the connection manager: closes a connection.
+    /// Closes a connection (service of the connection manager).
     pub const FORWARD_CLOSE: Service = Service(0x4E);
-    /// Of the connection manager: opens a connection.
+    /// Opens a connection (service of the connection manager).
     pub const FORWARD_OPEN: Service = Service(0x54);
 
     const REPLY_BIT: u8 = 0x80;
 
-    /// Returns the service; `None` from 80h on, where replies begin.
+    /// Returns the service with this code, or `None` from 80h on, where replies begin.
     pub const fn new(code: u8) -> Option<Self> {
         if code < Service::REPLY_BIT { Some(Service(code)) } else { None }
     }
 
-    /// Returns its number in a request.
+    /// Returns the service code of a request.
     pub const fn code(self) -> u8 {
         self.0
     }
 
-    /// Returns the name by ODVA. From 4Bh on a number has a different meaning in each class; only those of the
+    /// Returns the name used by ODVA. From 4Bh on, the meaning of a code depends on the class; only those of the
     /// connection manager are known.
     pub fn name(self, class: Option<u16>) -> Option<&'static str> {
         let connections = class.is_none_or(|class| class == Request::CONNECTION_MANAGER).then_some(&CONNECTION_NAMES);
@@ -101,15 +101,15 @@ impl Service {
 }
 
 impl Request {
-    /// The class of the connection manager.
+    /// Class code of the connection manager.
     pub const CONNECTION_MANAGER: u16 = 0x06;
 
-    /// Creates the request to read an attribute.
+    /// Creates a request to read an attribute.
     pub fn get(class: u16, instance: u16, attribute: u16) -> Self {
         Request { service: Service::GET, path: Path::attribute(class, instance, attribute), data: Vec::new() }
     }
 
-    /// Creates the request to set an attribute.
+    /// Creates a request to set an attribute.
     pub fn set(class: u16, instance: u16, attribute: u16, data: Vec<u8>) -> Self {
         Request { service: Service::SET, path: Path::attribute(class, instance, attribute), data }
     }
@@ -119,20 +119,19 @@ impl Request {
         Request { service: Service::GET_ALL, path: Path::instance(class, instance), data: Vec::new() }
     }
 
-    /// Creates a request to the connection manager.
     pub(super) fn of_connections(service: Service, data: Vec<u8>) -> Self {
         Request { service, path: Path::instance(Request::CONNECTION_MANAGER, 1), data }
     }
 
-    /// Returns the class that provides the service.
+    /// Returns the class to which the request is addressed.
     pub fn class(&self) -> Option<u16> {
         self.path.number(LogicalKind::Class)
     }
 
-    /// Reads a request.
+    /// Parses a request.
     ///
     /// # Errors
-    /// [`PacketError`] if it is a reply, or its path is incomplete.
+    /// [`PacketError`] if the bytes are a reply, or the path is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::CipRequest, bytes);
         let code = fields.u8()?;
@@ -141,7 +140,7 @@ impl Request {
         Ok(Request { service, path, data: fields.tail().to_vec() })
     }
 
-    /// Returns its bytes.
+    /// Returns the request as bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = vec![self.service.0];
         self.path.push_to(&mut bytes);
@@ -149,22 +148,22 @@ impl Request {
         bytes
     }
 
-    /// Returns the reply for success.
+    /// Creates a successful reply.
     pub fn done(&self, data: Vec<u8>) -> Reply {
         Reply { service: self.service, status: GeneralStatus::OK, extended: Vec::new(), data }
     }
 
-    /// Returns the reply for a failure.
+    /// Creates a reply that refuses the request.
     pub fn refused(&self, status: GeneralStatus) -> Reply {
         Reply { service: self.service, status, extended: Vec::new(), data: Vec::new() }
     }
 }
 
 impl Reply {
-    /// Reads a reply.
+    /// Parses a reply.
     ///
     /// # Errors
-    /// [`PacketError`] if it is a request, or is incomplete.
+    /// [`PacketError`] if the bytes are a request, or are incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::CipReply, bytes);
         let code = fields.u8()?;
@@ -177,7 +176,7 @@ impl Reply {
         Ok(Reply { service: Service(service), status, extended, data: fields.tail().to_vec() })
     }
 
-    /// Returns the bytes, with at most 255 words of extended status.
+    /// Returns the reply as bytes, with at most 255 words of extended status.
     pub fn emit(&self) -> Vec<u8> {
         let extended = self.extended.get(..usize::from(u8::MAX)).unwrap_or(&self.extended);
         // At most 255.

@@ -1,8 +1,8 @@
-//! EtherNet/IP: encapsulation, common packet format and CIP messages, as far as a plain adapter with one cyclic connection
-//! needs them. Both sides; what is unknown is kept.
+//! EtherNet/IP: encapsulation, common packet format and CIP messages, as far as an adapter with one cyclic connection
+//! requires them. Covers both host and device; unknown values are preserved.
 //!
-//! Source: the project's reference of HIPERDRIVE, section 7, and ODVA's public parts of the CIP networks library as it quotes
-//! them (`P ODVA`). Integers have their low byte first, except in socket addresses.
+//! Source: section 7 of the project's HIPERDRIVE reference, and the public parts of ODVA's CIP networks library as
+//! quoted there (`P ODVA`). Integers are little-endian, except in socket addresses.
 //!
 //! ```text
 //! TCP  encapsulation header (24) │ interface, time-out │ items: null, unconnected data ( CIP request or reply )

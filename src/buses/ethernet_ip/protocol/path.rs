@@ -1,64 +1,63 @@
-//! The path of a CIP request: segments of class, instance, attribute and connection point, of 8 or 16 bits (reference
-//! 7).
+//! Path of a CIP request: segments for class, instance, attribute and connection point, of 8 or 16 bits (reference 7).
 
 use super::fields::{Fields, PacketError, PacketField, Structure};
 
-/// Path. Its segments fill whole words.
+/// A path, padded to whole words.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Path(pub Vec<Segment>);
 
-/// A part of a path.
+/// A segment of a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Segment {
-    /// A number.
+    /// A logical segment.
     Logical {
-        /// Kind of the object.
+        /// Kind of the segment.
         kind: LogicalKind,
-        /// The number.
+        /// Value of the segment.
         number: u16,
-        /// Width in which it is sent. A number above 255 is always sent wide.
+        /// Width in which the value is sent. Values above 255 always use the wide form.
         width: Width,
     },
-    /// 34h: the required device.
+    /// 34h: electronic key of the required device.
     Key(ElectronicKey),
-    /// 80h: words for the addressed object, up to 255.
+    /// 80h: data words for the addressed object, at most 255.
     Data(Vec<u16>),
-    /// An unknown segment with everything after it, as its end is not known.
+    /// An unknown segment together with all bytes after it, because its length is unknown.
     Unknown(Vec<u8>),
 }
 
 /// The kind of a logical segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LogicalKind {
-    /// 20h.
+    /// Class, 20h.
     Class,
-    /// 24h.
+    /// Instance, 24h.
     Instance,
-    /// 2Ch.
+    /// Connection point, 2Ch.
     ConnectionPoint,
-    /// 30h.
+    /// Attribute, 30h.
     Attribute,
 }
 
-/// The width in which a number is sent.
+/// Encoded width of a logical value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Width {
-    /// In the byte after the segment's type.
+    /// One byte after the segment type.
     Byte,
-    /// In a word after a byte that is 0.
+    /// A word after a padding byte.
     Word,
 }
 
-/// Values that a device is compared with before a connection is opened; 0 matches all.
+/// Electronic key, compared by the device before a connection is opened; 0 matches any value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElectronicKey {
-    /// As in the identity object.
+    /// Vendor ID, as in the identity object.
     pub vendor: u16,
-    /// As in the identity object.
+    /// Device type, as in the identity object.
     pub device_type: u16,
-    /// As in the identity object.
+    /// Product code, as in the identity object.
     pub product_code: u16,
-    /// Major revision; bit 7: a compatible one is accepted.
+    /// Major revision; bit 7 also accepts compatible revisions.
     pub major: u8,
     /// Minor revision.
     pub minor: u8,
@@ -76,19 +75,20 @@ const DATA: u8 = 0x80;
 const WHAT: Structure = Structure::Path;
 
 impl Path {
-    /// Creates an object.
+    /// Creates the path to an object instance.
     pub fn instance(class: u16, instance: u16) -> Self {
         Path(vec![Segment::new(LogicalKind::Class, class), Segment::new(LogicalKind::Instance, instance)])
     }
 
-    /// Creates an attribute of an object.
+    /// Creates the path to an attribute of an object instance.
     pub fn attribute(class: u16, instance: u16, attribute: u16) -> Self {
         let Path(mut segments) = Path::instance(class, instance);
         segments.push(Segment::new(LogicalKind::Attribute, attribute));
         Path(segments)
     }
 
-    /// Creates the path of the assemblies of a cyclic connection: configuration, from originator to target, and back.
+    /// Creates the path to the assemblies of a cyclic connection: configuration, originator to target, and target to
+    /// originator.
     pub fn assemblies(configuration: u16, to_target: u16, to_originator: u16) -> Self {
         const ASSEMBLY: u16 = 0x04;
         let Path(mut segments) = Path::instance(ASSEMBLY, configuration);
@@ -96,12 +96,12 @@ impl Path {
         Path(segments)
     }
 
-    /// Returns the first number of a kind.
+    /// Returns the first logical value of a kind.
     pub fn number(&self, wanted: LogicalKind) -> Option<u16> {
         self.numbers(wanted).next()
     }
 
-    /// Returns all numbers of a kind.
+    /// Returns all logical values of a kind.
     pub fn numbers(&self, wanted: LogicalKind) -> impl Iterator<Item = u16> {
         self.0.iter().filter_map(move |segment| match segment {
             Segment::Logical { kind, number, .. } if *kind == wanted => Some(*number),
@@ -109,7 +109,7 @@ impl Path {
         })
     }
 
-    /// Reads a path that fills the bytes.
+    /// Parses a path that fills the bytes.
     ///
     /// # Errors
     /// [`PacketError`] if a segment is incomplete.
@@ -122,12 +122,11 @@ impl Path {
         Ok(Path(segments))
     }
 
-    /// Returns its bytes.
+    /// Returns the path as bytes.
     pub fn emit(&self) -> Vec<u8> {
         self.0.iter().flat_map(Segment::emit).collect()
     }
 
-    /// Reads the length in words, then the path.
     pub(super) fn take(fields: &mut Fields<'_>) -> Result<Self, PacketError> {
         let words = fields.u8()?;
         Path::parse(fields.bytes(usize::from(words) * 2)?)
@@ -146,7 +145,7 @@ impl Path {
 }
 
 impl Segment {
-    /// Creates a number, as narrow as it can be sent.
+    /// Creates a logical segment in its shortest form.
     pub const fn new(kind: LogicalKind, number: u16) -> Self {
         let width = if number > 0xFF { Width::Word } else { Width::Byte };
         Segment::Logical { kind, number, width }

@@ -1,9 +1,9 @@
-//! Frames from the bytes of a TCP connection, in any portions.
+//! Frame reassembly from a TCP byte stream in arbitrary chunks.
 
 use super::encapsulation::Frame;
 use super::fields::PacketError;
 
-/// Bytes received that are not a whole frame yet.
+/// Received bytes that do not yet form a complete frame.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     bytes: Vec<u8>,
@@ -13,18 +13,18 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Takes the received bytes.
+    /// Appends received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         if self.broken.is_none() {
             self.bytes.extend(bytes);
         }
     }
 
-    /// Returns the next whole frame.
+    /// Returns the next complete frame.
     ///
     /// # Errors
-    /// [`PacketError`], from then on always: after a wrong header the start of the next one is not known, and the
-    /// connection must be closed.
+    /// [`PacketError`], also on all later calls: after an invalid header the start of the next frame is unknown, and
+    /// the connection must be closed.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, PacketError> {
         if let Some(why) = self.broken {
             return Err(why);
@@ -40,7 +40,8 @@ impl Receiver {
         std::mem::take(if self.rest.is_empty() { &mut self.bytes } else { &mut self.rest })
     }
 
-    /// Returns the bytes of an incomplete frame. If a connection ends with some, it was truncated.
+    /// Returns the number of bytes of an incomplete frame. If any remain when the connection ends, the frame was
+    /// truncated.
     pub const fn pending(&self) -> usize {
         self.bytes.len()
     }

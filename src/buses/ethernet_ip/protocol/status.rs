@@ -1,39 +1,39 @@
-//! The statuses of the two layers: encapsulation status, CIP general status, and the words that follow it when a
-//! connection was not opened (reference 7; names as in ODVA, `P`; remedies `U`).
+//! Status codes of both layers: encapsulation status, CIP general status, and the extended status of a connection that
+//! was not opened (reference 7; names by ODVA, `P`; remedies `U`).
 
 use std::fmt;
 
 use super::message::Service;
 
-/// Status of a frame. Unknown codes are kept.
+/// Encapsulation status. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EncapsulationStatus(u32);
 
-/// Status of a CIP reply. Unknown codes are kept.
+/// General status of a CIP reply. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct GeneralStatus(u8);
 
-/// A row of a table.
+/// A row of a status table.
 #[derive(Clone, Copy, Debug)]
 pub struct StatusRow<C> {
-    /// The code.
+    /// Status code.
     pub code: C,
-    /// The meaning.
+    /// Meaning of the code.
     pub meaning: &'static str,
-    /// The remedy.
+    /// Suggested remedy.
     pub remedy: &'static str,
 }
 
-/// A row of the table of extended status.
+/// A row of the extended status table.
 #[derive(Clone, Copy, Debug)]
 pub struct ExtendedStatusRow {
-    /// The general status that it follows.
+    /// General status with which the code occurs.
     pub general: GeneralStatus,
-    /// The first word after it.
+    /// Code in the first extended status word.
     pub code: u16,
-    /// The meaning.
+    /// Meaning of the code.
     pub meaning: &'static str,
-    /// The remedy.
+    /// Suggested remedy.
     pub remedy: &'static str,
 }
 
@@ -44,7 +44,7 @@ const fn row<C>(code: C, meaning: &'static str, remedy: &'static str) -> StatusR
 const AGAIN: &str = "try again; if the error returns, restart the device";
 const DEFECT: &str = "a defect of this program: report it with a trace";
 
-/// The statuses of a frame.
+/// Known encapsulation status codes.
 pub const ENCAPSULATION_STATUS: [StatusRow<EncapsulationStatus>; 7] = [
     row(EncapsulationStatus::OK, "success", "nothing"),
     row(EncapsulationStatus(0x01), "command not supported", "use another command"),
@@ -55,7 +55,7 @@ pub const ENCAPSULATION_STATUS: [StatusRow<EncapsulationStatus>; 7] = [
     row(EncapsulationStatus::VERSION, "version not supported", "the device uses another version of EtherNet/IP"),
 ];
 
-/// The statuses of a request.
+/// Known general status codes.
 pub const GENERAL_STATUS: [StatusRow<GeneralStatus>; 31] = [
     row(GeneralStatus::OK, "success", "nothing"),
     row(GeneralStatus::CONNECTION, "connection failure", "see the words that follow"),
@@ -97,7 +97,7 @@ const fn connection(code: u16, meaning: &'static str, remedy: &'static str) -> E
 const OTHER_MASTER: &str = "close the connection of the other master first";
 const SIZE: &str = "set parameter words and number of drives as in the device";
 
-/// Why a connection was not opened or closed.
+/// Known reasons for not opening or closing a connection.
 pub const EXTENDED_STATUS: [ExtendedStatusRow; 18] = [
     connection(0x0100, "connection already in use", "wait for its time-out, then connect again"),
     connection(0x0103, "transport class and trigger not supported", DEFECT),
@@ -124,72 +124,72 @@ pub const EXTENDED_STATUS: [ExtendedStatusRow; 18] = [
 ];
 
 impl EncapsulationStatus {
-    /// Done.
+    /// Success.
     pub const OK: EncapsulationStatus = EncapsulationStatus(0);
-    /// 01h: the device does not have the command.
+    /// 01h: the device does not support the command.
     pub const UNSUPPORTED: EncapsulationStatus = EncapsulationStatus(0x01);
     /// 03h: the data are invalid.
     pub const MALFORMED: EncapsulationStatus = EncapsulationStatus(0x03);
     /// 64h: the session is not registered.
     pub const NO_SESSION: EncapsulationStatus = EncapsulationStatus(0x64);
-    /// 69h: another version of the protocol.
+    /// 69h: the protocol version is not supported.
     pub const VERSION: EncapsulationStatus = EncapsulationStatus(0x69);
 
-    /// Creates it: any number is a status.
+    /// Creates a status from its code; every value is valid.
     pub const fn new(code: u32) -> Self {
         EncapsulationStatus(code)
     }
 
-    /// Returns its number.
+    /// Returns the status code.
     pub const fn code(self) -> u32 {
         self.0
     }
 
-    /// Returns the row; `None` for an unknown status.
+    /// Returns the table row of the status, or `None` if it is unknown.
     pub fn row(self) -> Option<&'static StatusRow<EncapsulationStatus>> {
         ENCAPSULATION_STATUS.iter().find(|row| row.code == self)
     }
 }
 
 impl GeneralStatus {
-    /// Done.
+    /// Success.
     pub const OK: GeneralStatus = GeneralStatus(0x00);
-    /// 01h: a connection was not opened or closed; the words after it tell why.
+    /// 01h: a connection was not opened or closed; the extended status gives the reason.
     pub const CONNECTION: GeneralStatus = GeneralStatus(0x01);
-    /// 05h: there is no such object.
+    /// 05h: the object does not exist.
     pub const PATH_UNKNOWN: GeneralStatus = GeneralStatus(0x05);
-    /// 08h: the object does not have the service.
+    /// 08h: the object does not support the service.
     pub const NO_SERVICE: GeneralStatus = GeneralStatus(0x08);
-    /// 09h: value out of range.
+    /// 09h: the attribute value is out of range.
     pub const INVALID_VALUE: GeneralStatus = GeneralStatus(0x09);
-    /// 0Ch: not in this state.
+    /// 0Ch: the request is not possible in the present state.
     pub const STATE: GeneralStatus = GeneralStatus(0x0C);
-    /// 0Eh: read-only attribute.
+    /// 0Eh: the attribute is read-only.
     pub const NOT_SETTABLE: GeneralStatus = GeneralStatus(0x0E);
-    /// 13h: the value is too short.
+    /// 13h: not enough data.
     pub const TOO_SHORT: GeneralStatus = GeneralStatus(0x13);
-    /// 14h: the object does not have the attribute.
+    /// 14h: the object does not support the attribute.
     pub const NO_ATTRIBUTE: GeneralStatus = GeneralStatus(0x14);
-    /// 15h: the value is too long.
+    /// 15h: too much data.
     pub const TOO_LONG: GeneralStatus = GeneralStatus(0x15);
 
-    /// Creates it: any number is a status.
+    /// Creates a status from its code; every value is valid.
     pub const fn new(code: u8) -> Self {
         GeneralStatus(code)
     }
 
-    /// Returns its number.
+    /// Returns the status code.
     pub const fn code(self) -> u8 {
         self.0
     }
 
-    /// Returns the row; `None` for an unknown status.
+    /// Returns the table row of the status, or `None` if it is unknown.
     pub fn row(self) -> Option<&'static StatusRow<GeneralStatus>> {
         GENERAL_STATUS.iter().find(|row| row.code == self)
     }
 }
 
-/// Returns the meaning of the first word after a status; only those of the connection manager's services are known.
+/// Returns the table row of an extended status code; only codes of the connection manager's services are known.
 pub fn extended_row(service: Service, status: GeneralStatus, code: u16) -> Option<&'static ExtendedStatusRow> {
     let connections = [Service::FORWARD_OPEN, Service::FORWARD_CLOSE].contains(&service);
     EXTENDED_STATUS.iter().find(|row| connections && row.general == status && row.code == code)

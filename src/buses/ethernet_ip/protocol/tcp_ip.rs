@@ -1,14 +1,14 @@
-//! The TCP/IP interface object (class F5h): the source of a device's address, and the address (`P ODVA`).
+//! TCP/IP interface object (class F5h): the IP address of a device and its source (`P ODVA`).
 
 use core::net::Ipv4Addr;
 
 use super::fields::{Fields, PacketError, Structure, ascii, text};
 
-/// Attribute 3; the default 0 means the stored address. Unknown bits are kept.
+/// Configuration control, attribute 3; the default 0 selects the stored address. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ConfigurationControl(u32);
 
-/// Its bits 3 to 0.
+/// Source of the IP address, bits 3 to 0 of [`ConfigurationControl`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AddressSource {
     /// 0: stored in the device.
@@ -17,85 +17,85 @@ pub enum AddressSource {
     Bootp,
     /// 2: DHCP.
     Dhcp,
-    /// Another number up to 15.
+    /// A reserved value up to 15.
     Unknown(u8),
 }
 
-/// Attribute 5.
+/// Interface configuration, attribute 5.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct InterfaceConfiguration {
-    /// Its address; 0.0.0.0 for none.
+    /// IP address; 0.0.0.0 if none is set.
     pub address: Ipv4Addr,
     /// Network mask.
     pub mask: Ipv4Addr,
-    /// Gateway to other networks; 0.0.0.0 for none.
+    /// Default gateway; 0.0.0.0 if there is none.
     pub gateway: Ipv4Addr,
-    /// Name servers; 0.0.0.0 for none.
+    /// Name servers; 0.0.0.0 if there are none.
     pub name_servers: [Ipv4Addr; 2],
-    /// ASCII, up to 48 characters.
+    /// Domain name of up to 48 ASCII characters.
     pub domain: String,
 }
 
-/// Why a device could not be reached at an address.
+/// The reason why a device would be unreachable with an interface configuration.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
-    /// 0.0.0.0, which is none.
+    /// The address is 0.0.0.0.
     #[error("0.0.0.0 is no address: type the one that the device is to have")]
     None,
-    /// No device may have it.
+    /// The address is reserved.
     #[error("{0} cannot be a device's address: it is kept for the computer itself, for groups or for later")]
     Reserved(Ipv4Addr),
-    /// Ones and zeros of a mask are mixed, or too few of either are left.
+    /// The mask is not a contiguous run of ones, or it leaves too few addresses.
     #[error("{0} is no mask: ones come first and zeros behind them, at least two of these, as in 255.255.255.0")]
     Mask(Ipv4Addr),
-    /// The first of its network.
+    /// The address is the network address.
     #[error("{0} is its network itself: choose one between the first and the last address")]
     Network(Ipv4Addr),
-    /// The last of its network.
+    /// The address is the broadcast address of its network.
     #[error("{0} goes to all devices of its network: choose one between the first and the last address")]
     Broadcast(Ipv4Addr),
-    /// The gateway is not to be reached.
+    /// The gateway is outside the network.
     #[error(
         "the gateway {gateway} is outside the network {network}/{prefix}: choose one inside it, or 0.0.0.0 for none"
     )]
     GatewayOutside {
-        /// As given.
+        /// The given gateway.
         gateway: Ipv4Addr,
         /// Network of the device.
         network: Ipv4Addr,
-        /// Ones of its mask.
+        /// Prefix length of the network mask.
         prefix: u32,
     },
-    /// The gateway is no other device.
+    /// The gateway has the address of the device itself.
     #[error("the gateway cannot be {0}: it is another device's address in the same network, or 0.0.0.0 for none")]
     Gateway(Ipv4Addr),
-    /// Not a name of up to 48 letters, digits, hyphens and points.
+    /// The domain name is not a name of up to 48 letters, digits, hyphens and dots.
     #[error("{0:?} is no domain name: it has letters, digits, hyphens and points, 48 at most")]
     Domain(String),
 }
 
 impl ConfigurationControl {
-    /// The class of the object.
+    /// Class code of the TCP/IP interface object.
     pub const CLASS: u16 = 0xF5;
-    /// The attribute.
+    /// Attribute number.
     pub const ATTRIBUTE: u16 = 3;
 
-    /// Parses the four bytes.
+    /// Parses the four bytes of the attribute.
     ///
     /// # Errors
-    /// [`PacketError`] if there are fewer or more.
+    /// [`PacketError`] if the length is not four.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ConfigurationControl, data);
         let word = fields.u32()?;
         fields.end(ConfigurationControl(word))
     }
 
-    /// Returns the bytes to send.
+    /// Returns the attribute as bytes.
     pub const fn emit(self) -> [u8; 4] {
         self.0.to_le_bytes()
     }
 
-    /// Returns the origin of the address.
+    /// Returns the source of the IP address.
     pub const fn source(self) -> AddressSource {
         match self.0 & 0x0F {
             0 => AddressSource::Stored,
@@ -105,7 +105,7 @@ impl ConfigurationControl {
         }
     }
 
-    /// Returns the same with another source.
+    /// Returns a copy with another source of the IP address.
     pub const fn with(self, source: AddressSource) -> Self {
         let number = match source {
             AddressSource::Stored => 0,
@@ -118,13 +118,13 @@ impl ConfigurationControl {
 }
 
 impl InterfaceConfiguration {
-    /// The attribute.
+    /// Attribute number.
     pub const ATTRIBUTE: u16 = 5;
 
-    /// Parses the attribute: five little-endian addresses, then a string with a two-byte length, padded to whole words.
+    /// Parses the attribute: five little-endian addresses and a string with a two-byte length, padded to whole words.
     ///
     /// # Errors
-    /// [`PacketError`] if it is incomplete or too long.
+    /// [`PacketError`] if the attribute is incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::InterfaceConfiguration, data);
         let mut address = || fields.u32().map(Ipv4Addr::from);
@@ -138,8 +138,8 @@ impl InterfaceConfiguration {
         fields.end(InterfaceConfiguration { address: own, mask, gateway, name_servers, domain })
     }
 
-    /// Checks that a device could be reached at this address: it is a valid address in a network of this mask, with the
-    /// gateway in the same network or none.
+    /// Checks that a device would be reachable: the address is valid in a network with this mask, and the gateway is in
+    /// the same network or unset.
     ///
     /// # Errors
     /// [`AddressError`].
@@ -175,7 +175,7 @@ impl InterfaceConfiguration {
         Ok(())
     }
 
-    /// Returns its bytes.
+    /// Returns the attribute as bytes.
     pub fn emit(&self) -> Vec<u8> {
         let [first, second] = self.name_servers;
         let addresses = [self.address, self.mask, self.gateway, first, second];

@@ -1,52 +1,52 @@
 //! The frame (manual 5.1).
 
-/// The first byte of every frame.
+/// First byte of every frame.
 pub const SYNC: u8 = 0x80;
-/// The address of the encoder.
+/// Address of the encoder.
 pub const NODE: u8 = 0x01;
-/// Longest payload accepted. No message of the manual has more than five bytes (`U`).
+/// Maximum accepted payload length in bytes. No message in the manual exceeds five bytes (`U`).
 pub const MAX_PAYLOAD: usize = 64;
 
-/// Frame with a correct checksum. The meaning of the payload depends on the command.
+/// A frame with a valid checksum. The meaning of the payload depends on the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// Address of the encoder that sends or receives it.
+    /// Address of the encoder that sends or receives the frame.
     pub address: u8,
-    /// Command byte; a reply has that of its request.
+    /// Command byte, which the reply repeats.
     pub command: u8,
-    /// Up to [`MAX_PAYLOAD`] bytes.
+    /// Payload of up to [`MAX_PAYLOAD`] bytes.
     pub payload: &'a [u8],
 }
 
-/// Why bytes are not a frame.
+/// The reason why bytes are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
     /// The first byte is not 80h.
     #[error("a frame begins with 80, not with {0:02X}")]
     Sync(u8),
-    /// Fewer or more bytes than the header gives.
+    /// The length differs from that in the header.
     #[error("{got} bytes where the frame has {expected}")]
     Length {
-        /// Bytes of a complete frame; of the shortest if the header is incomplete.
+        /// Length of the complete frame in bytes; of the shortest frame if the header is incomplete.
         expected: usize,
-        /// Bytes received.
+        /// Received length in bytes.
         got: usize,
     },
-    /// The last byte is not the inverted sum of the others.
+    /// The last byte is not the inverted sum of all others.
     #[error("checksum {got:02X} where {expected:02X} was expected")]
     Checksum {
-        /// The checksum calculated from the other bytes.
+        /// Checksum calculated over the received bytes.
         expected: u8,
-        /// The checksum received.
+        /// Received checksum.
         got: u8,
     },
 }
 
 impl<'a> Frame<'a> {
-    /// Bytes around the payload: five before it, one after it.
+    /// Number of bytes in addition to the payload: five before it and one after it.
     pub const OVERHEAD: usize = 6;
 
-    /// Parses a frame. The whole slice is the frame; its length is that of the header, whatever the examples in the manual
+    /// Parses a frame that fills the slice. The length is taken from the header, whatever the examples in the manual
     /// show.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl<'a> Frame<'a> {
         Ok(Frame { address: *address, command: *command, payload })
     }
 
-    /// Returns the bytes on the line, checksum last.
+    /// Returns the frame as bytes, including the checksum.
     pub fn emit(&self) -> Vec<u8> {
         // A payload has at most 64 bytes.
         let length = u16::try_from(self.payload.len()).unwrap_or(u16::MAX);

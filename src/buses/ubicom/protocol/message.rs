@@ -1,112 +1,112 @@
-//! The requests of a host and the replies of an encoder (manual 5.2). Each register has one number: see
+//! Requests of the host and replies of the encoder (manual 5.2). Registers are numbered globally: see
 //! `RegisterAddress::global` of BiSS.
 
 use super::frame::{Frame, NODE};
 use super::position::PositionWord;
 use crate::bits::ByteOrder;
 
-/// The three commands.
+/// The three commands of the protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Command {
-    /// 01h.
+    /// 01h: read a register.
     Read,
-    /// 02h.
+    /// 02h: write a register.
     Write,
-    /// 03h.
+    /// 03h: read the position.
     Position,
 }
 
-/// Request without its address.
+/// A request without the address of the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// 01h: reads a register.
+    /// 01h: read a register.
     Read {
-        /// Global address.
+        /// Global register address.
         register: u16,
     },
     /// 02h: write a register.
     Write {
-        /// Global address.
+        /// Global register address.
         register: u16,
-        /// Its new value.
+        /// New value of the register.
         value: u8,
     },
-    /// 03h: the position. The manual has one argument, 01h; others are kept.
+    /// 03h: read the position. The manual defines the argument 01h only; others are preserved.
     Position {
-        /// The byte after the command.
+        /// Argument byte after the command.
         argument: u8,
     },
 }
 
-/// Why an encoder rejects a request.
+/// The reason why an encoder rejects a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
-    /// Not one of the three commands.
+    /// The command is unknown.
     #[error("0x{0:02X} is not a command")]
     Command(u8),
-    /// A command with the wrong number of bytes.
+    /// The payload length does not match the command.
     #[error("{got} payload bytes where {expected} belong")]
     Length {
-        /// Bytes the command takes.
+        /// Required payload length in bytes.
         expected: usize,
-        /// Bytes there were.
+        /// Received payload length in bytes.
         got: usize,
     },
 }
 
-/// The reply of an encoder to a write.
+/// Reply to a write request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
-    /// 90h.
+    /// 90h: acknowledged.
     Acknowledged,
-    /// A0h.
+    /// A0h: refused.
     Refused,
-    /// Something that is not in the manual.
+    /// A value that the manual does not define.
     Unknown(u8),
 }
 
-/// A reply.
+/// A reply of the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// Reply to a read: the register's value.
+    /// Register value, in reply to a read request.
     Value(u8),
-    /// Reply to a write.
+    /// Result of a write request.
     Written(Written),
-    /// Reply to 03h.
+    /// Position, in reply to command 03h.
     Position(PositionWord),
 }
 
-/// Why a frame is not the reply to a request.
+/// The reason why a frame is not the reply to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
-    /// The frame is to or from another node.
+    /// The frame belongs to another node.
     #[error("a frame from node 0x{got:02X} instead of 0x{expected:02X}")]
     Address {
-        /// The node that was asked.
+        /// Address in the request.
         expected: u8,
-        /// The value received.
+        /// Received address.
         got: u8,
     },
-    /// The frame answers another command.
+    /// The frame is the reply to another command.
     #[error("a frame with command 0x{got:02X} instead of 0x{expected:02X}")]
     Command {
-        /// The command of the request.
+        /// Command in the request.
         expected: u8,
-        /// The value received.
+        /// Received command.
         got: u8,
     },
-    /// It has the wrong number of bytes. If it has as many as the request, it may be its echo.
+    /// The payload length is wrong. If it equals that of the request, the frame may be an echo.
     #[error("{got} payload bytes instead of {expected}")]
     Length {
-        /// Bytes of the reply.
+        /// Expected payload length in bytes.
         expected: usize,
-        /// Bytes there were.
+        /// Received payload length in bytes.
         got: usize,
     },
 }
 
 impl Command {
-    /// Returns its byte.
+    /// Returns the command byte.
     pub const fn byte(self) -> u8 {
         match self {
             Command::Read => 0x01,
@@ -115,7 +115,7 @@ impl Command {
         }
     }
 
-    /// Returns the value of this byte.
+    /// Returns the command with this code.
     pub const fn from_byte(byte: u8) -> Option<Self> {
         match byte {
             0x01 => Some(Command::Read),
@@ -142,12 +142,11 @@ impl Command {
 }
 
 impl Request {
-    /// The position, as the manual asks for it.
+    /// The position request as the manual defines it.
     pub const POSITION: Request = Request::Position { argument: 0x01 };
-    /// Request whose reply shows the order of the two bytes of a register number: see [`order_told_by`]. Sent low byte
-    /// first.
+    /// A request whose reply reveals the byte order of register numbers: see [`order_told_by`]. Sent low byte first.
     pub const PROBE: Request = Request::Read { register: Request::PROBE_REGISTER };
-    /// The register that [`PROBE`](Self::PROBE) reads.
+    /// Register that [`PROBE`](Self::PROBE) reads.
     pub const PROBE_REGISTER: u16 = 0x0001;
 
     /// Returns the command.
@@ -159,7 +158,7 @@ impl Request {
         }
     }
 
-    /// Returns the frame for the line. The order of the register's two bytes is not documented (`U`).
+    /// Returns the frame as bytes. The byte order of the register number is not documented (`U`).
     pub fn emit(self, order: ByteOrder) -> Vec<u8> {
         let number = |register: u16| match order {
             ByteOrder::LowFirst => register.to_le_bytes(),
@@ -176,10 +175,10 @@ impl Request {
         Frame { address: NODE, command: self.command().byte(), payload: &payload }.emit()
     }
 
-    /// Reads the request in a frame.
+    /// Parses a request.
     ///
     /// # Errors
-    /// The command before the length.
+    /// An unknown command is reported before a wrong length.
     pub fn parse(frame: &Frame<'_>, order: ByteOrder) -> Result<Self, RequestError> {
         let command = Command::from_byte(frame.command).ok_or(RequestError::Command(frame.command))?;
         let number = |bytes: [u8; 2]| match order {
@@ -197,8 +196,8 @@ impl Request {
     }
 }
 
-/// Returns the order of a register's two bytes by the reply to [`Request::PROBE`]: 02h is the bank of the data sheet in
-/// register 0001h, 01h the version of its profile in register 0100h. `None`: the encoder has another value there.
+/// Returns the byte order of register numbers, derived from the reply to [`Request::PROBE`]: 02h is the data sheet bank
+/// in register 0001h, 01h the profile version in register 0100h. `None` if the encoder returns another value.
 pub const fn order_told_by(answer: u8) -> Option<ByteOrder> {
     match answer {
         0x02 => Some(ByteOrder::LowFirst),
@@ -208,7 +207,7 @@ pub const fn order_told_by(answer: u8) -> Option<ByteOrder> {
 }
 
 impl Written {
-    /// Returns the value of this byte.
+    /// Converts the byte of a reply.
     pub const fn from_byte(byte: u8) -> Self {
         match byte {
             0x90 => Written::Acknowledged,
@@ -217,7 +216,7 @@ impl Written {
         }
     }
 
-    /// Returns its byte.
+    /// Returns the byte of the reply.
     pub const fn byte(self) -> u8 {
         match self {
             Written::Acknowledged => 0x90,
@@ -228,7 +227,7 @@ impl Written {
 }
 
 impl Reply {
-    /// Returns the command that it answers.
+    /// Returns the command to which this is the reply.
     pub const fn command(self) -> Command {
         match self {
             Reply::Value(_) => Command::Read,
@@ -237,7 +236,7 @@ impl Reply {
         }
     }
 
-    /// Returns the frame for the line.
+    /// Returns the frame as bytes.
     pub fn emit(self) -> Vec<u8> {
         let payload = match self {
             Reply::Value(value) => vec![value],
@@ -247,10 +246,10 @@ impl Reply {
         Frame { address: NODE, command: self.command().byte(), payload: &payload }.emit()
     }
 
-    /// Reads the reply to a command.
+    /// Parses the reply to a command.
     ///
     /// # Errors
-    /// [`ReplyError`] if the frame is not a reply.
+    /// [`ReplyError`] if the frame is not the reply.
     pub fn parse(frame: &Frame<'_>, command: Command) -> Result<Self, ReplyError> {
         if frame.address != NODE {
             return Err(ReplyError::Address { expected: NODE, got: frame.address });

@@ -1,5 +1,5 @@
-//! UBICOM: the serial protocol on the configuration pin of POSITAL kit encoders (manual IXARC kit encoders with BiSS C
-//! v4.6, chapter 5; the project's reference where a section is named so). What the manual leaves open is marked `U`.
+//! UBICOM, the serial protocol on the configuration pin of POSITAL kit encoders (manual IXARC kit encoders with BiSS C
+//! v4.6, chapter 5; "reference" refers to the project's reference). Anything that the manual leaves open is marked `U`.
 //!
 //! ```text
 //! 80 ADDRESS COMMAND LEN-low LEN-high payload… CHK        CHK = NOT(sum of all bytes before it)
@@ -24,9 +24,9 @@ use crate::units::{Baud, CharacterFormat, Parity};
 /// 115200 bit/s.
 const BAUD: Baud = Baud::B115200;
 
-/// The format of the line: 115200 8N1.
+/// Character format of the line: 115200 8N1.
 pub const FORMAT: CharacterFormat = CharacterFormat { baud: BAUD, parity: Parity::None };
-/// Returns the bits of a character: start, eight of data, a parity if there is one, stop.
+/// Returns the number of bits in a character: start bit, eight data bits, parity bit if enabled, stop bit.
 pub const fn character_bits(format: CharacterFormat) -> u64 {
     match format.parity {
         Parity::None => 10,
@@ -34,9 +34,9 @@ pub const fn character_bits(format: CharacterFormat) -> u64 {
     }
 }
 
-/// The longest time of a reply (`U`).
+/// Time-out for a reply (`U`).
 pub const REPLY_TIME_OUT: Duration = Duration::from_millis(100);
-/// The longest silence of an encoder while it calibrates (`U`).
+/// Time-out for a reply while the encoder calibrates (`U`).
 pub const CALIBRATION_TIME_OUT: Duration = Duration::from_secs(10);
-/// Time after which a paused frame is over (`U`).
+/// Silence after which an incomplete frame is abandoned (`U`).
 pub const BYTE_TIME_OUT: Duration = Duration::from_millis(20);

@@ -1,31 +1,31 @@
-//! The position word: five bytes, lowest first. The encoder's frame defines its bits.
+//! The position word: five bytes, least significant first. The frame layout of the encoder defines its bits.
 
-/// Position word as received; unused bits are kept.
+/// A position word as received; unused bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionWord(u64);
 
 impl PositionWord {
-    /// Bytes on the line.
+    /// Length in bytes.
     pub const BYTES: usize = 5;
 
-    /// Creates a word of forty bits; `None` above.
+    /// Creates a position word, or `None` beyond 40 bits.
     pub const fn new(word: u64) -> Option<Self> {
         if word >> 40 == 0 { Some(PositionWord(word)) } else { None }
     }
 
-    /// Parses bytes from the line, lowest first.
+    /// Parses bytes, least significant first.
     pub const fn parse(bytes: [u8; Self::BYTES]) -> Self {
         let [b0, b1, b2, b3, b4] = bytes;
         PositionWord(u64::from_le_bytes([b0, b1, b2, b3, b4, 0, 0, 0]))
     }
 
-    /// Returns bytes for the line, lowest first.
+    /// Returns the word as bytes, least significant first.
     pub const fn emit(self) -> [u8; Self::BYTES] {
         let [b0, b1, b2, b3, b4, ..] = self.0.to_le_bytes();
         [b0, b1, b2, b3, b4]
     }
 
-    /// Returns all forty bits.
+    /// Returns all 40 bits.
     pub const fn word(self) -> u64 {
         self.0
     }

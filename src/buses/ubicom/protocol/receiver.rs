@@ -1,10 +1,10 @@
-//! Frames from a stream of bytes. 80h may occur within a payload, so it begins a frame only if none is in progress: after a
-//! complete frame, a damaged one, or silence (reference 2). The caller decides how long silence must last:
+//! Frame reassembly from a byte stream. 80h may occur within a payload, so it starts a frame only if none is in
+//! progress: after a complete frame, a damaged one, or silence (reference 2). The caller measures the silence: see
 //! [`BYTE_TIME_OUT`](super::BYTE_TIME_OUT).
 
 use super::frame::{Frame, MAX_PAYLOAD, SYNC};
 
-/// Bytes received that are not a whole frame yet.
+/// Received bytes that do not yet form a complete frame.
 #[derive(Clone, Debug)]
 pub struct Receiver {
     node: u8,
@@ -14,26 +14,26 @@ pub struct Receiver {
 
 /// The meaning of the first bytes.
 enum Head {
-    /// More has to come.
+    /// More bytes are required.
     Partial,
-    /// A frame of that length.
+    /// A complete frame of this length.
     Frame(usize),
-    /// No frame begins here.
+    /// The bytes do not start a frame.
     Other,
 }
 
 impl Receiver {
-    /// Creates a receiver for frames of the encoder with this address.
+    /// Creates a receiver for frames of the encoder with the given address.
     pub const fn new(node: u8) -> Self {
         Receiver { node, bytes: Vec::new(), skipped: 0 }
     }
 
-    /// Takes the received bytes.
+    /// Appends received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }
 
-    /// Returns the next complete frame. Bytes before it that belong to none are skipped.
+    /// Returns the next complete frame. Preceding bytes that belong to no frame are skipped.
     pub fn next_frame(&mut self) -> Option<Vec<u8>> {
         loop {
             match self.head() {
@@ -44,7 +44,8 @@ impl Receiver {
         }
     }
 
-    /// Handles silence on the line: a started frame will not be completed. A frame contained in it is still found.
+    /// Handles silence on the line: a started frame will not be completed. A frame contained in its bytes is still
+    /// found.
     pub fn silence(&mut self) -> Option<Vec<u8>> {
         loop {
             if let Some(frame) = self.next_frame() {
@@ -57,7 +58,7 @@ impl Receiver {
         }
     }
 
-    /// Returns whether a frame has begun and is not complete.
+    /// Returns whether a frame has started and is incomplete.
     pub fn is_waiting(&self) -> bool {
         !self.bytes.is_empty()
     }

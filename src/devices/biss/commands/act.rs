@@ -1,5 +1,5 @@
-//! `do`: filter, preset, and the guided procedures at the motor. Without a terminal the program cannot ask what turns the
-//! motor; --yes then states that the motor does not need this encoder.
+//! `do`: filter, preset, and the guided procedures at the motor. Without a terminal the program cannot ask which drive
+//! turns the motor; `--yes` then states that the motor does not depend on this encoder.
 
 use std::path::Path;
 use std::time::Duration;

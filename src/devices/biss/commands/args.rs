@@ -1,4 +1,4 @@
-//! Actions and options that only BiSS encoders have.
+//! Actions and options specific to BiSS encoders.
 
 use clap::{Args, ValueEnum};
 

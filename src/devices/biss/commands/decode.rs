@@ -1,6 +1,6 @@
-//! `decode`: explains captured UBICOM frames, bridge packets, position frames and position words, offline. Their kind is
-//! determined by a matching sum or CRC. A position word has neither, so it is written as `position` prints it:
-//! `0x024698000`, nine digits, or `raw=610893824`.
+//! `decode`: explains captured UBICOM frames, bridge packets, position frames and position words offline. The format is
+//! detected by a matching checksum. A position word has none, so it is written as `position` prints it: `0x024698000`,
+//! nine digits, or `raw=610893824`.
 
 mod bridge;
 mod position;
@@ -115,7 +115,6 @@ fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
     }
 }
 
-/// Returns the kind for a script.
 fn form(name: &str) -> Map<String, serde_json::Value> {
     Map::from_iter([("device".to_owned(), json!(KIND)), ("form".to_owned(), json!(name))])
 }

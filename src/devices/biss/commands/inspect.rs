@@ -1,4 +1,4 @@
-//! Commands that only read: `identify`, `status`, `position`, `read`.
+//! Read-only commands: `identify`, `status`, `position` and `read`.
 
 use std::time::{Duration, Instant};
 

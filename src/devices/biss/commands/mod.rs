@@ -1,4 +1,4 @@
-//! The commands for BiSS encoders.
+//! Commands for BiSS encoders.
 
 mod act;
 mod args;
@@ -103,7 +103,6 @@ impl DeviceCommands for BissCommands {
     }
 }
 
-/// Returns whether an action runs several others.
 fn is_combined(action: &PossibleValue) -> bool {
     BissAction::Mounting.to_possible_value().as_ref() == Some(action)
 }
@@ -128,7 +127,6 @@ impl Simulated for sim::Port {
     }
 }
 
-/// Returns the registers that a user names.
 fn item(text: &str) -> Result<RegisterRange> {
     text.parse().map_err(|error: ItemError| Failure::Usage(error.to_string()))
 }

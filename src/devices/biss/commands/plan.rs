@@ -1,4 +1,4 @@
-//! The plan for a BiSS encoder: shown, confirmed, carried out; and its result.
+//! Plans for a BiSS encoder on the command line: display, confirmation, execution and result.
 
 use std::time::Duration;
 

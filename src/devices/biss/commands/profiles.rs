@@ -1,4 +1,4 @@
-//! The commands for profiles of a BiSS encoder: `save`, `restore`, and reading the encoder for a comparison.
+//! Profile commands for BiSS encoders: `save`, `restore`, and reading the encoder for comparison.
 
 use serde_json::json;
 

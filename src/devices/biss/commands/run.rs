@@ -1,4 +1,4 @@
-//! Running jobs on a BiSS encoder, and their messages.
+//! Running jobs on a BiSS encoder, with their messages.
 
 use super::BissCommands;
 use crate::app::Given;
@@ -18,7 +18,6 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Biss>;
 
 impl Runs for Biss {
-    /// Connection to the encoder.
     type Context = Transport;
     const COMMANDS: &'static dyn DeviceCommands = &BissCommands;
 
@@ -69,7 +68,6 @@ fn detail(news: &ProcedureProgress) -> String {
     }
 }
 
-/// Identifies the encoder.
 pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     Ok(result_of!(runner.run(BissJob::Identify)?, BissOutput::Identity(identity) => identity))
 }

@@ -1,4 +1,4 @@
-//! The names of the kit encoder's registers, and the meaning of their bytes, as text.
+//! Register names of the kit encoder and descriptions of register values.
 
 use std::sync::LazyLock;
 

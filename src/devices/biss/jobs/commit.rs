@@ -1,4 +1,4 @@
-//! Carries a plan out.
+//! Execution of a plan.
 
 use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WEAR_LIMIT, device_key};
 use crate::devices::biss::procedures::procedure::ProcedureProgress;

@@ -1,4 +1,4 @@
-//! The descriptions of encoders: the user's own, then the built-in ones.
+//! Descriptions of encoders: user-defined ones first, then the built-in ones.
 
 use crate::devices::biss::protocol::{Descriptions, KIND};
 use crate::profile::Cause;

@@ -1,4 +1,4 @@
-//! Position frames that an adapter streams.
+//! Position frames streamed by an adapter.
 
 use crate::buses::bridge::jobs::Stretch;
 use crate::buses::bridge::procedures::{StreamRequest, Streaming};

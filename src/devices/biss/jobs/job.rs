@@ -1,4 +1,4 @@
-//! The jobs of a BiSS encoder, and their results.
+//! Jobs of a BiSS encoder and their results.
 
 use std::fmt;
 
@@ -28,7 +28,6 @@ pub const WEAR_WARNING: u64 = 800;
 pub enum BissJob {
     /// Reads everything that is displayed: for a window, after connecting.
     Survey,
-    /// Identifies the encoder.
     Identify,
     /// Mode, errors, warnings, temperature, filter.
     Status,
@@ -40,7 +39,6 @@ pub enum BissJob {
     Read(RegisterRange),
     /// Reads all direct registers, 40h…7Fh.
     ReadDirect,
-    /// Reads all registers of a bank.
     ReadBank(u8),
     /// Reads all registers of a data area, at standstill.
     ReadArea(Area),
@@ -59,7 +57,6 @@ pub enum BissJob {
 /// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Restores a profile.
     Restore {
         profile: Box<BissProfile>,
         options: RestoreOptions,
@@ -71,10 +68,8 @@ pub enum Change {
     /// stored value.
     Preset {
         value: Option<PresetValue>,
-        /// Parts of the position.
         parts: Option<PresetParts>,
     },
-    /// Guided procedures: one, or all of a mounting.
     Guided {
         run: MountingRun,
         motor: MotorSource,
@@ -84,7 +79,6 @@ pub enum Change {
 /// Kind of change, by how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// Restore of a profile: repeating it completes it.
     Restore,
     /// Edited bytes: those not yet written remain edits.
     Bytes,
@@ -94,7 +88,6 @@ pub enum ChangeKind {
     Calibration,
     /// Wiegand test alone: it stores only its result.
     WiegandTest,
-    /// Another filter.
     Filter,
     /// Preset: its value, its execution, or both.
     Preset,
@@ -114,12 +107,10 @@ impl Change {
     }
 }
 
-/// Plan, ready for review.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: BissPlan,
-    /// The encoder that it is for.
     pub identity: Identity,
     /// Number of persistent writes of the encoder recorded on this computer; `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
@@ -131,7 +122,6 @@ pub struct Prepared {
     pub mounting_left: Vec<RegisterRange>,
     /// Device mode in which the profile to restore was read, if it may contain values that were never saved.
     pub unsaved: Option<DeviceMode>,
-    /// The profile is of another type of encoder.
     pub other_type: Option<OtherType>,
     /// Values of another device's mounting that are written: they must be set up again.
     pub mounting_written: Vec<RegisterRange>,
@@ -147,16 +137,13 @@ impl Prepared {
 /// Plan with the user's consent.
 #[derive(Clone, Debug)]
 pub struct Commit {
-    /// The plan, with the consent to it.
     pub agreed: ApprovedPlan<Prepared>,
-    /// The operator at the motor.
     pub attendance: OperatorPresence,
 }
 
 /// Presence of an operator at the motor while a plan is carried out.
 #[derive(Clone, Debug)]
 pub enum OperatorPresence {
-    /// An operator, whose answers arrive here.
     Attended(OperatorChannel),
     Unattended(Unattended),
 }
@@ -206,7 +193,6 @@ pub enum JobStep {
     Bank(u8),
     /// An operation of a plan is carried out.
     Operation {
-        /// The changed item.
         item: String,
         /// The present step.
         progress: Box<ProcedureProgress>,

@@ -1,4 +1,4 @@
-//! A BiSS encoder as seen by a session, and its jobs.
+//! The BiSS encoder as a device of a session, and its jobs.
 
 mod commit;
 mod descriptions;
@@ -40,7 +40,6 @@ pub struct Biss {
     types: Arc<Descriptions>,
     /// The user's own descriptions that cannot be used; reported once.
     broken: Vec<StoreError>,
-    /// Motor of a virtual encoder.
     motor: Option<Motor>,
     /// Interval of the frames in a stream, in microseconds, if it is shorter than single requests allow.
     streamed_us: Option<u32>,
@@ -56,7 +55,6 @@ impl fmt::Debug for Biss {
 }
 
 impl Biss {
-    /// Returns the host's side of the line.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }

@@ -1,4 +1,4 @@
-//! Makes a plan from a change. Reads; writes nothing, and leaves the device mode as it is.
+//! Preparation of a plan from a change. Only reads; the device mode is left unchanged.
 
 use std::collections::BTreeSet;
 
@@ -82,7 +82,6 @@ fn state(
     read_state(master, identity, banks, report)
 }
 
-/// Reads the registers that the edits change.
 fn edits_of(
     master: &mut Master<'_>,
     identity: &Identity,

@@ -1,5 +1,5 @@
-//! The device check: the values of an encoder compared with its description, its data sheet and the line, with one verdict
-//! per item. It writes nothing except the bank selection.
+//! Device check: the values of an encoder compared with its description, its data sheet and the line, with a verdict
+//! for each item. Nothing is written except the bank selection.
 
 use super::survey::{Bits, Status, survey};
 use super::{Error, Identity, Master, PositionReading, Survey, Transport};
@@ -15,7 +15,6 @@ pub type BissStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
-    /// Identity, and whether a description matches.
     Identity,
     /// Errors, warnings, device mode, password.
     Status,
@@ -25,18 +24,15 @@ pub enum CheckStep {
     DataSheet,
     /// Temperature and supply, compared with the limits of the data sheet.
     Limits,
-    /// The saved Wiegand test.
     Wiegand,
     /// Readings of the position, and the number of damaged ones.
     Readings,
-    /// Write cycles of the flash.
     Wear,
 }
 
 /// One fact that the check found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
-    /// The name of its description.
     Name(String),
     SerialNumber(String),
     Firmware(Firmware),
@@ -47,7 +43,6 @@ pub enum CheckFinding {
     /// It has no registers for errors and warnings, or not with this firmware.
     NotTold,
     Mode(DeviceMode),
-    /// The password is set.
     Open,
     Position(PositionReading),
     /// The position has its error bit set.
@@ -64,50 +59,38 @@ pub enum CheckFinding {
     NoSheet,
     /// The frame of the data sheet differs from that of the description: bits of turns and steps.
     OtherFrame {
-        /// Of the data sheet.
         sheet: (u8, u8),
         description: (u8, u8),
     },
     /// Degrees Celsius, and the limits of the data sheet.
     Temperature {
         celsius: f64,
-        /// Lower limit.
         low: i32,
-        /// Upper limit.
         high: i32,
     },
     /// Millivolts measured by the adapter when it switched the supply on, and the limits of the data sheet.
     Supply {
-        /// Measured value.
         millivolt: u16,
-        /// Lower limit.
         low: u32,
-        /// Upper limit.
         high: u32,
     },
     /// Milliamperes measured by the adapter, and the limit of the data sheet.
     Current {
-        /// Measured value.
         milliampere: u16,
-        /// Upper limit.
         high: u32,
     },
-    /// The Wiegand test that was saved.
     Wiegand(WiegandResult),
     /// None was saved.
     NotTested,
     /// Number of readings of the position, and of damaged frames or replies.
     Readings {
-        /// Number requested.
         requested: u32,
-        /// Number damaged.
         damaged: u64,
     },
     /// Recorded write cycles, and the limit of the flash.
     Wear {
         /// Minimum number of write cycles.
         seen: u64,
-        /// Limit of write cycles.
         limit: u64,
     },
 }

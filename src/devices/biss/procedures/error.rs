@@ -1,4 +1,4 @@
-//! Errors of an encoder, with the facts that a user needs.
+//! Errors of an encoder, with the facts that a message requires.
 
 use std::fmt;
 
@@ -13,7 +13,6 @@ use crate::profile::DeviceError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequestedItem {
     Read(RegisterAddress),
-    /// Write a value to a register.
     Write(RegisterAddress, u8),
     Position,
 }
@@ -31,22 +30,18 @@ impl fmt::Display for RequestedItem {
 /// A procedure that ended early.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// The wire.
     #[error(transparent)]
     Link(#[from] LinkError),
     #[error("no reply while {requested} (attempts: {tries})")]
     NoReply {
         requested: RequestedItem,
-        /// Number of attempts.
         tries: u32,
         /// The sent bytes came back: the adapter echoes, so the line itself works.
         echo_heard: bool,
     },
-    /// A reply came and was damaged every time.
     #[error("damaged reply while {requested} (attempts: {tries}): {cause}")]
     Damaged {
         requested: RequestedItem,
-        /// Number of attempts.
         tries: u32,
         /// Damage of the last reply.
         cause: Damage,
@@ -54,33 +49,24 @@ pub enum Error {
     /// Bytes keep arriving during the required silence.
     #[error("the line is never silent")]
     NeverSilent,
-    /// The adapter between us and the encoder.
     #[error(transparent)]
     Adapter(#[from] AdapterError),
     /// No encoder acknowledges on the bus.
     #[error("no encoder acknowledges on the bus (attempts: {tries})")]
     NoAcknowledge {
-        /// Number of attempts.
         tries: u32,
         /// The adapter could supply the encoder, but was not told to.
         supply_off: bool,
     },
     /// The data line stays low.
     #[error("the data line stays low (attempts: {tries})")]
-    StuckLow {
-        /// Number of attempts.
-        tries: u32,
-    },
+    StuckLow { tries: u32 },
     /// The data line stays high.
     #[error("the data line stays high (attempts: {tries})")]
-    StuckHigh {
-        /// Number of attempts.
-        tries: u32,
-    },
+    StuckHigh { tries: u32 },
     /// No frame ever had a right checksum: the widths are not those of the encoder.
     #[error("{frames} frames in a row have a wrong CRC: the encoder's have not {data_bits}+{crc_bits} bits")]
     WrongWidths {
-        /// Number of frames.
         frames: u32,
         /// Position, error and warning bits, as they were taken.
         data_bits: u8,
@@ -89,10 +75,7 @@ pub enum Error {
     },
     /// The widths of the frame are not known, and no length fits.
     #[error("no length of the frames fits their CRC")]
-    WidthsUnknown {
-        /// The frames differ: the shaft turns.
-        moving: bool,
-    },
+    WidthsUnknown { moving: bool },
     /// The encoder replies, but not for this register: it does not have it.
     #[error("the encoder has no register {address}")]
     NoSuchRegister { address: RegisterAddress },
@@ -115,15 +98,11 @@ pub enum Error {
         /// Why it is not known.
         cause: Box<Error>,
     },
-    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// Neither order of a register number's two bytes gives an answer that the manual knows.
     #[error("the encoder's answer 0x{answer:02X} does not tell the byte order of register numbers")]
-    OrderUnknown {
-        /// The reply to the probe.
-        answer: u8,
-    },
+    OrderUnknown { answer: u8 },
     /// A position with more bits than the known frame of the encoder.
     #[error("the position 0x{word:X} has more than {multiturn}+{singleturn} bits")]
     TooWide {
@@ -139,7 +118,6 @@ pub enum Error {
     OutOfRange {
         /// The first.
         start: RegisterAddress,
-        /// Number of registers.
         count: usize,
     },
     /// Neither a description for this encoder nor a general one exists.
@@ -157,10 +135,8 @@ pub enum Error {
     /// The encoder is in a device mode in which its registers may show values that were never saved.
     #[error("the encoder is in device mode {mode}")]
     NotInOperation { mode: DeviceMode },
-    /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed { item: String },
-    /// The reply belongs to another kind of request.
     #[error("{requested}: the reply is of another kind: {reply}")]
     OtherReply { requested: RequestedItem, reply: String },
     /// The adapter reports a status of the frame that the bridge protocol does not have.
@@ -177,17 +153,12 @@ pub enum Error {
     TooFew {
         /// The first register.
         start: RegisterAddress,
-        /// Registers requested.
         expected: usize,
-        /// Registers read.
         got: usize,
     },
     /// The encoder does not return to operation, or keeps its password set.
     #[error("the encoder stays in device mode {mode}, or its password stays set")]
-    StaysUnlocked {
-        /// The mode that it reports.
-        mode: DeviceMode,
-    },
+    StaysUnlocked { mode: DeviceMode },
 }
 
 impl Error {
@@ -231,7 +202,6 @@ pub enum Damage {
     /// The checksum of a control frame, as the adapter says.
     #[error("the encoder's reply to the register access has a wrong CRC")]
     ControlFrame,
-    /// Readings of the same thing differ.
     #[error("two readings differ")]
     Inconsistent,
 }

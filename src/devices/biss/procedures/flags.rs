@@ -1,5 +1,5 @@
-//! Errors and warnings for positions that do not contain them: over the configuration pin they are in registers (reference
-//! UBICOM 4), which are read in addition.
+//! Errors and warnings of positions that do not include them. On the configuration pin they are read from registers in
+//! addition (reference UBICOM 4).
 
 use std::time::Duration;
 

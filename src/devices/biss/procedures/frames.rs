@@ -1,4 +1,4 @@
-//! The frames of a stream with checked checksums: each as a reading, or the reason why there is none.
+//! Frames of a stream with verified checksums: each as a reading, or the reason why there is none.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -64,7 +64,6 @@ impl FrameRun {
         FrameRun { first, at, period_ns, lost, frames, layout, is_split_known, clock_hz, is_limited }
     }
 
-    /// Returns whether a stream begins.
     pub const fn is_stream_start(&self) -> bool {
         self.first == self.lost
     }
@@ -82,7 +81,6 @@ impl FrameRun {
     }
 }
 
-/// Decodes the frames of a packet.
 pub fn frames(layout: &Layout, data: &BissData) -> Vec<Frame> {
     data.values.iter().map(|(status, raw)| frame(layout, *status, *raw)).collect()
 }

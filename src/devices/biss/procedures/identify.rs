@@ -1,5 +1,5 @@
-//! Identification: the direct registers that every BiSS C encoder has, the matching description, and the data sheet,
-//! which contains the frame.
+//! Identification: the direct registers common to all BiSS C encoders, the matching description, and the data sheet,
+//! which defines the frame.
 
 use std::sync::Arc;
 
@@ -16,10 +16,8 @@ use crate::devices::biss::protocol::{
 };
 use crate::profile::Unknown;
 
-/// Identity of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
-    /// The kind that the encoder reports.
     pub kind: Kind,
     /// The serial number, high byte first (`U`), as a decimal number; empty if there is no register for it.
     pub serial_number: String,
@@ -27,13 +25,11 @@ pub struct Identity {
     pub serial_bytes: Vec<u8>,
     /// Its firmware; `None` if it has no registers for it.
     pub firmware: Option<Firmware>,
-    /// Description of its registers.
     pub description: Arc<Description>,
     /// A description of the same manufacturer is for another device ID.
     pub mismatch: Option<Mismatch>,
     /// Its data sheet; `None` if it has none known to this program.
     pub data_sheet: Option<DataSheet>,
-    /// The frame of its position.
     pub layout: Layout,
     pub source: FrameSource,
     /// The adapter, if it is connected over one.
@@ -45,15 +41,11 @@ pub struct Identity {
 /// The source of the frame of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameSource {
-    /// The encoder's data sheet.
     DataSheet,
-    /// The encoder's description.
     Description,
-    /// The user, in the link.
     Given,
     /// Checksum of the frames while the shaft turned: the number of turn bits is not known.
     Checksum,
-    /// Assumed: that of the kit encoder.
     Assumed,
 }
 
@@ -70,9 +62,7 @@ impl FrameSource {
 /// The data sheet: two banks of registers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheet {
-    /// The bank common to all BiSS devices.
     pub common: DataSheetBank,
-    /// The encoder's bank.
     pub encoder: DataSheetBank,
     /// The frame given by both banks, or why there is none.
     pub layout: Result<Layout, EdsError>,
@@ -80,7 +70,6 @@ pub struct DataSheet {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheetBank {
-    /// Number of the bank.
     pub bank: u8,
     /// Its registers as received.
     pub bytes: [u8; 64],

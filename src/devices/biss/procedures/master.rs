@@ -1,7 +1,8 @@
-//! The host's side of the line: repeating requests, reading back, and reading twice. A single exchange is in [`ubicom`] or
-//! [`bus`].
+//! Host side of the line: repeated requests, reading back and reading twice. Single exchanges are implemented in
+//! [`ubicom`] and [`bus`].
 //!
-//! A read is repeated, at most five times and for at most eight seconds; a write is never repeated blindly.
+//! A read is repeated at most five times within at most eight seconds; a write is never repeated without checking its
+//! effect.
 
 mod bus;
 mod stream;
@@ -39,7 +40,6 @@ enum ExchangeError {
         /// The sent bytes came back.
         echo_heard: bool,
     },
-    /// A reply arrived damaged.
     Damage(Damage),
     /// The bus has no frame.
     NoFrame(NoFrame),

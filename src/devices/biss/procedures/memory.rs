@@ -1,4 +1,4 @@
-//! The encoder's memory: banks, data areas, and everything that can be restored. Data areas are not accessed while the
+//! Memory of the encoder: banks, data areas, and everything that can be restored. Data areas are not accessed while the
 //! shaft turns (manual 6.5).
 
 use std::time::Duration;
@@ -25,7 +25,6 @@ const TREMBLE: u64 = 8192;
 /// How to treat values that were entered in a device mode and never saved: the encoder shows them as if they were stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsaved {
-    /// They are read, and the profile is marked.
     Marked,
     /// They are refused: they would be compared as the encoder's content.
     Refused,

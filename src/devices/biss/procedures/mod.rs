@@ -1,10 +1,10 @@
-//! The procedures of a BiSS C encoder, over its configuration pin (UBICOM) or over an adapter on the bus. Each takes a
-//! [`Master`], which sends requests, repeats what may be repeated and keeps the times; the manual is POSITAL's for the
-//! IXARC kit encoders.
+//! Procedures of a BiSS C encoder, over its configuration pin (UBICOM) or over an adapter on the bus. Each uses a
+//! [`Master`], which sends requests, repeats those that may be repeated, and observes the time limits. "Manual" refers
+//! to POSITAL's manual for the IXARC kit encoders.
 //!
 //! ```text
-//! read, write, position ── master: what is asked again ──┬─▶ master/ubicom: one exchange over the configuration pin
-//!                                                        └─▶ master/bus: one over an adapter (buses/bridge)
+//! read, write, position ── master: repetitions ──┬─▶ master/ubicom: one exchange over the configuration pin
+//!                                                └─▶ master/bus: one over an adapter (buses/bridge)
 //! ```
 
 pub mod check;

@@ -1,4 +1,4 @@
-//! Positions for display and plotting, and registers that are watched at the same time.
+//! Positions for display and plotting, and registers watched at the same time.
 
 use super::flags::with_flags;
 use super::{Damage, Error, FrameRun, Master};
@@ -86,7 +86,6 @@ impl PositionReading {
     }
 }
 
-/// A polled sample.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     Position(PositionReading),
@@ -97,7 +96,6 @@ pub enum Sample {
         /// Number of CRC errors, including frames that were requested again.
         crc_errors: u32,
     },
-    /// Frames that an adapter streams.
     Frames(FrameRun),
     /// Registers that are watched in addition to the position.
     Watched(WatchedReading),
@@ -106,7 +104,6 @@ pub enum Sample {
 /// Registers that are watched, as they were read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
-    /// Time of the reply.
     pub at: Moment,
     pub range: RegisterRange,
     /// Their values in the order of addresses, or why there are none: no such register, or data.

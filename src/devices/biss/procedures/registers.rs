@@ -1,4 +1,4 @@
-//! Values of registers as read, byte by byte, and reading the registers of a description.
+//! Register values as read, byte by byte, and reading the registers of a description.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,6 @@ use crate::devices::biss::protocol::{Decoded, Description, Firmware, Register, R
 pub struct Registers(BTreeMap<RegisterAddress, u8>);
 
 impl Registers {
-    /// Returns the value of one.
     pub fn get(&self, address: RegisterAddress) -> Option<u8> {
         self.0.get(&address).copied()
     }
@@ -66,7 +65,6 @@ impl Registers {
         Ok(bytes)
     }
 
-    /// Reads a described register and keeps it.
     pub(super) fn read_register(&mut self, master: &mut Master<'_>, register: &Register) -> Result<Vec<u8>, Error> {
         self.read(master, register.address, register.width)
     }
@@ -100,10 +98,10 @@ impl Registers {
         Ok(missing)
     }
 
-    /// Reads the registers with these roles, as far as the encoder has them.
+    /// Reads the registers with the given roles, skipping those that the encoder lacks.
     ///
     /// # Errors
-    /// Errors of the exchange.
+    /// If the exchange fails.
     pub(super) fn read_roles(
         &mut self,
         master: &mut Master<'_>,
@@ -124,7 +122,8 @@ impl Registers {
     }
 }
 
-/// Returns whether a register can be read with this firmware; if the firmware is not known, whether every firmware has it.
+/// Returns whether a register can be read with the given firmware. If the firmware is unknown, the register must exist
+/// in every version.
 fn has(register: &Register, firmware: Option<Firmware>) -> bool {
     register.access.reads() && firmware.unwrap_or_default() >= register.since
 }

@@ -1,4 +1,4 @@
-//! The state of a line and its encoder that is kept between jobs.
+//! The state of a line and its encoder, kept between jobs.
 
 use std::fmt;
 use std::sync::Arc;
@@ -19,68 +19,65 @@ use crate::parameter::{Checked, Maybe, Milliseconds, Millivolts, Parameters, Ref
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
-/// Which byte of a register's number comes first; `None`: it is probed.
+/// Byte order of a register number; `None` to detect it.
 pub const ORDERS: Words<Option<ByteOrder>> =
     Words(&[("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst))]);
 
 parameters! {
-    /// Parameters of the configuration pin in a link.
+    /// Link parameters of the configuration pin.
     pub struct PinParameters: UrlError {
-        /// Baud rates of serial ports; the port itself may have fewer.
+        /// Baud rate of the serial port; the port itself may support fewer rates.
         pub baud: Baud = FORMAT.baud, "baud" => Checked(Expected::BitRate { low: 300, high: 4_000_000 }, read_baud),
             "settings_card.baud" like "115200";
         pub parity: Parity = FORMAT.parity, "parity" => Parity::WORDS;
-        /// Byte order of register numbers; `None`: it is detected.
+        /// Byte order of register numbers; `None` to detect it.
         pub order: Option<ByteOrder> = None, "order" => ORDERS;
-        /// Whether the line echoes.
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
-        /// Time limit of a reply, besides the time of its bytes and the margin.
+        /// Reply time-out, not counting transmission time and the margin.
         pub timeout: Duration = REPLY_TIME_OUT, "timeout" => Milliseconds(1..=10_000);
     }
 }
 
 parameters! {
-    /// Limits for late replies, from the link.
+    /// Link parameters that set limits for late replies.
     pub struct LineParameters: UrlError {
-        /// Additional delay allowed for a reply; `None` for the default of the link.
+        /// Additional delay allowed for a reply; `None` for the link's default.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
     }
 }
 
 parameters! {
-    /// Parameters of the bus behind an adapter in a link.
+    /// Link parameters of the bus behind an adapter.
     pub struct BusParameters: UrlError {
-        /// Clock of BiSS: by default slow enough for long cables.
+        /// BiSS clock frequency in hertz; the default is slow enough for long cables.
         pub clock_hz: u32 = 1_000_000, "clock" => CLOCK, "connect.biss_clock";
-        /// Supply of the encoder by the adapter; `None` for none.
+        /// Supply voltage that the adapter provides to the encoder, in millivolts; `None` for no supply.
         pub millivolt: Option<u16> = None, "voltage" => Maybe(Millivolts(Supply::RANGE));
-        /// State of the supply at the end.
         pub after: SupplyAfter = SupplyAfter::AsFound, "leave-supply" => SupplyAfter::WORDS;
     }
 }
 
 parameters! {
-    /// Parameters in a link for the frame of an encoder that does not report it.
+    /// Link parameters describing the frame of an encoder that does not report it.
     pub struct FrameParameters: UrlError {
         pub multiturn: Option<u8> = None, "mt" => Maybe(Whole(Quantity::Bits, 0..=32)), "connect.biss_turns" like "16";
         pub singleturn: Option<u8> = None, "st" => Maybe(Whole(Quantity::Bits, 1..=32)), "connect.biss_steps" like "17";
-        /// The checksum; `Some(None)`: the frames have none.
+        /// Checksum of the frames, if given; `Some(None)` means that frames carry no checksum.
         pub crc: Option<Option<Crc>> = None,
             "crc" => Maybe(Checked(Expected::Polynomial, read_crc)), "connect.biss_crc" like "0x43";
     }
 }
 
-/// Connection to the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transport {
-    /// UBICOM over its configuration pin: registers by their global address.
+    /// UBICOM over the configuration pin: registers are selected by global address.
     ConfigPin,
-    /// BiSS over an adapter: registers by bank and address.
+    /// BiSS over an adapter: registers are selected by bank and address.
     Adapter,
 }
 
 impl Transport {
-    /// Returns the link parameters that mean something over it.
+    /// Returns the link parameters that apply to the transport.
     pub fn parameters(self) -> Vec<&'static str> {
         match self {
             Transport::ConfigPin => [PinParameters::KEYS, LineParameters::KEYS, FrameParameters::KEYS].concat(),
@@ -92,82 +89,74 @@ impl Transport {
 /// The state of a line and its encoder.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// Connection to the encoder.
     pub transport: Transport,
     /// Baud rate and parity on the configuration pin. The encoder uses 115200 8N1 only; a converter or a radio link in
     /// between may use another format.
     pub format: CharacterFormat,
-    /// Silence, echo and damage on the line.
     pub line: LineState,
-    /// Byte order of register numbers over the configuration pin; `None` until it is detected.
+    /// Byte order of register numbers over the configuration pin; `None` until detected.
     pub order: Option<ByteOrder>,
-    /// Time limit of a reply, besides the time of its bytes and the margin.
+    /// Reply time-out, not counting transmission time and the margin.
     pub timeout: Duration,
-    /// Requested clock of BiSS in hertz; the adapter uses the nearest one that it supports.
+    /// Requested BiSS clock frequency in hertz; the adapter uses the nearest supported one.
     pub clock_hz: u32,
-    /// Clock of BiSS in hertz as set by the adapter; `None` before.
+    /// BiSS clock frequency set by the adapter, in hertz; `None` until it has been set.
     pub actual_clock_hz: Option<u32>,
-    /// Supply of the encoder, if the adapter is to switch it.
+    /// Encoder supply, if the adapter is to switch it.
     pub supply: Option<Supply>,
-    /// The adapter, if connected over one.
     pub adapter: AdapterState,
-    /// The description of its registers; `None` before identification.
+    /// Register description of the encoder; `None` before identification.
     pub description: Option<Arc<Description>>,
-    /// The encoder's firmware, as it was identified.
+    /// Firmware version found during identification.
     pub firmware: Option<Firmware>,
-    /// The frame from the encoder's data sheet, or its substitute.
+    /// Frame layout from the encoder's data sheet, or its substitute.
     pub layout: Option<Layout>,
-    /// The frame given by the user, for an encoder that does not report it.
+    /// Frame layout given by the user, for an encoder that does not report it.
     pub given: Option<Layout>,
-    /// Source of the frame; `None` before the encoder was identified.
+    /// Source of the frame layout; `None` before identification.
     pub(super) source: Option<FrameSource>,
-    /// Set while values to be stored are read: each must be read twice, even on a line that seems good.
+    /// Whether values about to be stored are being read: each must be read twice, even on a line that seems good.
     pub(super) thorough: bool,
-    /// Replies and frames arrived damaged.
     pub(super) noisy: bool,
-    /// Setting of the adapter's bus.
     pub(super) bus: Option<Bus>,
-    /// The bank that is selected over BiSS, and when it was last sure.
+    /// The bank selected over BiSS, and when that was last certain.
     pub(super) bank: Option<(u8, Moment)>,
-    /// Frames with a wrong checksum since the last reading.
+    /// Number of frames with a wrong checksum since the last reading.
     pub(super) crc_errors: u32,
-    /// A frame with these widths had a right checksum.
+    /// Whether a frame with the current widths has had a correct checksum.
     pub(super) good_frames: bool,
-    /// Last values of the registers of errors and warnings, over the configuration pin.
+    /// Last values of the error and warning registers, read over the configuration pin.
     pub(super) flags: Option<Flags>,
-    /// The stream that the adapter sends.
     pub(super) flow: Option<Flow>,
-    /// The last frame of the streams before.
+    /// Time of the last frame of any earlier stream.
     pub(super) streamed_until: Option<Time>,
-    /// When a register was last written.
     pub(super) written_at: Option<Moment>,
-    /// A write ended early and the encoder could not be returned to operation: a store, a calibration or a restart may be
-    /// running.
+    /// Whether a write ended early and the encoder could not be returned to operation: a store, a calibration or a
+    /// restart may still be running.
     pub unfinished: bool,
 }
 
-/// The encoder's supply as an adapter gives it.
+/// The encoder supply provided by an adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Supply {
-    /// Millivolts requested.
+    /// Requested voltage in millivolts.
     pub millivolt: u16,
-    /// Millivolts and milliamperes measured when the supply was switched on; `None` before.
+    /// Voltage in millivolts and current in milliamperes, measured when the supply was switched on; `None` before that.
     pub measured: Option<(u16, u16)>,
 }
 
 impl Supply {
-    /// Time until registers can be read: data sheet, 02:0Eh.
+    /// Time from power-up until registers can be read (data sheet, 02:0Eh).
     pub(super) const POWER_UP: Duration = Duration::from_millis(500);
-    /// Millivolts allowed for every version of the kit encoder (manual, chapter 2: 4.75 to 12.5 V).
+    /// Supply voltage in millivolts that suits every version of the kit encoder (manual, chapter 2: 4.75 to 12.5 V).
     const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
 
-    /// Returns the supply voltage of a kit encoder with its limits.
+    /// Returns a supply voltage with the limits of the kit encoder.
     pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: *Self::RANGE.end() }
     }
 }
 
-/// The setting of an adapter's bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Bus {
     pub(super) clock_hz: u32,
@@ -176,7 +165,6 @@ pub(super) struct Bus {
 }
 
 impl Station {
-    /// Creates the state of an unused line.
     pub fn new(way: Transport, margin: Duration) -> Self {
         Station {
             transport: way,
@@ -207,10 +195,10 @@ impl Station {
         }
     }
 
-    /// Creates the station from the parameters of its link.
+    /// Creates the station from its link parameters. Parameters that do not concern the line are ignored.
     ///
     /// # Errors
-    /// A value that cannot be used, with the allowed ones. Parameters that do not concern the line are ignored.
+    /// If a value cannot be used; the error lists the allowed ones.
     pub fn from_query(query: &Query, way: Transport, margin: Duration) -> Result<Self, UrlError> {
         let pairs = query.pairs();
         let (pin, bus) = (PinParameters::read(pairs)?, BusParameters::read(pairs)?);
@@ -224,14 +212,14 @@ impl Station {
         Ok(station)
     }
 
-    /// Returns the frame of the position: from the encoder's data sheet, else from its description, else that of the kit
-    /// encoder.
+    /// Returns the position frame layout: from the encoder's data sheet, else from its description, else that of the
+    /// kit encoder.
     pub fn frame(&self) -> Layout {
         let described = || self.description.as_ref().and_then(|description| description.layout().cloned());
         self.layout.clone().or_else(described).unwrap_or_default()
     }
 
-    /// Forgets the adapter: it is identified and configured again.
+    /// Forgets the adapter, so that it is identified and configured again.
     pub(super) fn forget_adapter(&mut self) {
         self.adapter.forget();
         self.flow = None;
@@ -246,23 +234,23 @@ impl Station {
         }
     }
 
-    /// Takes the number of frames with a wrong checksum since the last reading.
+    /// Returns the number of frames with a wrong checksum since the last reading, and resets it.
     pub fn take_crc_errors(&mut self) -> u32 {
         std::mem::take(&mut self.crc_errors)
     }
 
-    /// Returns whether the number of turn bits is known.
+    /// Returns whether the multiturn width is known.
     pub(super) fn is_split_known(&self) -> bool {
         self.source.is_none_or(FrameSource::is_known)
     }
 
-    /// Returns whether values must be read twice: a checksum misses some pairs of flipped bits.
+    /// Returns whether values must be read twice, because a checksum misses some pairs of flipped bits.
     pub(super) fn reads_twice(&self) -> bool {
         self.thorough || self.noisy
     }
 
-    /// Returns whether reading a register back proves that it was written. The value of a command register does not: the
-    /// same command may have been given before.
+    /// Returns whether reading a register back proves that it was written. For a command register it does not: an
+    /// earlier command may have left the same value.
     pub(super) fn tells_back(&self, address: RegisterAddress) -> bool {
         if address == RegisterAddress::BANK_SELECT {
             return true;
@@ -271,7 +259,7 @@ impl Station {
         description.access(address) == Some(Access::Rw) && !self.is_command(address)
     }
 
-    /// Returns whether a write there is a command: of a procedure, or one that saves something.
+    /// Returns whether writing the given register is a command that runs a procedure or saves something.
     pub(super) fn is_command(&self, address: RegisterAddress) -> bool {
         self.description.as_ref().is_some_and(|description| {
             let saves = description.at(address).is_some_and(|register| !register.saves.is_empty());
@@ -290,7 +278,7 @@ impl fmt::Display for Station {
 }
 
 impl FrameParameters {
-    /// Returns the frame; the usual checksum applies if none is given.
+    /// Returns the frame layout given in the link, with the usual checksum unless another is given.
     fn layout(self, query: &Query) -> Result<Option<Layout>, Refused> {
         let alone = |name: &str, allowed| Refused::new(name, query.get(name).unwrap_or_default(), allowed);
         let Some(singleturn) = self.singleturn else {
@@ -298,13 +286,13 @@ impl FrameParameters {
             return other.map_or(Ok(None), |name| Err(alone(name, Expected::OnlyWith("st"))));
         };
         let crc = self.crc.unwrap_or_else(|| Crc::new(Crc::POSITION, 0, true).ok());
-        // 32 and 32 bits leave no space for flags and checksum.
+        // Widths of 32 and 32 bits leave no space for flags and checksum.
         let layout = Layout::new(self.multiturn.unwrap_or(0), singleturn, true, true, crc);
         layout.map(Some).map_err(|_| alone("st", Expected::ShortFrame))
     }
 }
 
-/// Parses a checksum. `Some(None)`: the frames have none.
+/// Parses a checksum; `Some(None)` means that frames carry no checksum.
 fn read_crc(text: &str) -> Option<Option<Crc>> {
     if text == "none" {
         return Some(None);
@@ -347,7 +335,7 @@ mod tests {
         assert_eq!(station.supply, Some(Supply { millivolt: 4_750, measured: None }));
     }
 
-    /// Issue 22.20: 12 bits of turns, 19 of steps, two flags, and CRC6 43h unless another is given.
+    /// Issue 22.20: 12 multiturn bits, 19 singleturn bits, two flags, and CRC6 43h unless another is given.
     #[test]
     fn a_frame_format_can_be_given_in_the_link() {
         let given = |query: &str| station(query).unwrap().given.map(|own| (own.data_bits(), own.crc_bits()));
@@ -386,8 +374,8 @@ mod tests {
         }
     }
 
-    /// Manual, appendix 9.1: bank select, mode, password and the data areas keep the values written; the rest are commands,
-    /// cannot be written, or are not described.
+    /// Manual, appendix 9.1: bank select, mode, password and the data areas keep written values; the remaining
+    /// registers are commands, are read-only, or are not described.
     #[test]
     fn readback_applies_to_registers_that_keep_their_value() {
         let mut station = Station::new(Transport::ConfigPin, Duration::ZERO);

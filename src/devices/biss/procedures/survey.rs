@@ -1,4 +1,4 @@
-//! Reads the status of an encoder, and everything else that can be displayed.
+//! Reads an encoder's status, and everything else that can be displayed.
 
 use super::identify::identify_with;
 use super::registers::Registers;
@@ -8,65 +8,61 @@ use crate::devices::biss::protocol::{
     RegisterAddress, Role, WiegandResult,
 };
 
-/// The status of an encoder. Values without a register, or not with this firmware, are `None`.
+/// The status of an encoder. A value is `None` if the encoder or its firmware has no register for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Status {
     pub mode: Option<DeviceMode>,
-    /// The value of the password register.
     pub protection: Option<u8>,
     pub errors: Option<Bits>,
     pub warnings: Option<Bits>,
-    /// Degrees Celsius.
+    /// Temperature in degrees Celsius.
     pub celsius: Option<f64>,
-    /// The filter of the position.
     pub filter: Option<Filter>,
-    /// The position, with the error and warning bit if they are available; `None` if there was none.
+    /// Position with its error and warning bits, if available; `None` if no position could be read.
     pub position: Option<PositionReading>,
 }
 
 impl Status {
-    /// Returns the device mode if it is not operation: registers may show values that were never saved.
+    /// Returns the device mode unless it is operation. In other modes, registers may show values that were never saved.
     pub fn unsaved_mode(&self) -> Option<DeviceMode> {
         self.mode.filter(|mode| *mode != DeviceMode::OPERATION)
     }
 }
 
-/// A register of bits.
+/// A register whose bits have individual meanings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bits {
     pub raw: u64,
-    /// The bits that are set, lowest first, with their names in the description.
+    /// Set bits, lowest first, with their names from the description.
     pub set: Vec<(u8, Option<Name>)>,
 }
 
-/// An encoder as it was found.
+/// The state in which an encoder was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub identity: Identity,
     pub status: Status,
     pub calibration: Option<CalibrationStatus>,
-    /// The last Wiegand test since power-up.
+    /// Result of the last Wiegand test since power-up.
     pub wiegand_last: Option<WiegandResult>,
-    /// The factory's Wiegand test.
     pub wiegand_production: Option<WiegandResult>,
-    /// The Wiegand test saved in the encoder, as of power-up.
+    /// Result of the Wiegand test saved in the encoder, as of power-up.
     pub wiegand_saved: Option<WiegandResult>,
-    /// Preset value of the position.
     pub preset: Option<PresetValue>,
-    /// All values read, byte by byte.
+    /// All register values read, byte by byte.
     pub registers: Registers,
-    /// Registers of the description that the encoder does not have.
+    /// Registers in the description that the encoder does not have.
     pub missing: Vec<RegisterAddress>,
 }
 
 const STATUS: [Role; 6] = [Role::Mode, Role::Password, Role::Errors, Role::Warnings, Role::Temperature, Role::Filter];
-/// Offset of the results of a Wiegand test from its error code: the last one, the factory's, the saved one.
+/// Offset from the error code of a Wiegand test to its results: the last one, the factory's, the saved one.
 const WIEGAND_RESULTS: u8 = 1;
 
-/// Reads how an encoder is that was identified before.
+/// Reads the status of an identified encoder.
 ///
 /// # Errors
-/// Errors of the exchange; an encoder that was not identified.
+/// If the exchange fails, or if the encoder has not been identified.
 pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     let description = master.description()?;
     let firmware = master.station().firmware;
@@ -76,10 +72,10 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     Ok(status_of(&description, &registers, position))
 }
 
-/// Reads all that the encoder's description names, and the position.
+/// Reads every register in the encoder's description, and the position.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// If the exchange fails.
 pub fn survey(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -90,7 +86,7 @@ pub fn survey(
     look_around(master, identity, registers, progress)
 }
 
-/// Reads everything except the identity; `registers` are those already read for it.
+/// Reads everything except the identity; `registers` contains the values already read for the identity.
 pub(super) fn look_around(
     master: &mut Master<'_>,
     identity: Identity,
@@ -114,7 +110,7 @@ pub(super) fn look_around(
     })
 }
 
-/// Reads the position, if any: an encoder without a readable frame is examined regardless.
+/// Reads the position, if possible: an encoder without a readable frame is surveyed regardless.
 fn position_if_any(master: &mut Master<'_>) -> Result<Option<PositionReading>, Error> {
     match master.position() {
         Ok(reading) => Ok(Some(reading)),

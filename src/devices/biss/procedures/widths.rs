@@ -1,24 +1,24 @@
-//! The search for the frame of an encoder with unknown widths, while its shaft turns.
+//! Finds the frame layout of an encoder with unknown widths while its shaft turns.
 
 use std::time::Duration;
 
 use super::{Error, Master};
 use crate::devices::biss::protocol::{Crc, Layout, LayoutError, data_bits_of};
 
-/// Maximum number of bits of a frame, data and checksum.
+/// Maximum length of a frame in bits, including data and checksum.
 const CLOCKED: u8 = 64;
 /// Maximum number of frames examined, and the interval between them.
 const FRAMES: usize = 200;
 const BETWEEN: Duration = Duration::from_millis(2);
-/// Bits within a revolution at most.
+/// Maximum width of the singleturn position in bits.
 const MOST: u8 = 32;
 
-/// Searches for the frame by its checksum, while the shaft turns: CRC6 43h inverted, with an error and a warning bit
-/// after the position, as BiSS encoders have them (`U`). The number of turn bits cannot be observed: as many bits as
-/// fit a word of 32 count as one turn.
+/// Finds the frame layout by its checksum while the shaft turns. The checksum is assumed to be CRC6 43h inverted, with
+/// an error and a warning bit after the position, as usual for BiSS encoders (`U`). The multiturn width cannot be
+/// observed: as many bits as fit into 32 are taken as one turn.
 ///
 /// # Errors
-/// [`Error::WidthsUnknown`] if no length fits, or the shaft stands still; errors of the exchange.
+/// [`Error::WidthsUnknown`] if no length fits or the shaft stands still; otherwise if the exchange fails.
 pub(super) fn find_widths(master: &mut Master<'_>) -> Result<Layout, Error> {
     let crc = Crc::new(Crc::POSITION, 0, true).map_err(LayoutError::from)?;
     let mut frames = Vec::with_capacity(FRAMES);

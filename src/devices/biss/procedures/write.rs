@@ -1,5 +1,5 @@
-//! Writes a plan to an encoder: reads its base again, carries out each operation and reads it back, with an operator at the
-//! motor if required, and returns the encoder to operation after each.
+//! Writes a plan to an encoder: reads its base again, performs each operation and reads the result back, with an
+//! operator at the motor if required, and returns the encoder to operation after each.
 
 use super::error::exactly;
 use super::procedure::{Failure, Guide, LeftState, Operator, Outcome, ProcedureProgress, ProcedureStep};
@@ -10,18 +10,16 @@ use crate::devices::biss::protocol::{
 };
 use crate::profile::{Confirmed, Write, WriteRecord};
 
-/// Progress of a write.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Written {
-    /// Operations carried out, of the plan's.
+    /// Number of operations performed.
     pub ops: usize,
-    /// Registers and settings changed.
     pub written: u64,
-    /// Registers that were read back with the right value.
+    /// Number of registers read back with the correct value.
     pub verified: u64,
-    /// Persistent writes spent, or that may have been.
+    /// Number of persistent writes that were, or may have been, spent.
     pub write_cycles: u64,
-    /// The result of each operation that was carried out or skipped.
+    /// Outcome of each operation that was performed or skipped.
     pub outcomes: Vec<Outcome>,
 }
 
@@ -38,19 +36,19 @@ impl WriteRecord for Written {
 /// A write that ended early.
 pub type Interrupted = crate::profile::Interrupted<Op, Failure, Written, EndState>;
 
-/// State in which an encoder was left.
+/// The state in which an encoder was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EndState {
-    /// The step of the operation that was running.
+    /// The step reached in the running operation.
     pub at: ProcedureStep,
-    /// `None` in operation, with the password cleared. Otherwise the encoder could not be returned to operation: its known
-    /// state, unless it has lost power since, which also returns it to operation.
+    /// Known state of an encoder that could not be returned to operation; `None` if it is in operation with the
+    /// password cleared. Losing power also returns the encoder to operation.
     pub standing: Option<LeftState>,
 }
 
 impl Interrupted {
-    /// Returns a register that is written by itself, if it is not known whether it accepted its value. A value that was
-    /// refused, or not sent, was not accepted.
+    /// Returns the individually written register that may or may not have accepted its value, if any. A value that was
+    /// refused or not sent was not accepted.
     pub fn unclear(&self) -> Option<RegisterAddress> {
         match (&self.unfinished, &self.cause) {
             (Some(Op::WriteRegister { .. }), Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
@@ -60,7 +58,7 @@ impl Interrupted {
     }
 }
 
-/// An encoder into which a plan is written.
+/// An encoder to which a plan is written.
 pub struct EncoderWrite<'w, 'm> {
     guide: Guide<'w, 'm>,
     identity: &'w Identity,
@@ -69,10 +67,10 @@ pub struct EncoderWrite<'w, 'm> {
 }
 
 impl<'w, 'm> EncoderWrite<'w, 'm> {
-    /// Creates the writer for the encoder with this identity; every step is reported.
+    /// Creates the writer for the encoder with the given identity; `tell` is called at every step.
     ///
     /// # Errors
-    /// An encoder that was not identified.
+    /// If the encoder has not been identified.
     pub fn new(
         master: &'w mut Master<'m>,
         identity: &'w Identity,
@@ -95,7 +93,8 @@ impl Write for EncoderWrite<'_, '_> {
     type Written = Written;
     type EndState = EndState;
 
-    /// Checks that this is the encoder of the plan, by its memory as well: two new encoders have the same identity.
+    /// Checks that the encoder is the one that the plan was made for. Its memory is compared as well, since two new
+    /// encoders have the same identity.
     fn confirm(&mut self, plan: &BissPlan) -> Result<(), Error> {
         let master = self.guide.master();
         let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
@@ -132,8 +131,8 @@ impl Write for EncoderWrite<'_, '_> {
         Ok(())
     }
 
-    /// Cancellation is checked between two exchanges, but not if it would leave something incomplete. The encoder is
-    /// returned to operation after each operation, however it ended.
+    /// Applies an operation. Cancellation is checked between two exchanges, unless it would leave something incomplete.
+    /// The encoder is returned to operation after each operation, however it ended.
     fn apply(&mut self, op: &Op, _: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Failure> {
         let guide = &mut self.guide;
         guide.begin(done.outcomes.len());
@@ -153,7 +152,7 @@ impl Write for EncoderWrite<'_, '_> {
     }
 }
 
-/// Returns the encoder to operation, as long as the line works.
+/// Returns the encoder to operation, provided that the line still works.
 fn lead_back(guide: &mut Guide<'_, '_>, cause: Option<&Failure>) -> Result<(), Error> {
     match cause {
         Some(Failure::Device(error)) if is_gone(error) => Err(error.clone()),
@@ -161,7 +160,7 @@ fn lead_back(guide: &mut Guide<'_, '_>, cause: Option<&Failure>) -> Result<(), E
     }
 }
 
-/// Returns whether the connection itself is lost: nothing more can be sent.
+/// Returns whether the connection itself is lost, so that nothing more can be sent.
 fn is_gone(error: &Error) -> bool {
     match error {
         Error::Link(_) => true,
@@ -174,7 +173,7 @@ fn count(done: &mut Written, op: &Op, outcome: Outcome) {
     if !matches!(outcome, Outcome::Skipped { .. }) {
         done.ops += 1;
         done.written += op.weight();
-        // A calibration, and a result that shows after a restart, are known only from the encoder's status.
+        // The result of a calibration, or one that only shows after a restart, is known only from the encoder's status.
         let is_unverifiable =
             matches!(op, Op::Calibrate | Op::WiegandTest { .. } | Op::WriteRegister { old: None, .. });
         done.verified += if is_unverifiable { 0 } else { op.weight() };
@@ -200,10 +199,10 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
     Ok(true)
 }
 
-/// Refuses an encoder in a device mode: values entered there and not saved would be taken for its content.
+/// Refuses an encoder in a device mode, where values entered but not saved would be mistaken for its content.
 ///
 /// # Errors
-/// [`Error::NotInOperation`]; the line.
+/// [`Error::NotInOperation`]; otherwise if the exchange fails.
 pub fn ensure_operation(master: &mut Master<'_>, description: &Description) -> Result<(), Error> {
     match unsaved_mode(master, description)? {
         None => Ok(()),
@@ -211,21 +210,22 @@ pub fn ensure_operation(master: &mut Master<'_>, description: &Description) -> R
     }
 }
 
-/// Returns the device mode in which registers may show values that were never saved; `None` in operation, and for an
-/// encoder without device modes.
+/// Returns the device mode in which registers may show values that were never saved; `None` in operation, or if the
+/// encoder has no device modes.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// If the exchange fails.
 pub fn unsaved_mode(master: &mut Master<'_>, description: &Description) -> Result<Option<DeviceMode>, Error> {
     let Some(lock) = description.lock() else { return Ok(None) };
     let mode = DeviceMode::new(master.read(lock.mode_at)?);
     Ok((mode != DeviceMode::OPERATION).then_some(mode))
 }
 
-/// Reads what a plan needs of an encoder: its identity, its settings, and these banks.
+/// Reads the encoder state that a plan needs: identity, settings, and the given banks.
 ///
 /// # Errors
-/// [`Error::Moving`] if banks are read; [`Error::NotInOperation`]; errors of the exchange.
+/// [`Error::Moving`] if banks are read while the shaft turns; [`Error::NotInOperation`]; otherwise if the exchange
+/// fails.
 pub fn read_state(
     master: &mut Master<'_>,
     identity: &Identity,
@@ -248,17 +248,17 @@ pub fn read_state(
     Ok(DeviceState { identity: identity.profile(), filter, preset, areas, banks: read })
 }
 
-/// Reads a bank twice, if the line has damaged anything; the shaft stands still.
+/// Reads a bank while the shaft stands still, twice if the line has damaged any data.
 ///
 /// # Errors
-/// Errors of the exchange.
+/// If the exchange fails.
 pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
     let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
     let bytes = master.read_run(start, Bank::SIZE)?;
     Ok(Bank { number, bytes: exactly(start, bytes)? })
 }
 
-/// Reads the filter in use; `None` if the firmware has no choice.
+/// Reads the filter in use, or `None` if the firmware offers no choice.
 fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Option<Filter>, Error> {
     let firmware = master.station().firmware;
     let Some(register) = description.with_role(Role::Filter) else { return Ok(None) };
@@ -268,7 +268,7 @@ fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Opt
     Ok(Some(Filter::from_byte(master.read(register.address)?)))
 }
 
-/// Reads the stored preset value; `None` if the firmware has none.
+/// Reads the stored preset value, or `None` if the firmware has none.
 fn read_preset(master: &mut Master<'_>, description: &Description) -> Result<Option<PresetValue>, Error> {
     let firmware = master.station().firmware;
     let place = description.procedure(ProcedureKind::Preset).and_then(|procedure| procedure.data);

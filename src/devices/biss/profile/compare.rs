@@ -1,5 +1,4 @@
-//! The differences between two encoders, or between an encoder and a profile: one item for each run of differing
-//! registers.
+//! Compares two encoders, or an encoder and a profile, with one item for each run of differing registers.
 
 use super::{Bank, BissProfile, RegisterRange};
 use crate::bits::hex_compact;
@@ -7,7 +6,7 @@ use crate::devices::biss::protocol::RegisterAddress;
 use crate::profile::difference::runs;
 use crate::profile::{Comparison, Difference};
 
-/// Compares filter, preset value and plain data. Recorded values are not compared.
+/// Compares filter, preset value and plain data, but not the recorded values.
 pub(super) fn compare(left: &BissProfile, right: &BissProfile) -> Comparison {
     let mut comparison = Comparison::default();
     let filter = |profile: &BissProfile| profile.filter.map(|filter| vec![filter.byte()]);
@@ -26,7 +25,7 @@ pub(super) fn compare(left: &BissProfile, right: &BissProfile) -> Comparison {
     comparison
 }
 
-/// The registers that `item` names, which are there on the sides that have bytes for them.
+/// Compares the registers named by `item`; a side without bytes does not have the registers.
 fn compare_bytes(item: &str, left: Option<Vec<u8>>, right: Option<Vec<u8>>, comparison: &mut Comparison) {
     let (left, right) = match (left, right) {
         (Some(left), Some(right)) => (left, right),
@@ -71,7 +70,7 @@ mod tests {
             ("0x24:0x13", "00", "A3"),
         ];
         assert_eq!(listed(&comparison), expected);
-        // Filter, six registers of the preset value, 64 banks.
+        // One filter, six registers of the preset value, 64 banks.
         assert_eq!(comparison.compared, 1 + 6 + 64 * 64);
         assert_eq!(comparison.missing(), Vec::<String>::new());
         assert_eq!(compare(&right, &right).differences, []);

@@ -1,5 +1,4 @@
-//! Plans for single changes and for the guided procedures, each checked against the encoder's own rules before anything is
-//! sent.
+//! Plans single changes and guided procedures, each checked against the encoder's own rules before anything is sent.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,38 +11,38 @@ use crate::devices::biss::protocol::{
     Area, Description, Filter, Firmware, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
-/// Manual 6.7: singleturn or multiturn alone.
+/// First firmware that can preset singleturn or multiturn alone (manual 6.7).
 const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
 
-/// The motor that turns the shaft in a procedure.
+/// The motor that turns the shaft during a procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorSource {
-    /// A motor that does not need this encoder: another motor, an open loop, another feedback.
+    /// A motor that does not depend on this encoder: a separate motor, open-loop control, or another feedback device.
     Other,
-    /// A drive that closes its loop on this encoder, which provides no position meanwhile.
+    /// A drive that closes its loop on this encoder, which provides no position during the procedure.
     ThisEncoder,
 }
 
-/// The steps of mounting an encoder in one run, in this order.
+/// The steps of mounting an encoder in one run, performed in field order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MountingRun {
-    /// Calibrate the singleturn.
+    /// Whether to calibrate the singleturn position.
     pub calibrate: bool,
-    /// Test the Wiegand sensor, and whether to keep the result.
+    /// Whether to save the result of the Wiegand test; `None` to skip the test.
     pub wiegand: Option<bool>,
-    /// Make the shaft's place this value.
+    /// Value to set at the current shaft position, and the parts that it applies to.
     pub preset: Option<(PresetValue, PresetParts)>,
-    /// Write the plain data of this profile.
+    /// Profile whose plain data is written, if any.
     pub data: Option<Box<BissProfile>>,
 }
 
 impl MountingRun {
-    /// Returns whether any part of it needs a motor.
+    /// Returns whether any step of the run needs a motor.
     pub fn needs_motor(&self) -> bool {
         self.calibrate || self.wiegand.is_some()
     }
 
-    /// Refuses a motor that needs this encoder if the run needs a motor.
+    /// Refuses a motor that depends on this encoder if the run needs a motor.
     ///
     /// # Errors
     /// [`PlanError::DrivenByThisEncoder`].
@@ -55,16 +54,16 @@ impl MountingRun {
     }
 }
 
-/// The kind of a register for a write.
+/// The way in which a register is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind<'d> {
-    /// In a data area that is opened and saved.
+    /// Part of a data area, which is opened and saved as a whole.
     Data(&'d Area),
-    /// Individually.
+    /// Written individually.
     Register,
 }
 
-/// Returns the meaning of a write to a register.
+/// Returns how a register is written.
 ///
 /// # Errors
 /// [`PlanError::ReadOnly`]; [`PlanError::Guarded`] for registers that only the procedures write.
@@ -79,7 +78,8 @@ pub fn place(description: &Description, address: RegisterAddress) -> Result<Regi
     Ok(area.map_or(RegisterKind::Register, RegisterKind::Data))
 }
 
-/// Returns whether it is the device mode, the password, or a register of procedures, but not the plain data itself.
+/// Returns whether a register holds the device mode or the password, or belongs to a procedure; plain data is not
+/// guarded.
 fn is_guarded(description: &Description, address: RegisterAddress) -> bool {
     let locks = description.lock().is_some_and(|lock| [lock.password_at, lock.mode_at].contains(&address));
     let leads = |procedure: &Procedure| {
@@ -90,7 +90,7 @@ fn is_guarded(description: &Description, address: RegisterAddress) -> bool {
     locks || description.procedures().iter().any(leads)
 }
 
-/// Returns the procedure of an encoder.
+/// Returns the encoder's procedure of the given kind.
 ///
 /// # Errors
 /// [`PlanError::NoProcedure`], [`PlanError::FirmwareTooOld`].
@@ -109,8 +109,9 @@ pub fn procedure(
     }
 }
 
-/// Plans to write exactly these bytes, for two edits of the same register the later; equal ones are left out. `banks` and
-/// `registers` have the present values of all edited registers, `None` for a register that cannot be read.
+/// Plans to write exactly the given bytes. A later edit of a register replaces an earlier one, and unchanged values are
+/// left out. `banks` and `registers` contain the present values of all edited registers, `None` for a register that
+/// cannot be read.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -162,15 +163,16 @@ pub fn plan_edits(
     Ok(BissPlan { base, ops })
 }
 
-/// Returns the persistent writes that a value costs: at most one if the register is not described.
+/// Returns the number of persistent writes that storing a value costs; at most one is assumed if the register is not
+/// described.
 fn cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 {
     description.at(address).map_or(1, |register| u8::from(register.is_save(value)))
 }
 
-/// Plans to select a filter; empty if it is already in use.
+/// Plans to select a filter. The plan is empty if the filter is already in use.
 ///
 /// # Errors
-/// No such filter, or the encoder has no choice.
+/// If the filter does not exist, or the encoder offers no choice.
 pub fn plan_filter(description: &Description, device: &DeviceState, to: Filter) -> Result<BissPlan, PlanError> {
     let from = have(description, device, ProcedureKind::FilterSelection, device.filter)?;
     if let Filter::Unknown(code) = to {
@@ -180,11 +182,11 @@ pub fn plan_filter(description: &Description, device: &DeviceState, to: Filter) 
     Ok(BissPlan { base, ops: if from == to { vec![] } else { vec![Op::SelectFilter { from, to }] } })
 }
 
-/// Plans to store a preset value, if one is given that is not stored yet; and, with `parts`, to set the position at the
-/// shaft's present place to the stored value.
+/// Plans to store a preset value, if one is given that is not stored yet; with `parts`, also plans to set the current
+/// shaft position to the stored value.
 ///
 /// # Errors
-/// The value is too wide, or the encoder has no preset, or cannot preset these parts separately.
+/// If the value is too wide, the encoder has no preset, or the given parts cannot be preset separately.
 pub fn plan_preset(
     description: &Description,
     device: &DeviceState,
@@ -211,7 +213,7 @@ pub fn plan_preset(
 /// Plans a run of guided procedures.
 ///
 /// # Errors
-/// See [`PlanError`]; a motor that needs this encoder is refused if the run needs a motor.
+/// See [`PlanError`]; a motor that depends on this encoder is refused if the run needs a motor.
 pub fn plan_mounting(
     description: &Description,
     device: &DeviceState,
@@ -246,7 +248,7 @@ pub fn plan_mounting(
     Ok(plan)
 }
 
-/// Returns a setting of the encoder, or why it has none.
+/// Returns a setting of the encoder, or the reason why it is not available.
 fn have<T: Copy>(
     description: &Description,
     device: &DeviceState,

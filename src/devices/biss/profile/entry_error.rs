@@ -1,41 +1,41 @@
-//! Why a BiSS profile is refused.
+//! Errors in the entries of a BiSS profile.
 
-/// Why an entry of a profile is refused.
+/// The reason why a profile entry is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
-    /// A bank that is already in the list.
+    /// The bank is listed twice.
     #[error("bank 0x{0:02X} appears twice")]
     Twice(u8),
-    /// Banks that end before they begin.
+    /// The bank range ends before it begins.
     #[error("0x{first:02X} comes after 0x{last:02X}")]
     Order {
-        /// The first.
+        /// First bank of the range.
         first: u8,
-        /// The last.
+        /// Last bank of the range.
         last: u8,
     },
-    /// A bank that is none of the area's.
+    /// The bank is outside its area.
     #[error("0x{bank:02X} is not within 0x{first:02X} to 0x{last:02X}")]
     Outside {
-        /// The bank.
+        /// Number of the bank.
         bank: u8,
-        /// The area's first.
+        /// First bank of the area.
         first: u8,
-        /// The area's last.
+        /// Last bank of the area.
         last: u8,
     },
-    /// Another number of bytes than there has to be.
+    /// The number of bytes is wrong.
     #[error("{got} bytes instead of {expected}")]
     Length {
-        /// Number of bytes.
+        /// Actual number of bytes.
         got: usize,
-        /// Required number.
+        /// Expected number of bytes.
         expected: usize,
     },
-    /// Not a release of a firmware.
+    /// The string is not a firmware release.
     #[error("{0:?} is not of the form 1.6.0")]
     Release(String),
-    /// The marked item does not exist.
+    /// The string does not name a markable item.
     #[error("{0:?} is neither calibration nor of the form 0x24:0x10+3")]
     Marked(String),
 }

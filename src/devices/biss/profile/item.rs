@@ -1,58 +1,59 @@
-//! The names of items in an encoder: `0x66` for a direct register, `0x24:0x10` for one of a bank, `0x24:0x10+3` for
-//! consecutive ones.
+//! Item names in an encoder: `0x66` for a direct register, `0x24:0x10` for a register in a bank, `0x24:0x10+3` for
+//! consecutive registers.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::devices::biss::protocol::RegisterAddress;
 
-/// Consecutive registers: direct ones, or within one bank.
+/// A range of consecutive registers, either direct or within one bank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterRange {
     start: RegisterAddress,
-    /// 1…64.
+    /// Number of registers, 1 to 64.
     count: u8,
 }
 
-/// Why a text does not name registers.
+/// The string does not name any registers.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is not an item; items are 0x40 to 0x7F, BANK:OFFSET as 0x24:0x10, and either with +COUNT behind it")]
 pub struct ItemError(pub String);
 
 impl RegisterRange {
-    /// Creates one register.
+    /// Creates a range of one register.
     pub const fn one(start: RegisterAddress) -> Self {
         RegisterRange { start, count: 1 }
     }
 
-    /// Creates the range of `count` registers from `start`; `None` if `count` is 0 or beyond the bank.
+    /// Creates the range of `count` registers from `start`; `None` if `count` is 0 or the range extends beyond the
+    /// bank.
     pub fn new(start: RegisterAddress, count: u8) -> Option<Self> {
         start.plus(count.checked_sub(1)?).map(|_| RegisterRange { start, count })
     }
 
-    /// Returns the first.
+    /// Returns the first register of the range.
     pub const fn start(self) -> RegisterAddress {
         self.start
     }
 
-    /// Returns the number of registers, 1…64.
+    /// Returns the number of registers, 1 to 64.
     pub const fn count(self) -> u8 {
         self.count
     }
 
-    /// Returns whether a register is in the range.
+    /// Returns whether the range contains the given register.
     pub fn contains(self, address: RegisterAddress) -> bool {
         // Global addresses of a bank are consecutive, and a range does not leave its bank.
         let first = self.start.global();
         (first..first + u16::from(self.count)).contains(&address.global())
     }
 
-    /// Returns every register of the range.
+    /// Returns all registers of the range in ascending order.
     pub fn addresses(self) -> impl Iterator<Item = RegisterAddress> {
         (0..self.count).filter_map(move |at| self.start.plus(at))
     }
 
-    /// Returns the shortest list of runs with these registers, which are in ascending order.
+    /// Returns the shortest list of ranges covering the given registers, which must be in ascending order.
     pub fn runs(addresses: impl IntoIterator<Item = RegisterAddress>) -> Vec<Self> {
         let mut runs: Vec<RegisterRange> = Vec::new();
         for address in addresses {

@@ -1,5 +1,5 @@
-//! BiSS profiles: the content saved of an encoder, the differences between two, and the effect of restoring and of the
-//! guided procedures.
+//! BiSS profiles: the saved content of an encoder, the differences between two encoders, and the effect of a restore or
+//! a guided procedure.
 
 #![warn(missing_docs)]
 

@@ -1,13 +1,13 @@
-//! The changes of an operation in one line for the logbook: registers by address and name, old and new. The terms are the
-//! manual's, in any language of the window.
+//! Summarizes the changes of an operation in one line for the logbook: registers by address and name, with old and new
+//! values. Terms are those of the manual, whatever the language of the window.
 
 use super::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::bits::hex_compact;
 use crate::devices::biss::protocol::{Description, Filter, PresetValue};
 
 impl Op {
-    /// Returns the changes, old and new. Of many consecutive registers only the first are included: the backup has all of
-    /// them.
+    /// Returns the changes with old and new values. Only the first of many consecutive registers are included; the
+    /// backup contains all of them.
     pub fn note(&self, description: &Description) -> String {
         match self {
             Op::StoreData { area, registers } => {
@@ -37,7 +37,7 @@ impl Op {
 
 /// Maximum number of ranges listed.
 const RUNS: usize = 8;
-/// Maximum number of registers of a range listed with values.
+/// Maximum number of registers per range that are listed with their values.
 const VALUES: usize = 8;
 
 fn run(range: RegisterRange, name: &str, registers: &[RegisterChange]) -> String {

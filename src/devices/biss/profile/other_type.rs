@@ -1,39 +1,39 @@
-//! Checks whether an encoder is of the type that a profile was read from. A type is the reported identity (profile ID,
-//! manufacturer, device ID) and the widths of the position: a preset is a number of steps, which means another angle if
-//! widths differ.
+//! Checks whether an encoder is of the type that a profile was read from. A type consists of the reported identity
+//! (profile ID, manufacturer, device ID) and the position widths: a preset is a number of steps, which means a
+//! different angle if the widths differ.
 
 use std::fmt;
 
 use super::ProfileIdentity;
 use crate::devices::biss::protocol::Identity;
 
-/// A profile and an encoder of two types.
+/// The difference in type between a profile and an encoder.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OtherType {
-    /// Their identities differ.
+    /// The reported identities differ.
     #[error("the profile is of {profile}, the encoder says {device}")]
     Kind {
-        /// In the profile.
+        /// Identity in the profile.
         profile: Box<Identity>,
-        /// In the encoder.
+        /// Identity of the encoder.
         device: Box<Identity>,
     },
-    /// Their positions are not equally wide.
+    /// The position widths differ.
     #[error("the profile is of an encoder with {profile} bits, the encoder has {device}")]
     Width {
-        /// In the profile.
+        /// Widths in the profile.
         profile: Width,
-        /// In the encoder.
+        /// Widths of the encoder.
         device: Width,
     },
 }
 
-/// Bits of a position, as far as known: turns, and within the turn.
+/// Multiturn and singleturn widths of a position in bits, as far as known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Width {
-    /// Bits of the turns.
+    /// Multiturn width in bits, if known.
     pub multiturn: Option<u8>,
-    /// Within the revolution.
+    /// Singleturn width in bits, if known.
     pub singleturn: Option<u8>,
 }
 
@@ -42,7 +42,7 @@ impl Width {
         Width { multiturn: identity.multiturn_bits, singleturn: identity.singleturn_bits }
     }
 
-    /// Returns whether a part is known on both sides and differs.
+    /// Returns whether a width is known on both sides and differs.
     fn differs(self, other: Self) -> bool {
         let parts = [(self.multiturn, other.multiturn), (self.singleturn, other.singleturn)];
         parts.into_iter().any(|(one, other)| one.zip(other).is_some_and(|(one, other)| one != other))
@@ -57,8 +57,8 @@ impl fmt::Display for Width {
     }
 }
 
-/// Returns the types of a profile and of an encoder if they differ; `None` if they are equal. Unknown parts equal
-/// everything.
+/// Returns how the types of a profile and an encoder differ, or `None` if they match. An unknown part matches any
+/// value.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
     let (of_profile, of_device) = (profile.kind(), device.kind());
     if of_profile != of_device {

@@ -1,100 +1,100 @@
-//! The operations that change an encoder, their cost, and their base.
+//! The operations that change an encoder, their cost, and the values that a plan is based on.
 
 use super::{Bank, BissProfile, RegisterRange};
 use crate::devices::biss::protocol::{Area, Filter, PresetCommand, PresetValue, RegisterAddress};
 use crate::profile::{Operation, Plan};
 
-/// A planned write to a BiSS encoder.
+/// A plan of writes to a BiSS encoder.
 pub type BissPlan = Plan<Base, Op>;
 
-/// Values that a plan is based on: everything that its operations change and that can be read.
+/// The values that a plan is based on: everything that its operations change and that can be read.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
-    /// The banks of plain data that the plan touches.
+    /// Plain data banks that the plan touches.
     pub banks: Vec<Bank>,
-    /// The filter in force.
+    /// Filter in use.
     pub filter: Option<Filter>,
-    /// The stored preset value.
+    /// Preset value stored in the encoder.
     pub preset: Option<PresetValue>,
-    /// Single registers that the plan touches.
+    /// Individual registers that the plan touches, with their values.
     pub registers: Vec<(RegisterAddress, u8)>,
 }
 
-/// Operation, from entering its device mode to leaving it.
+/// An operation, from entering its device mode to leaving it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Manual 6.5: registers of one area are written and saved together.
+    /// Writes registers of one area and saves them together (manual 6.5).
     StoreData {
-        /// The area; its `open` is the command that opens it.
+        /// The area; its `open` field is the command that opens the area.
         area: Area,
-        /// The changes, by ascending address.
+        /// Register changes in ascending order of address.
         registers: Vec<RegisterChange>,
     },
-    /// Manual 6.7: stores another preset value; the position is not preset yet.
+    /// Stores another preset value without setting the position yet (manual 6.7).
     StorePreset {
-        /// Stored now.
+        /// Preset value stored before the operation.
         from: PresetValue,
-        /// Stored from then on.
+        /// Preset value stored by the operation.
         to: PresetValue,
     },
-    /// Manual 6.7: sets the position at the shaft's present place to the stored preset value.
+    /// Sets the current shaft position to the stored preset value (manual 6.7).
     FirePreset {
-        /// Parts of the position.
+        /// Parts of the position that are set.
         parts: PresetParts,
-        /// The value that is stored by then.
+        /// Preset value stored by the time of the operation.
         value: PresetValue,
     },
-    /// Manual 6.6.
+    /// Selects the position filter (manual 6.6).
     SelectFilter {
-        /// The present filter.
+        /// Filter in use before the operation.
         from: Filter,
-        /// The new filter.
+        /// Filter to select.
         to: Filter,
     },
-    /// Manual 6.4, guided.
+    /// Calibrates the encoder in guided steps (manual 6.4).
     Calibrate,
-    /// Manual 6.3, guided.
+    /// Tests the Wiegand sensor in guided steps (manual 6.3).
     WiegandTest {
-        /// Keep the result in the encoder.
+        /// Whether to save the result in the encoder.
         save: bool,
     },
-    /// A register outside of the procedures, written directly.
+    /// Writes a register directly, outside the procedures.
     WriteRegister {
-        /// The register.
+        /// Address of the register.
         address: RegisterAddress,
-        /// The old value; `None` if it cannot be read.
+        /// Old value, or `None` if the register cannot be read.
         old: Option<u8>,
-        /// The new value.
+        /// Value to write.
         new: u8,
-        /// Persistent writes that it costs.
+        /// Number of persistent writes spent.
         cycles: u8,
     },
 }
 
-/// A register with another value.
+/// A register whose value changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RegisterChange {
-    /// The register.
+    /// Address of the register.
     pub address: RegisterAddress,
-    /// The old value.
+    /// Value before the change.
     pub old: u8,
-    /// The new value.
+    /// Value after the change.
     pub new: u8,
 }
 
-/// The part of the position that a preset sets.
+/// The parts of the position that a preset sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PresetParts {
-    /// Both parts.
+    /// Singleturn and multiturn position.
     Both,
-    /// The place within the revolution.
+    /// Position within the revolution only.
     Singleturn,
-    /// The revolutions.
+    /// Number of revolutions only.
     Multiturn,
 }
 
 impl PresetParts {
-    /// Returns the command that carries it out.
+    /// Returns the command that presets the selected parts.
     pub const fn command(self) -> PresetCommand {
         match self {
             PresetParts::Both => PresetCommand::Both,
@@ -103,12 +103,12 @@ impl PresetParts {
         }
     }
 
-    /// Returns whether it sets the position within the revolution.
+    /// Returns whether the position within the revolution is set.
     pub const fn sets_singleturn(self) -> bool {
         matches!(self, PresetParts::Both | PresetParts::Singleturn)
     }
 
-    /// Returns whether it sets the number of revolutions.
+    /// Returns whether the number of revolutions is set.
     pub const fn sets_multiturn(self) -> bool {
         matches!(self, PresetParts::Both | PresetParts::Multiturn)
     }
@@ -129,12 +129,13 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns whether a motor turns the shaft for it.
+    /// Returns whether the operation needs a motor to turn the shaft.
     pub fn turns(&self) -> bool {
         matches!(self, Op::Calibrate | Op::WiegandTest { .. })
     }
 
-    /// Returns the register ranges that it changes, as `read` takes them; empty if it changes no readable register.
+    /// Returns the register ranges that the operation changes, in the form that `read` accepts; empty if no readable
+    /// register changes.
     pub fn ranges(&self) -> Vec<RegisterRange> {
         let known = |text: &str| text.parse().into_iter().collect();
         match self {
@@ -146,7 +147,8 @@ impl Op {
         }
     }
 
-    /// Returns the names of the changed items, as `read` takes them if they can be read.
+    /// Returns the name of the item that the operation changes, in the form that `read` accepts if the item can be
+    /// read.
     pub fn item(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
@@ -156,7 +158,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes as a comparison counts them: registers of an area, or one.
+    /// Returns the number of changes as counted by a comparison: the registers of an area, or one.
     pub fn weight(&self) -> u64 {
         match self {
             Op::StoreData { registers, .. } => registers.len() as u64,

@@ -1,5 +1,5 @@
-//! The saved content of a BiSS encoder: identity, settings, areas of plain data, and recorded values. Its text is in
-//! [`text`](super::text).
+//! The saved content of a BiSS encoder: identity, settings, plain data areas, and recorded values. For the text format,
+//! see [`text`](super::text).
 
 use std::fmt;
 
@@ -9,88 +9,88 @@ use crate::devices::biss::protocol::{
 };
 use crate::profile::ron_text::Unknown;
 
-/// Profile of a BiSS encoder.
+/// The profile of a BiSS encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BissProfile {
-    /// The identity.
+    /// Identity of the encoder that the profile was read from.
     pub identity: ProfileIdentity,
-    /// The filter of the position; `None` if the encoder has no choice.
+    /// Position filter; `None` if the encoder offers no choice.
     pub filter: Option<Filter>,
-    /// Preset value; `None` if the encoder has none. It belongs to the mounting.
+    /// Preset value, which belongs to the mounting; `None` if the encoder has none.
     pub preset: Option<PresetSetting>,
-    /// Values that change by themselves or cannot be written: recorded, neither compared nor restored.
+    /// Values that change on their own or cannot be written; recorded, but neither compared nor restored.
     pub recorded: Recorded,
-    /// Values that belong to the mounting and are never written to another encoder unasked.
+    /// Values that belong to the mounting and are never written to another encoder unless requested.
     pub mounting: Vec<MountingMark>,
-    /// Areas of plain data, by ascending bank.
+    /// Plain data areas in ascending order of bank.
     pub data: Vec<DataImage>,
 }
 
-/// The identity of an encoder.
+/// The identity of an encoder, as saved in a profile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileIdentity {
-    /// Serial number from the encoder's identification; empty if it has none.
+    /// Serial number from the encoder's identification; empty if not available.
     pub serial_number: String,
-    /// 42h and 43h.
+    /// Profile ID (registers 42h and 43h).
     pub profile_id: ProfileId,
-    /// 78h…7Dh.
+    /// Device ID (registers 78h to 7Dh).
     pub device_id: [u8; 6],
-    /// 7Eh and 7Fh.
+    /// Manufacturer ID (registers 7Eh and 7Fh).
     pub manufacturer: [u8; 2],
-    /// 74h…76h; `None` if the encoder has no such registers.
+    /// Firmware version (registers 74h to 76h); `None` if the encoder has no such registers.
     pub firmware: Option<Firmware>,
-    /// Name of the description with which it was read.
+    /// Name of the description with which the encoder was read.
     pub description: String,
-    /// Turn bits of the position; `None` if not known.
+    /// Multiturn width in bits; `None` if unknown.
     pub multiturn_bits: Option<u8>,
-    /// Bits within the revolution.
+    /// Singleturn width in bits, if known.
     pub singleturn_bits: Option<u8>,
-    /// Entries that this program does not know.
+    /// Entries unknown to this program.
     pub unknown: Unknown,
 }
 
-/// The stored preset value.
+/// The preset value stored in an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PresetSetting {
-    /// The value.
+    /// Stored preset value.
     pub value: PresetValue,
-    /// Entries that this program does not know.
+    /// Entries unknown to this program.
     pub unknown: Unknown,
 }
 
-/// Values that change by themselves or cannot be written.
+/// The values in a profile that change on their own or cannot be written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recorded {
-    /// Banks of the electronic data sheet, as they were read.
+    /// Banks of the electronic data sheet.
     pub eds: Vec<ListedBank>,
-    /// The last Wiegand test since power-up.
+    /// Result of the last Wiegand test since power-up.
     pub wiegand_last: Option<WiegandResult>,
-    /// The factory's Wiegand test.
+    /// Result of the factory's Wiegand test.
     pub wiegand_production: Option<WiegandResult>,
-    /// The Wiegand test that was saved in the encoder.
+    /// Result of the Wiegand test saved in the encoder.
     pub wiegand_saved: Option<WiegandResult>,
-    /// Status register of the calibration (bank 0, 01h).
+    /// Value of the calibration status register (bank 0, 01h).
     pub calibration_status: Option<u8>,
-    /// The device mode in which it was read, if not operation: it may contain values that were never saved.
+    /// Device mode during the reading, unless it was operation: the profile may contain values that were never saved.
     pub device_mode: Option<DeviceMode>,
-    /// Entries that this program does not know.
+    /// Entries unknown to this program.
     pub unknown: Unknown,
 }
 
-/// Something that is right for one encoder on one motor and no other.
+/// A mark on an item that is only right for one encoder on one motor.
 pub type MountingMark = crate::profile::MountingMark<MountingItem>;
 
-/// An item that belongs to a mounting.
+/// An item that belongs to the mounting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MountingItem {
-    /// Registers.
+    /// A range of registers.
     Registers(RegisterRange),
-    /// The table of the calibration, which is in the encoder and cannot be read.
+    /// The calibration table, which stays in the encoder and cannot be read.
     Calibration,
 }
 
 impl MountingItem {
-    /// The name of the calibration, which has no registers.
+    /// Name of the calibration item, which has no registers.
     pub(super) const CALIBRATION: &str = "calibration";
 }
 
@@ -103,48 +103,48 @@ impl fmt::Display for MountingItem {
     }
 }
 
-/// The 64 registers of a bank.
+/// A bank of 64 registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Bank {
-    /// Number of the bank.
+    /// Bank number.
     pub number: u8,
-    /// The content of its registers.
+    /// Contents of the registers.
     pub bytes: [u8; 64],
 }
 
-/// Bank listed in a profile.
+/// A bank listed in a profile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ListedBank {
-    /// The content.
+    /// Number and contents of the bank.
     pub bank: Bank,
-    /// Entries that this program does not know.
+    /// Entries unknown to this program.
     pub unknown: Unknown,
 }
 
-/// Content of a plain data area. Banks with the same byte in every register need not be listed.
+/// The contents of a plain data area. Banks with the same byte in every register need not be listed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataImage {
-    /// The area's name in the encoder's description.
+    /// Name of the area in the encoder's description.
     pub name: String,
-    /// First bank.
+    /// First bank of the area.
     pub first: u8,
-    /// Last bank.
+    /// Last bank of the area.
     pub last: u8,
-    /// The byte in every register of a bank that is not listed; `None`: such a bank is not part of the profile.
+    /// Byte in every register of an unlisted bank; `None` if unlisted banks are not part of the profile.
     pub empty: Option<u8>,
-    /// The banks that are listed, ascending.
+    /// Listed banks in ascending order.
     pub listed: Vec<ListedBank>,
-    /// Entries that this program does not know.
+    /// Entries unknown to this program.
     pub unknown: Unknown,
 }
 
 impl BissProfile {
-    /// Registers of the kit encoder's preset value: singleturn, then multiturn.
+    /// Registers of a kit encoder's preset value: singleturn, then multiturn.
     pub const PRESET: &'static str = "0x01:0x02+6";
-    /// Register of the kit encoder's filter.
+    /// Filter register of a kit encoder.
     pub const FILTER: &'static str = "0x6E";
 
-    /// Marks the items that belong to the mounting and are not marked yet: preset and calibration.
+    /// Marks the preset and the calibration as belonging to the mounting, unless they are already marked.
     pub fn mark_mounting(&mut self) {
         let preset = Self::PRESET.parse().ok().filter(|_| self.preset.is_some()).map(MountingItem::Registers);
         // An encoder with a preset also has a calibration: it is a kit encoder.
@@ -164,12 +164,12 @@ impl BissProfile {
         })
     }
 
-    /// Returns the content of a bank; `None` if the profile does not contain it.
+    /// Returns the contents of a bank, or `None` if the profile does not contain the bank.
     pub fn bank(&self, number: u8) -> Option<Bank> {
         self.data.iter().find_map(|image| image.bank(number))
     }
 
-    /// Changes a register of plain data. Returns false if the profile does not contain its bank.
+    /// Changes a plain data register. Returns `false` if the profile does not contain its bank.
     pub fn put(&mut self, address: RegisterAddress, byte: u8) -> bool {
         let Some(number) = address.bank() else { return false };
         let image = self.data.iter_mut().find_map(|image| Some((image.bank(number)?, image)));
@@ -187,35 +187,35 @@ impl BissProfile {
         true
     }
 
-    /// Returns every bank in the profile, in the order of the file.
+    /// Returns all banks in the profile, in file order.
     pub fn banks(&self) -> impl Iterator<Item = Bank> {
         self.data.iter().flat_map(DataImage::all)
     }
 }
 
 impl ProfileIdentity {
-    /// Returns the kind of encoder.
+    /// Returns the identity that determines the kind of encoder.
     pub fn kind(&self) -> Identity {
         Identity { profile: self.profile_id, manufacturer: self.manufacturer, device_id: self.device_id }
     }
 }
 
 impl Bank {
-    /// Registers of a bank.
+    /// Number of registers in a bank.
     pub const SIZE: usize = RegisterAddress::BANK_SIZE as usize;
 
-    /// Creates a bank with the same byte everywhere.
+    /// Creates a bank with the given byte in every register.
     pub const fn filled(number: u8, byte: u8) -> Self {
         Bank { number, bytes: [byte; Self::SIZE] }
     }
 
-    /// Returns the byte in all registers; `None` if they differ.
+    /// Returns the byte found in every register, or `None` if the registers differ.
     fn only_byte(&self) -> Option<u8> {
         let [first, ..] = self.bytes;
         self.bytes.iter().all(|byte| *byte == first).then_some(first)
     }
 
-    /// Returns every register with its byte.
+    /// Returns each register address with its byte.
     pub fn registers(self) -> impl Iterator<Item = (RegisterAddress, u8)> {
         let place = move |offset| RegisterAddress::banked(self.number, offset);
         (0..RegisterAddress::BANK_SIZE).zip(self.bytes).filter_map(move |(offset, byte)| Some((place(offset)?, byte)))
@@ -229,11 +229,12 @@ impl From<Bank> for ListedBank {
 }
 
 impl DataImage {
-    /// Creates the image of an area with these banks, ascending; if the area is complete, empty banks are left out.
+    /// Creates the image of an area from the given banks, in ascending order. If the area is complete, empty banks are
+    /// left out.
     pub fn of(area: &Area, banks: Vec<Bank>) -> Self {
         let is_whole = area.banks().eq(banks.iter().map(|bank| bank.number));
         let count = |byte| banks.iter().filter(|bank| bank.only_byte() == Some(byte)).count();
-        // The content of memory that was never written, or was erased.
+        // Contents of memory that was never written, or has been erased.
         let most = [0x00, 0xFF].into_iter().rev().max_by_key(|byte| count(*byte));
         let empty = most.filter(|byte| is_whole && count(*byte) > 0);
         let holds = |bank: &Bank| empty.is_none() || bank.only_byte() != empty;
@@ -247,14 +248,14 @@ impl DataImage {
         }
     }
 
-    /// Returns a bank of the area; `None` if the profile does not contain it.
+    /// Returns a bank of the area, or `None` if the profile does not contain the bank.
     pub fn bank(&self, number: u8) -> Option<Bank> {
         let listed = self.listed.iter().map(|listed| listed.bank).find(|bank| bank.number == number);
         let blank = || self.empty.map(|byte| Bank::filled(number, byte));
         listed.or_else(|| blank().filter(|_| (self.first..=self.last).contains(&number)))
     }
 
-    /// Returns every bank that it contains.
+    /// Returns all banks of the area that the profile contains.
     pub fn all(&self) -> impl Iterator<Item = Bank> {
         (self.first..=self.last).filter_map(|number| self.bank(number))
     }

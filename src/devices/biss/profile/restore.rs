@@ -1,4 +1,4 @@
-//! Planning a restore: only differences, in the fewest persistent writes, and nothing that belongs to another encoder's
+//! Plans a restore: only differences, in the fewest persistent writes, and nothing that belongs to another encoder's
 //! mounting. A preset is stored but never executed.
 
 pub use crate::profile::RestoreOptions;
@@ -7,119 +7,119 @@ use super::other_type::{OtherType, other_type};
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{Area, Filter, Firmware, PresetValue, ProcedureKind, RegisterAddress};
 
-/// Present state of an encoder, as far as a plan needs it.
+/// The present state of an encoder, as far as a plan requires.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
-    /// The identity.
+    /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// Its filter; `None` if its firmware has no choice.
+    /// Filter in use, or `None` if the firmware offers no choice.
     pub filter: Option<Filter>,
-    /// Its stored preset value; `None` if its firmware has none.
+    /// Stored preset value, or `None` if the firmware has none.
     pub preset: Option<PresetValue>,
-    /// Its plain data areas.
+    /// Plain data areas of the encoder.
     pub areas: Vec<Area>,
-    /// The banks that were read: at least [`banks_needed`].
+    /// Banks that were read, including at least those returned by [`banks_needed`].
     pub banks: Vec<Bank>,
 }
 
 /// The outcome of planning a restore.
 pub type Restore = crate::profile::Restore<BissPlan, RegisterRange>;
 
-/// Why a change cannot be planned.
+/// The reason why a change cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another encoder.
     #[error("the profile is of serial number {profile:?}, the encoder has {device:?}")]
     OtherDevice {
-        /// In the profile.
+        /// Serial number in the profile.
         profile: String,
-        /// In the encoder.
+        /// Serial number of the encoder.
         device: String,
     },
-    /// The profile is of another type of encoder.
+    /// The profile was read from another type of encoder.
     #[error(transparent)]
     OtherType(#[from] OtherType),
-    /// The encoder has no such bank of plain data, or it cannot be written.
+    /// The encoder has no such plain data bank, or the bank cannot be written.
     #[error("bank 0x{bank:02X} is no bank of plain data that can be written")]
     NoBank {
-        /// The bank.
+        /// Number of the bank.
         bank: u8,
     },
-    /// A preset value needs more bits than the position has.
+    /// The preset value is wider than the position.
     #[error("the preset value {value} needs more than the {bits} {part} bits that the encoder has")]
     PresetTooWide {
-        /// `singleturn` or `multiturn`.
+        /// Part of the position: `singleturn` or `multiturn`.
         part: &'static str,
-        /// The value.
+        /// Requested preset value.
         value: u32,
-        /// Bits of that part.
+        /// Width of that part in bits.
         bits: u8,
     },
-    /// A code that is no filter.
+    /// The code does not denote a filter.
     #[error("0x{code:02X} is no filter")]
     UnknownFilter {
-        /// The code.
+        /// Requested filter code.
         code: u8,
     },
     /// The encoder's description has no such procedure.
     #[error("\"{description}\" has no such procedure")]
     NoProcedure {
-        /// The procedure.
+        /// Requested procedure.
         kind: ProcedureKind,
-        /// The description's name.
+        /// Name of the description.
         description: String,
     },
     /// The encoder's firmware is too old for the request.
     #[error("firmware {needed} is needed, the encoder has {found}")]
     FirmwareTooOld {
-        /// The procedure.
+        /// Requested procedure.
         kind: ProcedureKind,
-        /// The first that can do it.
+        /// First firmware that supports the procedure.
         needed: Firmware,
-        /// The encoder's.
+        /// Firmware of the encoder.
         found: Firmware,
     },
-    /// A register that can only be read.
+    /// The register is read-only.
     #[error("register {address} can only be read")]
     ReadOnly {
-        /// The register.
+        /// Address of the register.
         address: RegisterAddress,
     },
-    /// A register with which a procedure is led.
+    /// The register may only be written by a procedure.
     #[error("register {address} is written by the procedures alone")]
     Guarded {
-        /// The register.
+        /// Address of the register.
         address: RegisterAddress,
     },
-    /// The number of bytes must equal the registers of the range.
+    /// The number of bytes does not match the size of the range.
     #[error("{count} bytes are given for {range}")]
     ByteCount {
-        /// The registers.
+        /// Range to be written.
         range: RegisterRange,
-        /// Bytes given.
+        /// Number of bytes given.
         count: usize,
     },
-    /// A calibration needs the balanced filter.
+    /// A calibration requires the balanced filter, but another one is in use.
     #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
     NotBalanced {
-        /// The filter's code.
+        /// Code of the filter in use.
         code: u8,
     },
-    /// The drive that turns the motor closes its loop on this encoder, which provides no position meanwhile.
+    /// The motor's drive closes its loop on this encoder, which provides no position during the procedure.
     #[error("the motor is driven by this encoder's position, which is not there during the procedure")]
     DrivenByThisEncoder,
 }
 
-/// Returns the banks that have to be read before a restore of this profile can be planned.
+/// Returns the banks that must be read before a restore of the given profile can be planned.
 pub fn banks_needed(profile: &BissProfile, areas: &[Area]) -> Vec<u8> {
     let there = |bank: &u8| areas.iter().any(|area| area.contains(*bank));
     profile.banks().map(|bank| bank.number).filter(there).collect()
 }
 
-/// Plans a restore.
+/// Plans a restore. Nothing is written.
 ///
 /// # Errors
-/// See [`PlanError`]; nothing has been written.
+/// See [`PlanError`].
 pub fn plan_restore(
     profile: &BissProfile,
     device: &DeviceState,
@@ -135,17 +135,19 @@ pub fn plan_restore(
     Ok(planner.finish())
 }
 
-/// Plans only the plain data of a profile, including the values of the mounting: this encoder is being mounted now.
+/// Plans to write only the plain data of a profile, including the values of the mounting, to an encoder that is being
+/// mounted. Nothing is written yet.
 ///
 /// # Errors
-/// See [`PlanError`]; nothing has been written.
+/// See [`PlanError`].
 pub fn plan_data(profile: &BissProfile, device: &DeviceState) -> Result<Restore, PlanError> {
     let mut planner = Planner::new(profile, device, Mounting::Own);
     planner.data()?;
     Ok(planner.finish())
 }
 
-/// Refuses an encoder that the profile was not read from. Encoders without a serial number are never the same one.
+/// Refuses an encoder that the profile was not read from. An encoder without a serial number never counts as the
+/// original one.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
@@ -153,8 +155,8 @@ pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Refuses an encoder that the profile was not read from, unless the options allow it. Registers of another type of encoder
-/// may have other meanings, so permission for another serial number does not include that.
+/// Refuses an encoder that the profile was not read from, unless the options allow it. Permission for another serial
+/// number does not include another type of encoder, whose registers may have other meanings.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
@@ -183,7 +185,7 @@ fn is_same_number(profile: &BissProfile, device: &ProfileIdentity) -> bool {
     !device.serial_number.is_empty() && profile.identity.serial_number == device.serial_number
 }
 
-/// Refuses a preset value that the position cannot take.
+/// Refuses a preset value that is too wide for the position.
 ///
 /// # Errors
 /// [`PlanError::PresetTooWide`].
@@ -200,14 +202,14 @@ pub(super) fn check_preset(value: PresetValue, identity: &ProfileIdentity) -> Re
     Ok(())
 }
 
-/// How to treat the values of the mounting.
+/// How a restore treats values that belong to the mounting.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mounting {
-    /// They belong to this encoder.
+    /// The values belong to this encoder.
     Own,
-    /// They belong to another encoder, and are left out.
+    /// The values belong to another encoder and are left out.
     Leave,
-    /// They belong to another encoder, and are written.
+    /// The values belong to another encoder but are written anyway.
     Write,
 }
 
@@ -244,7 +246,7 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// Plans one save for all differences in an area.
+    /// Plans a single save for all differences in an area.
     fn data(&mut self) -> Result<(), PlanError> {
         let mut areas: Vec<(&Area, Vec<RegisterChange>)> = Vec::new();
         for wanted in self.profile.banks() {
@@ -269,7 +271,7 @@ impl<'a> Planner<'a> {
         Ok(())
     }
 
-    /// Returns the registers of a bank that differ and may be written.
+    /// Returns the changes for registers of a bank that differ and may be written.
     fn changes(&mut self, now: &Bank, wanted: &Bank) -> Vec<RegisterChange> {
         let mut changes = Vec::new();
         for ((address, old), (_, new)) in now.registers().zip(wanted.registers()) {
@@ -333,13 +335,12 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// Returns the registers of the preset value.
 fn preset_addresses() -> impl Iterator<Item = RegisterAddress> {
     BissProfile::PRESET.parse::<RegisterRange>().into_iter().flat_map(RegisterRange::addresses)
 }
 
-/// Returns the operations for an area: one that is opened and saved takes all registers at once; another one, register by
-/// register.
+/// Returns the operations that store changes in an area: a single one if the area is opened and saved as a whole,
+/// otherwise one per register.
 pub(super) fn store(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
     if area.open.is_some() {
         return vec![Op::StoreData { area: area.clone(), registers }];
@@ -348,7 +349,7 @@ pub(super) fn store(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
         address: change.address,
         old: Some(change.old),
         new: change.new,
-        // The cost is not known; at most one.
+        // The cost is unknown, but at most one.
         cycles: 1,
     };
     registers.into_iter().map(single).collect()

@@ -1,4 +1,4 @@
-//! The text of a BiSS profile, written for people and edited by them. An error names its entry.
+//! The text format of a BiSS profile, which is read and edited by people. Errors name the entry concerned.
 
 use super::{
     Bank, BissProfile, DataImage, EntryError, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity,
@@ -11,7 +11,7 @@ use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Writer, quoted};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-/// Three registers hold a preset value.
+/// Range of a preset value, which occupies three registers.
 const PRESET_NUMBER: Expected = Expected::between(0, 16_777_215);
 
 impl Profile for BissProfile {
@@ -184,7 +184,6 @@ fn read_firmware(text: &str) -> Option<Firmware> {
     }
 }
 
-/// Reads exactly `N` bytes.
 fn read_exactly<const N: usize>(entries: &mut Entries, name: &str) -> Result<[u8; N], ProfileError> {
     let path = entries.path_of(name);
     let bytes = entries.bytes(name)?.ok_or_else(|| ProfileError::Missing { path: path.clone() })?;

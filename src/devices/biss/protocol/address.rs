@@ -1,68 +1,68 @@
-//! The address of a register: 00h…3Fh in one of the banks, 40h…7Fh direct (manual 4); and the same as one number, as
+//! Register addresses: 00h to 3Fh within one of the banks, 40h to 7Fh direct (manual 4), or both as a single number, as
 //! used by UBICOM (manual, appendix: "Address global").
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The location of a register. Direct registers come before those of the banks, as their global addresses do.
+/// The address of a register. Direct registers sort before those in banks, in the order of their global addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterAddress(u16);
 
-/// The reason why a text does not name a register.
+/// The string is not a register address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no register: 0x40 to 0x7F stands for a direct one, BANK:OFFSET as 0x24:0x10 for one of a bank")]
 pub struct AddressError(String);
 
 impl RegisterAddress {
-    /// Registers of a bank, and direct ones.
+    /// Number of registers in a bank, and number of direct registers.
     pub const BANK_SIZE: u8 = 0x40;
-    /// 40h, common to all encoders: the bank of 00h…3Fh.
+    /// Register 40h in all encoders: selects the bank visible at 00h to 3Fh.
     pub const BANK_SELECT: RegisterAddress = RegisterAddress(0x00);
-    /// 41h, common to all encoders: the first bank of the data sheet.
+    /// Register 41h in all encoders: the first bank of the electronic data sheet.
     pub const EDS_BANK: RegisterAddress = RegisterAddress(0x01);
-    /// 42h and 43h, common to all encoders: the profile identification.
+    /// Registers 42h and 43h in all encoders: the profile ID.
     pub const PROFILE: RegisterAddress = RegisterAddress(0x02);
-    /// 78h…7Dh, common to all encoders: the device ID; after it the manufacturer.
+    /// Registers 78h to 7Dh in all encoders: the device ID, followed by the manufacturer ID.
     pub const DEVICE_ID: RegisterAddress = RegisterAddress(0x38);
 
-    /// Creates a direct register, 40h…7Fh.
+    /// Creates the address of a direct register, 40h to 7Fh; `None` outside this range.
     pub const fn direct(address: u8) -> Option<Self> {
         if 0x40 <= address && address <= 0x7F { Some(RegisterAddress(address as u16 - 0x40)) } else { None }
     }
 
-    /// Creates a register of a bank, 00h…3Fh.
+    /// Creates the address of a register in a bank, 00h to 3Fh; `None` outside this range.
     pub const fn banked(bank: u8, offset: u8) -> Option<Self> {
         if offset < Self::BANK_SIZE { Some(RegisterAddress(0x40 + 0x40 * bank as u16 + offset as u16)) } else { None }
     }
 
-    /// Creates the first register of a bank.
+    /// Creates the address of the first register in a bank.
     pub const fn start_of(bank: u8) -> Self {
         RegisterAddress(0x40 + 0x40 * bank as u16)
     }
 
-    /// Returns the address with this global number; `None` beyond bank FFh.
+    /// Creates an address from its global number, or returns `None` beyond bank FFh.
     pub const fn from_global(global: u16) -> Option<Self> {
         if global < 0x40 + 0x4000 { Some(RegisterAddress(global)) } else { None }
     }
 
-    /// Returns the global number: direct registers from 0, those of bank 0 from 40h on, and so forth.
+    /// Returns the global number: direct registers start at 0, those of bank 0 at 40h, and so forth.
     pub const fn global(self) -> u16 {
         self.0
     }
 
-    /// Returns the bank that has to be selected; `None` for a direct register.
+    /// Returns the bank that has to be selected, or `None` for a direct register.
     pub const fn bank(self) -> Option<u8> {
         if self.0 < 0x40 { None } else { Some(((self.0 - 0x40) / 0x40) as u8) }
     }
 
-    /// Returns the seven bits of the control frame: 40h…7Fh direct, 00h…3Fh within the bank.
+    /// Returns the seven-bit address in the control frame: 40h to 7Fh for direct registers, 00h to 3Fh within a bank.
     pub const fn address(self) -> u8 {
-        // Below 40h either way.
+        // Always below 40h.
         let offset = (self.0 % 0x40) as u8;
         if self.0 < 0x40 { 0x40 + offset } else { offset }
     }
 
-    /// Returns the register `count` places further in the same bank; `None` beyond its end.
+    /// Returns the address `count` registers further on, or `None` beyond the end of the bank.
     pub fn plus(self, count: u8) -> Option<Self> {
         let offset = u16::from(self.address() % Self::BANK_SIZE) + u16::from(count);
         (offset < u16::from(Self::BANK_SIZE)).then_some(RegisterAddress(self.0 + u16::from(count)))
@@ -81,7 +81,7 @@ impl fmt::Display for RegisterAddress {
 impl FromStr for RegisterAddress {
     type Err = AddressError;
 
-    /// Parses `0x66` or `0x24:0x10`; numbers without `0x` are decimal.
+    /// Parses an address such as `0x66` or `0x24:0x10`; numbers without `0x` are decimal.
     fn from_str(text: &str) -> Result<Self, AddressError> {
         let place = match text.split_once(':') {
             None => byte(text).and_then(Self::direct),
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// UBICOM reference 3.
+    /// Expected values from UBICOM reference 3.
     #[test]
     fn published_address_map_matches() {
         let cases = [
@@ -120,7 +120,7 @@ mod tests {
             ("0x23:0x3F", 0x093F),
             ("0x24:0x00", 0x0940),
             ("0x43:0x3F", 0x113F),
-            // By name in the same section.
+            // Given by name in the same section.
             ("0x6B", 0x002B),
             ("0x6A", 0x002A),
             ("0x66", 0x0026),

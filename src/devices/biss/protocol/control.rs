@@ -1,16 +1,17 @@
-//! The control frame: register access, one bit per cycle in each direction (manual 3.1.2, figures 3 and 4; what they leave
-//! open from iC-Haus, *BiSS protocol description (C-mode)*).
+//! The control frame: register access with one bit per cycle in each direction (manual 3.1.2, figures 3 and 4; details
+//! missing in the manual are taken from iC-Haus, *BiSS protocol description (C-mode)*).
 //!
 //! ```text
 //! cycle  0  1    2..4  5..11  12..15  16  17  18  19..26  27..30  31
 //! CDM    S  CTS  ID    ADR    CRC4    R   W   S   DATA    CRC4    P        host → encoder, at the end of a cycle
 //! CDS    0  IDL0 … IDL7 0…            0   R   W   S       DATA    CRC4 P   encoder → host, at the start of a cycle
 //! ```
-//! A bit of CDS answers the bit of CDM of the previous cycle. P = 1 continues with the next address, its S in the same
-//! cycle. Fourteen cycles of CDM = 0 return both sides to rest from any state.
+//! A CDS bit answers the CDM bit of the previous cycle. P = 1 continues with the next address, whose S is sent in the
+//! same cycle. Fourteen cycles with CDM = 0 return both sides to rest from any state.
 //!
-//! Not in any available source (`U`) and chosen here: a host that waits for the encoder's S repeats its own, because
-//! fourteen zeros would be an abort; an encoder echoes the data of a write, with its checksum.
+//! Two details are in no available source (`U`) and were chosen for this implementation: a host waiting for the
+//! encoder's S repeats its own, because fourteen zeros would be an abort; an encoder echoes written data with its
+//! checksum.
 
 mod encoder;
 mod host;
@@ -20,14 +21,14 @@ mod tests;
 pub use encoder::{Encoder, Event};
 pub use host::{Host, Step};
 
-/// Cycles of CDM = 0 that lead back to rest.
+/// Number of consecutive cycles with CDM = 0 that return both sides to rest.
 pub const REST_CYCLES: u8 = 14;
-/// Number of cycles for which an encoder may delay its S (`U`).
+/// Maximum number of cycles for which an encoder may delay its S (`U`).
 pub const MAX_WAIT_CYCLES: u8 = 50;
-/// Registers that a control frame can address.
+/// Number of registers that a control frame can address.
 const REGISTERS: u8 = 0x80;
 
-/// A request of a host to one of the encoders on its line.
+/// A request from the host to one of the encoders on the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Request {
     slave: u8,
@@ -41,18 +42,18 @@ enum RequestKind {
     Write { values: Vec<u8> },
 }
 
-/// The reason why a request is not possible.
+/// The reason why a request is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
-    /// A number outside the eight, 0…7.
+    /// The slave number is outside the range 0 to 7.
     #[error("a slave has a number from 0 to 7, not {0}")]
     Slave(u8),
-    /// No register, or one beyond 7Fh.
+    /// The range contains no register, or extends beyond 7Fh.
     #[error("{count} registers from 0x{address:02X} on do not lie within 0x00 and 0x7F")]
     Range {
-        /// The first.
+        /// Address of the first register.
         address: u8,
-        /// Number of bytes.
+        /// Number of registers requested.
         count: usize,
     },
 }
@@ -60,40 +61,40 @@ pub enum RequestError {
 /// The reason why a request failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ControlError {
-    /// No encoder with that number is on the line.
+    /// No encoder with the given number is on the line.
     #[error("no slave {0} answers")]
     NoSlave(u8),
-    /// The encoder does not repeat the kind of access: it has not understood, or it refuses.
+    /// The encoder did not echo the kind of access: it either did not understand the request or refused it.
     #[error("the encoder refuses register 0x{0:02X}")]
     Rejected(u8),
-    /// The encoder keeps the host waiting for too long.
+    /// The encoder kept the host waiting for too long.
     #[error("the encoder does not give register 0x{0:02X} within {MAX_WAIT_CYCLES} cycles")]
     TimeOut(u8),
-    /// The encoder's answer is damaged. A write may have been done or not.
+    /// The encoder's answer is damaged. A write may or may not have taken effect.
     #[error("register 0x{address:02X}: CRC {got:X} where {expected:X} was expected")]
     Crc {
-        /// The register.
+        /// Address of the register.
         address: u8,
-        /// The checksum calculated from the value.
+        /// Checksum calculated from the value.
         expected: u8,
-        /// The checksum received.
+        /// Received checksum.
         got: u8,
     },
 }
 
 impl Request {
-    /// Reads `count` registers one after the other.
+    /// Creates a request to read `count` consecutive registers.
     ///
     /// # Errors
-    /// [`RequestError`] if the slave or the registers do not exist.
+    /// [`RequestError`] if the slave or a register does not exist.
     pub fn read(slave: u8, address: u8, count: u8) -> Result<Self, RequestError> {
         Self::checked(slave, address, RequestKind::Read { count })
     }
 
-    /// Writes registers one after the other.
+    /// Creates a request to write consecutive registers.
     ///
     /// # Errors
-    /// [`RequestError`] if the slave or the registers do not exist.
+    /// [`RequestError`] if the slave or a register does not exist.
     pub fn write(slave: u8, address: u8, values: &[u8]) -> Result<Self, RequestError> {
         Self::checked(slave, address, RequestKind::Write { values: values.to_vec() })
     }
@@ -121,7 +122,7 @@ impl Request {
         matches!(self.kind, RequestKind::Read { .. })
     }
 
-    /// Returns DATA and CRC4 that the host sends for the register number `index` of the request; zeros for a read.
+    /// Returns the DATA and CRC4 bits that the host sends for the register at `index` in the request; zeros for a read.
     fn data(&self, index: usize) -> u16 {
         match &self.kind {
             RequestKind::Read { .. } => 0,
@@ -130,7 +131,7 @@ impl Request {
     }
 }
 
-/// Returns a value with its CRC4, twelve bits.
+/// Appends the CRC4 to a value, giving twelve bits.
 fn with_crc(value: u8) -> u16 {
     let value = u16::from(value);
     value << 4 | u16::from(super::crc::crc4(value, 8))

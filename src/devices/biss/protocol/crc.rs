@@ -1,48 +1,48 @@
-//! The checksums of BiSS: a polynomial of up to 32 bits, first bit first, nothing reflected (manual 3.1.1; iC-Haus AN3).
-//! Each encoder defines the polynomial of its position data; the control frame always has the one of 4 bits.
+//! BiSS checksums: a polynomial of up to 32 bits, first bit first, without reflection (manual 3.1.1; iC-Haus AN3). Each
+//! encoder defines the polynomial for its position data; the control frame always uses the 4-bit one.
 
 use std::fmt;
 
-/// A checksum as given by a description: the polynomial determines its number of bits.
+/// A checksum as specified in a description. Its width follows from the polynomial.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Crc {
     polynomial: u64,
     start: u32,
     inverted: bool,
-    /// The remainder of eight bits at the upper end of the register, which is at the upper end of 32 bits.
+    /// Remainders for all byte values. The CRC register is aligned to the upper end of 32 bits.
     table: [u32; 256],
 }
 
-/// Why a checksum cannot be calculated.
+/// The reason why a checksum is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CrcError {
-    /// The polynomial's degree is 0 or above 32.
+    /// The degree of the polynomial is 0 or above 32.
     #[error("the CRC polynomial {0:#X} must have 2 to 33 bits, including its highest and lowest term")]
     Degree(u64),
-    /// The polynomial's lowest term is missing: it would not detect every single flipped bit.
+    /// The lowest term of the polynomial is missing: the checksum would not detect every single-bit error.
     #[error("the CRC polynomial {0:#X} must end with the term 1")]
     LowestTerm(u64),
-    /// The start value has more bits than the checksum.
+    /// The start value is wider than the checksum.
     #[error("the CRC start value {start:#X} does not fit into {width} bits")]
     Start {
-        /// The start value.
+        /// Value of the CRC register before the first bit.
         start: u32,
-        /// Bits of the checksum.
+        /// Width of the checksum in bits.
         width: u8,
     },
 }
 
 impl Crc {
-    /// x⁶ + x + 1, sent inverted: position data, unless an encoder specifies another.
+    /// Polynomial x⁶ + x + 1, sent inverted: used for position data unless an encoder specifies another.
     pub const POSITION: u64 = 0x43;
-    /// x⁴ + x + 1, sent inverted: the control frame.
+    /// Polynomial x⁴ + x + 1, sent inverted: used in the control frame.
     pub const CONTROL: u64 = 0x13;
 
-    /// Creates a checksum from all terms of its polynomial, including the highest (43h is x⁶ + x + 1), the register's value
-    /// before the first bit, and whether the result is sent inverted.
+    /// Creates a checksum from all terms of its polynomial, including the highest (43h is x⁶ + x + 1), the value of the
+    /// register before the first bit, and whether the result is sent inverted.
     ///
     /// # Errors
-    /// [`CrcError`] if that is no checksum of 1 to 32 bits.
+    /// [`CrcError`] if the parameters do not describe a checksum of 1 to 32 bits.
     pub fn new(polynomial: u64, start: u32, inverted: bool) -> Result<Self, CrcError> {
         let degree = polynomial.checked_ilog2().unwrap_or(0);
         if !(1..=32).contains(&degree) {
@@ -58,11 +58,11 @@ impl Crc {
         Ok(crc)
     }
 
-    /// Creates a checksum from the notation of the electronic data sheet: without the term 1, which every polynomial has
-    /// (21h is 43h); `None` for 0, which means no checksum.
+    /// Creates a checksum from the notation of the electronic data sheet, which omits the term 1 that every polynomial
+    /// has (21h stands for 43h); `None` for 0, which means no checksum.
     ///
     /// # Errors
-    /// Errors as for [`new`](Self::new).
+    /// Same as for [`new`](Self::new).
     pub fn from_data_sheet(polynomial: u32, start: u32) -> Result<Option<Self>, CrcError> {
         match polynomial {
             0 => Ok(None),
@@ -70,12 +70,12 @@ impl Crc {
         }
     }
 
-    /// Returns all terms of the polynomial.
+    /// Returns the polynomial with all of its terms.
     pub const fn polynomial(&self) -> u64 {
         self.polynomial
     }
 
-    /// Returns the register before the first bit.
+    /// Returns the value of the register before the first bit.
     pub const fn start(&self) -> u32 {
         self.start
     }
@@ -85,19 +85,19 @@ impl Crc {
         self.inverted
     }
 
-    /// Returns the number of bits of the checksum, 1…32.
+    /// Returns the width of the checksum, 1 to 32 bits.
     pub const fn width(&self) -> u8 {
         self.polynomial.ilog2() as u8 // at most 32
     }
 
-    /// Returns the checksum of the lowest `bits` bits of `data` as sent, the highest of them first. More than 64 count as
-    /// 64.
+    /// Returns the checksum, as sent, of the lowest `bits` bits of `data`, processed from the highest of them down.
+    /// Values of `bits` above 64 count as 64.
     pub fn of(&self, data: u64, bits: u8) -> u32 {
         let unused = 32 - u32::from(self.width());
         let mut register = self.start << unused;
         let mut left = u32::from(bits.min(64));
         while left > 0 {
-            // The odd bits come first, so that complete bytes follow.
+            // The remaining bits come first, so that complete bytes follow.
             let now = if left.is_multiple_of(8) { 8 } else { left % 8 };
             left -= now;
             let group = (data >> left) as u32 & ((1 << now) - 1);
@@ -127,7 +127,7 @@ impl fmt::Debug for Crc {
     }
 }
 
-/// Returns the checksum of the control frame over the lowest `bits` bits of `data`: x⁴ + x + 1, inverted.
+/// Returns the control frame checksum (x⁴ + x + 1, inverted) of the lowest `bits` bits of `data`.
 pub(super) fn crc4(data: u16, bits: u8) -> u8 {
     let sum = (0..bits.min(16)).rev().fold(0u8, |sum, at| {
         let feedback = sum >> 3 ^ (data >> at & 1) as u8;
@@ -137,7 +137,7 @@ pub(super) fn crc4(data: u16, bits: u8) -> u8 {
 }
 
 fn table(polynomial: u64, degree: u32) -> [u32; 256] {
-    // Without its highest term, at the upper end of 32 bits.
+    // The polynomial without its highest term, aligned to the upper end of 32 bits.
     let low_terms = ((polynomial ^ 1 << degree) << (32 - degree)) as u32;
     let mut table = [0; 256];
     for (index, entry) in (0u32..).zip(&mut table) {
@@ -154,12 +154,12 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Returns the remainder by long division in a wide number, with nothing of the code under test.
+    /// Returns the remainder by long division in a wide number, without using any of the code under test.
     fn divided(polynomial: u64, start: u32, data: u64, bits: u8) -> u32 {
         let degree = 63 - polynomial.leading_zeros();
         let mut rest = u128::from(data) & ((1u128 << bits) - 1);
         rest <<= degree;
-        // A start value is equivalent to a change of the first bits.
+        // A start value is equivalent to a change in the first bits.
         rest ^= u128::from(start) << bits;
         for at in (degree..u32::from(bits) + degree).rev() {
             if rest >> at & 1 == 1 {
@@ -169,7 +169,7 @@ mod tests {
         rest as u32
     }
 
-    /// Reference 3: header CRC4 over CTS = 1, ID = 0, address.
+    /// Expected values from reference 3: header CRC4 over CTS = 1, ID = 0, address.
     #[test]
     fn published_headers_match() {
         let table = [
@@ -189,7 +189,7 @@ mod tests {
         for (address, sum) in table {
             assert_eq!(crc4(0x400 | address, 11), sum, "{address:02X}");
         }
-        // Commands: CTS = 0, ID 0, CMD 01 and 00 (reference 3, last line).
+        // Commands with CTS = 0, ID 0, CMD 01 and 00 (reference 3, last line).
         assert_eq!(crc4(0b001, 11), 0xC);
         assert_eq!(crc4(0b000, 11), 0xF);
     }
@@ -204,7 +204,7 @@ mod tests {
         }
     }
 
-    /// Reference 3: data CRC4.
+    /// Expected data CRC4 values from reference 3.
     #[test]
     fn published_data_bytes_match() {
         let table = "00→F 01→C 02→9 03→A 04→3 05→0 07→6 10→A 1C→D 21→6 29→D 2A→8 30→0 46→2 4B→6 61→1 72→1 80→1 FF→B";
@@ -215,8 +215,8 @@ mod tests {
         }
     }
 
-    /// The check values of the catalogue of parametrised CRC algorithms (reveng), over the text 123456789: those without
-    /// reflection, of any width.
+    /// Check values over the string 123456789 from the catalogue of parametrised CRC algorithms (reveng): those of any
+    /// width without reflection.
     #[test]
     fn other_polynomials_match_published_check_values() {
         let cases = [
@@ -229,7 +229,7 @@ mod tests {
         ];
         for (name, polynomial, start, xor, check) in cases {
             let crc = Crc::new(polynomial, start, xor != 0).unwrap();
-            // Nine bytes do not fit into 64 bits: the first goes into the start value.
+            // Nine bytes do not fit into 64 bits, so the first one goes into the start value.
             let first = divided(polynomial, start, u64::from(b'1'), 8);
             let rest = Crc::new(polynomial, first, xor != 0).unwrap();
             assert_eq!(rest.of(u64::from_be_bytes(*b"23456789"), 64), check, "{name}");

@@ -1,5 +1,5 @@
-//! The description of an encoder: a file that anyone can write (RON, `assets/devices/biss/`), with the frame, the
-//! registers, the areas of plain data and the procedures of one kind of encoder. It is data: nothing is opened here.
+//! Encoder descriptions: user-editable files (RON, `assets/devices/biss/`) that define the frame, registers, plain data
+//! areas and procedures of one kind of encoder. This module handles the data only and opens no files.
 
 mod codes;
 mod file;
@@ -21,7 +21,7 @@ use super::procedure::ProcedureKind;
 use super::single_cycle::Layout;
 use super::status::{Firmware, ProfileId};
 
-/// A kind of encoder.
+/// The description of one kind of encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     name: String,
@@ -34,81 +34,81 @@ pub struct Description {
     procedures: Vec<Procedure>,
 }
 
-/// The identity that an encoder reports.
+/// The identity reported by an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// 42h and 43h.
+    /// Profile ID (registers 42h and 43h).
     pub profile: ProfileId,
-    /// 7Eh and 7Fh.
+    /// Manufacturer ID (registers 7Eh and 7Fh).
     pub manufacturer: [u8; 2],
-    /// 78h…7Dh.
+    /// Device ID (registers 78h to 7Dh).
     pub device_id: [u8; 6],
 }
 
-/// An encoder is not of the kind that is described.
+/// The encoder is not of the described kind.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the encoder says {found}; the description \"{name}\" is for {expected}")]
 pub struct Mismatch {
-    /// The description's name.
+    /// Name of the description.
     pub name: String,
-    /// The identity in the description.
+    /// Identity in the description.
     pub expected: Identity,
-    /// The identity of the encoder.
+    /// Identity reported by the encoder.
     pub found: Identity,
 }
 
-/// The lock that has to be opened before a device mode can be selected.
+/// The lock to open before a device mode can be selected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lock {
-    /// Register of the password.
+    /// Address of the password register.
     pub password_at: RegisterAddress,
-    /// The password.
+    /// Password that opens the lock.
     pub password: u8,
-    /// Register of the device mode.
+    /// Address of the device mode register.
     pub mode_at: RegisterAddress,
 }
 
 /// The registers of a guided procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Procedure {
-    /// The procedure.
+    /// Kind of procedure.
     pub kind: ProcedureKind,
-    /// The device mode that it needs.
+    /// Required device mode.
     pub mode: u8,
-    /// Register of its commands.
+    /// Address of the command register.
     pub command: RegisterAddress,
-    /// Register of its status.
+    /// Address of the status register.
     pub status: RegisterAddress,
-    /// The first of its further registers: the error code and results of a Wiegand test, the value of a preset.
+    /// First additional register: the error code and results of a Wiegand test, or the value of a preset.
     pub data: Option<RegisterAddress>,
-    /// Older firmware has no such procedure.
+    /// First firmware that supports the procedure.
     pub since: Firmware,
 }
 
-/// An error in a description, with its position.
+/// An error in a description file, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}, line {line}, column {column}: {problem}")]
 pub struct DescriptionError {
-    /// The file's name as given.
+    /// File name as given.
     pub file: String,
-    /// Line, counted from 1.
+    /// Line number, counted from 1.
     pub line: usize,
-    /// Column, counted from 1.
+    /// Column number, counted from 1.
     pub column: usize,
-    /// The problem.
+    /// The flaw that was found.
     pub problem: Flaw,
 }
 
-/// All known kinds of encoders, the most specific first.
+/// All known encoder descriptions, most specific first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Descriptions(Vec<Description>);
 
 impl Description {
-    /// Parses a description. `file` is its name for errors.
+    /// Parses a description; `file` is the name used in error messages.
     ///
     /// # Errors
-    /// Returns line and column: text that is not RON, unknown or missing keys, numbers outside their range, overlapping
-    /// registers.
+    /// Returns line and column if the string is not valid RON, a key is unknown or missing, a number is out of range,
+    /// or registers overlap.
     pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionError> {
         file::parse(text).map_err(|(place, what)| DescriptionError {
             file: file.to_owned(),
@@ -118,37 +118,37 @@ impl Description {
         })
     }
 
-    /// Returns the name of the encoder.
+    /// Returns the name of the described encoder.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Returns the identity of encoders of this kind; `None` for any.
+    /// Returns the identity of the described encoders, or `None` if the description applies to any encoder.
     pub const fn identity(&self) -> Option<&Identity> {
         self.identity.as_ref()
     }
 
-    /// Returns the frame of the position data; `None` if the encoder's data sheet or the user has to supply it.
+    /// Returns the position frame layout, or `None` if the encoder's data sheet or the user has to supply it.
     pub const fn layout(&self) -> Option<&Layout> {
         self.layout.as_ref()
     }
 
-    /// Returns the lock of the device modes; `None` if there is none.
+    /// Returns the lock that guards the device modes, or `None` if they are not locked.
     pub const fn lock(&self) -> Option<Lock> {
         self.lock
     }
 
-    /// Returns the registers, in the order of the file.
+    /// Returns the registers in file order.
     pub fn registers(&self) -> &[Register] {
         &self.registers
     }
 
-    /// Returns the banks of plain data.
+    /// Returns the plain data areas.
     pub fn areas(&self) -> &[Area] {
         &self.areas
     }
 
-    /// Returns the name of a bank: from its area, or from the list of banks.
+    /// Returns the name of a bank, taken from its area or from the list of banks.
     pub fn bank_name(&self, bank: u8) -> Option<&Name> {
         let area = self.areas.iter().find(|area| area.contains(bank)).map(|area| &area.name);
         area.or_else(|| self.banks.iter().find(|(own, _)| *own == bank).map(|(_, name)| name))
@@ -159,35 +159,35 @@ impl Description {
         &self.procedures
     }
 
-    /// Returns the register that plays a role.
+    /// Returns the register with the given role, if any.
     pub fn with_role(&self, role: Role) -> Option<&Register> {
         self.registers.iter().find(|register| register.role == Some(role))
     }
 
-    /// Returns the register to which a byte belongs.
+    /// Returns the register that the byte at an address belongs to, if any.
     pub fn at(&self, address: RegisterAddress) -> Option<&Register> {
         self.registers.iter().find(|register| register.contains(address))
     }
 
-    /// Returns the area to which a byte belongs.
+    /// Returns the area that the byte at an address belongs to, if any.
     pub fn area_at(&self, address: RegisterAddress) -> Option<&Area> {
         self.areas.iter().find(|area| address.bank().is_some_and(|bank| area.contains(bank)))
     }
 
-    /// Returns a procedure, if the encoder has it.
+    /// Returns the procedure of the given kind, if the encoder supports it.
     pub fn procedure(&self, kind: ProcedureKind) -> Option<&Procedure> {
         self.procedures.iter().find(|procedure| procedure.kind == kind)
     }
 
-    /// Returns the access to the byte at an address.
+    /// Returns how the byte at an address can be accessed, if it is described.
     pub fn access(&self, address: RegisterAddress) -> Option<Access> {
         self.at(address).map(|register| register.access).or_else(|| self.area_at(address).map(|area| area.access))
     }
 
-    /// Checks whether an encoder is of this kind.
+    /// Checks whether an encoder is of the described kind.
     ///
     /// # Errors
-    /// [`Mismatch`], with both sides.
+    /// [`Mismatch`], with both identities.
     pub fn check(&self, found: &Identity) -> Result<(), Mismatch> {
         match &self.identity {
             Some(expected) if expected != found => {
@@ -212,13 +212,13 @@ impl fmt::Display for Identity {
 }
 
 impl Descriptions {
-    /// The descriptions that ship with the program, with their files' names.
+    /// The descriptions that ship with the program, with their file names.
     pub const BUILT_IN: [(&'static str, &'static str); 2] = [
         ("posital_kit.ron", include_str!("../../../../assets/devices/biss/posital_kit.ron")),
         ("unknown.ron", include_str!("../../../../assets/devices/biss/unknown.ron")),
     ];
 
-    /// Reads files; returns the reason for each that cannot be used, which does not affect the others.
+    /// Parses description files. Returns an error for each file that cannot be used, which does not affect the others.
     pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<DescriptionError>) {
         let mut errors = Vec::new();
         let mut read = Vec::new();
@@ -228,18 +228,18 @@ impl Descriptions {
                 Err(error) => errors.push(error),
             }
         }
-        // Those for one kind of encoder before those for any.
+        // Descriptions for one kind of encoder come before those for any.
         read.sort_by_key(|description| description.identity.is_none());
         (Descriptions(read), errors)
     }
 
-    /// Creates the built-in ones.
+    /// Creates the set of built-in descriptions.
     pub fn built_in() -> Self {
-        // A test checks that they can be read.
+        // A test checks that the built-in files can be read.
         Self::read(Self::BUILT_IN).0
     }
 
-    /// Returns these descriptions with those of `others`, which take precedence for the same encoder.
+    /// Returns the descriptions merged with `others`, which take precedence for the same encoder.
     #[must_use]
     pub fn overlaid_with(self, others: Descriptions) -> Self {
         let mut all = others.0;
@@ -248,17 +248,17 @@ impl Descriptions {
         Descriptions(all)
     }
 
-    /// Returns the description of an encoder with this identity: its own, otherwise one for any.
+    /// Returns the description for the given identity: a specific one, otherwise one that applies to any encoder.
     pub fn find(&self, identity: &Identity) -> Option<&Description> {
         self.0.iter().find(|description| description.check(identity).is_ok())
     }
 
-    /// Returns the description with this name.
+    /// Returns the description with the given name, if any.
     pub fn named(&self, name: &str) -> Option<&Description> {
         self.0.iter().find(|description| description.name == name)
     }
 
-    /// Returns all of them.
+    /// Returns an iterator over all descriptions.
     pub fn iter(&self) -> impl Iterator<Item = &Description> {
         self.0.iter()
     }

@@ -1,30 +1,30 @@
-//! The electronic data sheet of the standard encoder profile BP3: bank 2, common to all BiSS devices, and bank 3, about
-//! the encoder (manual, appendix 9.1.4 and 9.1.5). Numbers have their high byte first; the last byte of each bank is the
-//! sum of the others. Bytes that the tables do not name are kept.
+//! The electronic data sheet of the standard encoder profile BP3: bank 2, common to all BiSS devices, and bank 3,
+//! specific to encoders (manual, appendix 9.1.4 and 9.1.5). Numbers are stored high byte first; the last byte of each
+//! bank is the sum of the others. Bytes that the tables do not name are kept.
 
 use super::crc::{Crc, CrcError};
 use super::single_cycle::{Layout, LayoutError};
 use super::status::ProfileId;
 
-/// A bank of the data sheet.
+/// A bank of the electronic data sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EdsBank {
-    /// Bank 2: common to every BiSS device.
+    /// Bank 2, common to every BiSS device.
     Common,
-    /// Bank 3: about the encoder.
+    /// Bank 3, specific to encoders.
     Encoder,
 }
 
-/// A field of the data sheet: a row of the manual's table.
+/// A field of the electronic data sheet, corresponding to a row of the manual's table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdsField {
-    /// First register, 00h…3Eh.
+    /// Offset of the first register, 00h to 3Eh.
     pub offset: u8,
-    /// Bytes, 1…4.
+    /// Width in bytes, 1 to 4.
     pub width: u8,
     /// Name in the manual.
     pub name: &'static str,
-    /// Factory setting of the kit encoder; `None` if the manual leaves it open.
+    /// Factory setting of a kit encoder, or `None` if the manual leaves it open.
     pub default: Option<u32>,
     meaning: Meaning,
 }
@@ -43,45 +43,45 @@ enum Meaning {
     Kelvin,
 }
 
-/// The value of a field.
+/// The decoded value of a data sheet field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdsValue {
-    /// A number with its unit, which may be empty.
+    /// Number with its unit, which may be empty.
     Number(u32, &'static str),
-    /// A bank's number.
+    /// Bank number.
     Bank(u8),
-    /// FFh in place of a bank's number.
+    /// Not available: FFh in place of a bank number.
     NotAvailable,
-    /// A time in units that are not published: the manual's tables fit no length exactly (`U`).
+    /// Time in units that are not published: no unit length fits the manual's tables exactly (`U`).
     Ticks(u8),
-    /// 0 as a time-out: it adapts itself.
+    /// Adaptive time-out, encoded as 0.
     Adaptive,
-    /// 0 as a cycle time.
+    /// Unlimited cycle time, encoded as 0.
     NoLimit,
-    /// An absolute temperature in kelvin.
+    /// Absolute temperature in kelvin.
     Kelvin(u16),
-    /// A CRC polynomial with all of its terms (43h is x⁶ + x + 1); 0: no CRC.
+    /// CRC polynomial with all of its terms (43h is x⁶ + x + 1), or 0 for no CRC.
     Polynomial(u64),
-    /// The profile.
+    /// Profile ID.
     Profile(ProfileId),
-    /// The meaning of a bit next to the position.
+    /// Meaning of a bit next to the position.
     Feedback(Feedback),
-    /// 0: rotary. Other numbers are unknown (`U`).
+    /// Encoder type: 0 for rotary; other numbers are unknown (`U`).
     EncoderType(u8),
-    /// A number that is a code.
+    /// Number that represents a code.
     Code(u32),
 }
 
 /// The meaning of a bit next to the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feedback {
-    /// 0: there is no such bit.
+    /// No such bit (code 0).
     None,
-    /// 1: an error, active low.
+    /// Error bit, active low (code 1).
     Error,
-    /// 2: a warning, active low.
+    /// Warning bit, active low (code 2).
     Warning,
-    /// An unknown code.
+    /// Unknown code.
     Unknown(u8),
 }
 
@@ -132,52 +132,52 @@ const ENCODER: [EdsField; 17] = [
     row(0x38, 2, Some(70),     Meaning::Number("mA"), "maximum current consumption"),
 ];
 
-/// A bank of the data sheet, byte for byte.
+/// The raw contents of an electronic data sheet bank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Eds {
     bank: EdsBank,
     bytes: [u8; 64],
 }
 
-/// The reason why a data sheet is not reliable.
+/// The reason why an electronic data sheet is unreliable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EdsError {
     /// The last byte is not the sum of the others.
     #[error("EDS bank 0x{bank:02X}: checksum {got:02X} where {expected:02X} was expected")]
     Checksum {
-        /// The bank's number from the manual.
+        /// Bank number from the manual.
         bank: u8,
-        /// The sum.
+        /// Sum of the other bytes.
         expected: u8,
-        /// The checksum received.
+        /// Checksum received.
         got: u8,
     },
-    /// A bit next to the position with an unknown meaning.
+    /// The meaning of a bit next to the position is unknown.
     #[error("EDS: feedback bit {number} has the unknown meaning 0x{code:02X}")]
     Feedback {
-        /// 1 or 2.
+        /// Number of the bit, 1 or 2.
         number: u8,
-        /// The code of the bit.
+        /// Code that states the bit's meaning.
         code: u8,
     },
-    /// The two banks disagree.
+    /// The two banks disagree on the data length.
     #[error("EDS: the data length is {common} bit in bank 0x02 and {encoder} bit in bank 0x03")]
     DataLength {
-        /// Bank 2, 15h.
+        /// Data length in bank 2 (offset 15h).
         common: u8,
-        /// Multiturn, coarse and feedback bits of bank 3.
+        /// Sum of the multiturn, coarse and feedback bits in bank 3.
         encoder: u8,
     },
-    /// The checksum of the position data is none.
+    /// The CRC parameters of the position data are invalid.
     #[error("EDS: {0}")]
     Crc(#[from] CrcError),
-    /// The widths are impossible.
+    /// The combination of widths is impossible.
     #[error("EDS: {0}")]
     Layout(#[from] LayoutError),
 }
 
 impl EdsBank {
-    /// Returns its number in the kit encoder.
+    /// Returns the bank number in a kit encoder.
     pub const fn number(self) -> u8 {
         match self {
             EdsBank::Common => 0x02,
@@ -185,7 +185,7 @@ impl EdsBank {
         }
     }
 
-    /// Returns its fields, by address.
+    /// Returns the fields of the bank, sorted by address.
     pub const fn fields(self) -> &'static [EdsField] {
         match self {
             EdsBank::Common => &COMMON,
@@ -195,10 +195,10 @@ impl EdsBank {
 }
 
 impl Eds {
-    /// Offset of the checksum of the others.
+    /// Offset of the checksum, which covers the other bytes.
     pub const CHECKSUM_OFFSET: u8 = 0x3F;
 
-    /// Parses a bank and checks its sum.
+    /// Parses a bank and verifies its checksum.
     ///
     /// # Errors
     /// [`EdsError::Checksum`].
@@ -211,7 +211,7 @@ impl Eds {
         Ok(Eds { bank, bytes })
     }
 
-    /// Returns the kit encoder's bank with factory settings, 0 where the manual has no value.
+    /// Returns a kit encoder's bank with factory settings, or 0 where the manual gives no value.
     pub fn delivered(bank: EdsBank) -> Self {
         let mut bytes = [0; 64];
         for field in bank.fields() {
@@ -229,18 +229,18 @@ impl Eds {
         Eds { bank, bytes }
     }
 
-    /// Returns the bytes of the bank, its sum last.
+    /// Returns the bytes of the bank, with the checksum last.
     pub const fn emit(&self) -> [u8; 64] {
         self.bytes
     }
 
-    /// Returns every field with its value.
+    /// Returns each field with its value.
     pub fn values(&self) -> impl Iterator<Item = (&'static EdsField, EdsValue)> {
         self.bank.fields().iter().map(|field| (field, field.value(&self.bytes)))
     }
 
-    /// Returns the last bank that a user may fill; `None` if there is none, and in the encoder's bank, which does not
-    /// contain it.
+    /// Returns the last bank available to users. Returns `None` if no bank is available, and for bank 3, which does not
+    /// contain this field.
     pub fn last_user_bank(&self) -> Option<u8> {
         match (self.bank, self.byte(0x03)) {
             (EdsBank::Encoder, _) | (EdsBank::Common, 0xFF) => None,
@@ -258,10 +258,10 @@ impl Eds {
     }
 }
 
-/// Returns the frame of the position data according to both banks.
+/// Returns the position frame layout described by both banks.
 ///
 /// # Errors
-/// [`EdsError`] if they contain none, or disagree.
+/// [`EdsError`] if the banks describe no layout, or disagree.
 pub fn layout(common: &Eds, encoder: &Eds) -> Result<Layout, EdsError> {
     let feedback = |number: u8, offset: u8, expected: Feedback| match Feedback::from_byte(encoder.byte(offset)) {
         Feedback::None => Ok(false),
@@ -282,17 +282,18 @@ fn sum(bytes: &[u8; 64]) -> u8 {
 }
 
 impl EdsField {
-    /// Returns the number in the field, high byte first.
+    /// Returns the number stored in the field, high byte first.
     pub fn raw(&self, bank: &[u8; 64]) -> u32 {
         let first = usize::from(self.offset);
         let bytes = bank.get(first..first + usize::from(self.width)).unwrap_or_default();
         bytes.iter().fold(0, |number, byte| number << 8 | u32::from(*byte))
     }
 
-    /// Returns the value of the field. The bank's checksum is not verified here: see [`Eds::parse`].
+    /// Returns the decoded value of the field without verifying the bank's checksum; see [`Eds::parse`].
     pub fn value(&self, bank: &[u8; 64]) -> EdsValue {
         let raw = self.raw(bank);
-        // Fields with these meanings have one byte, and those of two use one byte of it: nothing is cut off.
+        // Fields with these meanings are one byte wide, and those two bytes wide use only one of them, so nothing is
+        // cut off.
         let byte = raw as u8;
         match self.meaning {
             Meaning::Number(unit) => EdsValue::Number(raw, unit),
@@ -312,7 +313,7 @@ impl EdsField {
 }
 
 impl EdsValue {
-    /// Returns whole degrees Celsius of a temperature.
+    /// Returns a temperature in whole degrees Celsius, or `None` if the value is not a temperature.
     pub fn celsius(self) -> Option<i32> {
         match self {
             EdsValue::Kelvin(kelvin) => Some(i32::from(kelvin) - 273),

@@ -1,40 +1,40 @@
-//! The data line (SLO) in one cycle, one sample per clock after the latch: acknowledge, start bit, control bit, frame,
-//! time-out (manual figure 2). The durations of clock and time-out do not matter here.
+//! One cycle of the data line (SLO), with one sample per clock after the latch: acknowledge, start bit, control bit,
+//! frame, time-out (manual figure 2). Clock period and time-out duration do not matter to this module.
 
 use super::single_cycle::Layout;
 
 /// One cycle of the data line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cycle {
-    /// Clocks for which the encoder was still working (SLO = 0), at least 1.
+    /// Number of clocks for which the encoder was still busy (SLO = 0), at least 1.
     pub acknowledge: usize,
-    /// CDS: the bit of the control frame that the encoder sends in this cycle.
+    /// CDS: the bit of the control frame that the encoder sends in the cycle.
     pub control: bool,
-    /// The frame, right-justified, including its checksum.
+    /// Frame bits including the checksum, right-justified.
     pub raw: u64,
 }
 
-/// The reason why samples are not a cycle.
+/// The reason why samples do not form a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CycleError {
-    /// The line never went low: no encoder, or a broken wire.
+    /// The line never went low: no encoder is connected, or a wire is broken.
     #[error("the encoder does not acknowledge")]
     NoAcknowledge,
-    /// The line never returned to 1.
+    /// The line never returned to high.
     #[error("the encoder is not ready")]
     NotReady,
-    /// The samples end within the frame.
+    /// The samples end before the frame does.
     #[error("{got} bits behind the start bit are too few for {expected}")]
     Short {
-        /// Control bit and frame.
+        /// Number of samples needed for the control bit and the frame.
         expected: usize,
-        /// Bits after the start bit.
+        /// Number of samples after the start bit.
         got: usize,
     },
-    /// After the frame the line is 1 although the time-out cannot be over.
+    /// The line is high after the frame, although the time-out cannot be over yet.
     #[error("the line is high behind the last bit: the frame is longer than {bits} bits")]
     TimeOut {
-        /// Bits of the layout.
+        /// Frame length in the layout, in bits.
         bits: u8,
     },
 }
@@ -43,9 +43,9 @@ impl Cycle {
     /// Finds the frame in the samples of a cycle. Samples after the first one of the time-out are ignored.
     ///
     /// # Errors
-    /// [`CycleError`]. The frame's checksum is checked by [`Layout::parse`].
+    /// [`CycleError`]. The frame's checksum is verified by [`Layout::parse`] instead.
     pub fn parse(samples: &[bool], layout: &Layout) -> Result<Self, CycleError> {
-        // Before the acknowledge the line is at rest.
+        // The line is at rest before the acknowledge.
         let low = samples.iter().position(|sample| !sample).ok_or(CycleError::NoAcknowledge)?;
         let behind_low = samples.get(low..).unwrap_or_default();
         let acknowledge = behind_low.iter().position(|sample| *sample).ok_or(CycleError::NotReady)?;
@@ -62,7 +62,7 @@ impl Cycle {
         Ok(Cycle { acknowledge, control: *control, raw })
     }
 
-    /// Returns the samples from the acknowledge to the first of the time-out.
+    /// Returns the samples from the acknowledge to the first one of the time-out.
     pub fn emit(&self, layout: &Layout) -> Vec<bool> {
         let mut samples = vec![false; self.acknowledge.max(1)];
         samples.extend([true, self.control]);
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Reference 7: MT 1234, ST 18000, three clocks of acknowledge.
+    /// Reference 7: MT 1234, ST 18000, acknowledge of three clocks.
     const SAMPLES: &str = "000 1 0 0001001000110100 11000000000000000 1 1 001111 0";
 
     fn samples(text: &str) -> Vec<bool> {
@@ -91,7 +91,7 @@ mod tests {
         let cycle = Cycle { acknowledge: 3, control: false, raw: 0x024_6980_00CF };
         assert_eq!(Cycle::parse(&samples(SAMPLES), &layout), Ok(cycle));
         assert_eq!(cycle.emit(&layout), samples(SAMPLES));
-        // A line at rest before it, and the line after the time-out, change nothing.
+        // A line at rest before the cycle, and the level after the time-out, make no difference.
         let rested = [vec![true; 2], samples(SAMPLES), vec![false, true, true]].concat();
         assert_eq!(Cycle::parse(&rested, &layout), Ok(cycle));
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(Cycle::parse(&[true; 64], &layout), Err(CycleError::NoAcknowledge));
         assert_eq!(Cycle::parse(&[false; 64], &layout), Err(CycleError::NotReady));
         let long = Layout::new(16, 16, true, true, layout.crc().cloned()).unwrap();
-        // One bit less than the encoder sends: its last one, 1, is in the place of the time-out.
+        // The layout is one bit shorter than the encoder's frame, whose last bit, 1, falls into the time-out.
         assert_eq!(Cycle::parse(&samples(SAMPLES), &long), Err(CycleError::TimeOut { bits: 40 }));
     }
 

@@ -1,8 +1,8 @@
 //! BiSS C: position data, the control frame, and the meaning of an encoder's registers.
 //!
-//! Source: POSITAL, *Manual IXARC kit encoders with BiSS C interface* v4.6 ("the manual" below; the project's reference of
-//! it where a section is named so). Facts that the manual leaves open are marked `U` (unknown) and are either tolerated or
-//! can be set.
+//! Source: POSITAL, *Manual IXARC kit encoders with BiSS C interface* v4.6, called "the manual" below, or the project's
+//! reference of it where one of its sections is cited. Facts that the manual leaves open are marked `U` (unknown) and
+//! are either tolerated or configurable.
 
 #![warn(missing_docs)]
 
@@ -18,7 +18,7 @@ mod single_cycle;
 mod status;
 mod widths;
 
-/// The word for this kind of device: on the command line, in profiles, and in stored data.
+/// Name of this device type on the command line, in profiles, and in stored data.
 pub const KIND: &str = "biss";
 
 pub use address::{AddressError, RegisterAddress};

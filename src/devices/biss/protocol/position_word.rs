@@ -1,23 +1,23 @@
-//! The position word of UBICOM: singleturn in the lower bits, multiturn above (manual 5.2). It has no error and no
+//! The UBICOM position word: singleturn in the lower bits, multiturn above (manual 5.2). The word has no error or
 //! warning bit.
 
 use super::single_cycle::{Layout, PositionData};
 use crate::buses::ubicom::protocol::PositionWord;
 
 impl Layout {
-    /// Returns the word of a position. Bits of the multiturn beyond its width are left out.
+    /// Returns the position word for a reading. Multiturn bits beyond the frame's width are dropped.
     pub fn position_word(&self, reading: &PositionData) -> PositionWord {
         let [b0, b1, b2, b3, b4, ..] = self.steps(reading).to_le_bytes();
         PositionWord::parse([b0, b1, b2, b3, b4])
     }
 
-    /// Returns the position of a word, with the widths of the frame; `None` if bits above them are set. It contains no
-    /// error and warning.
+    /// Returns the position in a word, split by the widths of the frame, or `None` if higher bits are set. The position
+    /// has no error or warning bit.
     pub fn reading_of(&self, word: PositionWord) -> Option<PositionData> {
         let split = |value: u64, bits: u8| (value & ((1 << bits) - 1), value >> bits);
         let (singleturn, above) = split(word.word(), self.singleturn_bits());
         let (multiturn, rest) = split(above, self.multiturn_bits());
-        // Fields have at most 32 bits.
+        // Fields are at most 32 bits wide.
         let fields = PositionData {
             multiturn: u32::try_from(multiturn).ok()?,
             singleturn: u32::try_from(singleturn).ok()?,
@@ -32,7 +32,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Reference 6.
+    /// Expected values from reference 6.
     #[test]
     fn published_positions_match() {
         let layout = Layout::default();

@@ -1,26 +1,26 @@
-//! The codes of the guided procedures: those written into their command registers, and those of their status registers
-//! (manual 6.3 to 6.7). The encoder's [description](super::Description) locates these registers.
+//! The codes of the command and status registers of the guided procedures (manual 6.3 to 6.7). The encoder's
+//! [description](super::Description) defines where these registers are.
 
 use std::fmt;
 
-/// A procedure that leads an encoder through a device mode.
+/// A procedure that takes an encoder through a device mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProcedureKind {
-    /// Manual 6.3.
+    /// Test of the Wiegand sensor (manual 6.3).
     WiegandTest,
-    /// Manual 6.4.
+    /// Singleturn calibration (manual 6.4).
     Calibration,
-    /// Manual 6.5: OEM data and EDS motor data.
+    /// Writing of OEM data and EDS motor data (manual 6.5).
     DataWrite,
-    /// Manual 6.6.
+    /// Selection of the position filter (manual 6.6).
     FilterSelection,
-    /// Manual 6.7.
+    /// Setting of the preset value and position (manual 6.7).
     Preset,
 }
 
 impl ProcedureKind {
-    /// Every procedure, in the manual's order.
+    /// All procedures, in the manual's order.
     pub const ALL: [ProcedureKind; 5] = [
         ProcedureKind::WiegandTest,
         ProcedureKind::Calibration,
@@ -30,22 +30,22 @@ impl ProcedureKind {
     ];
 }
 
-/// Defines the codes of a register as a type: unknown ones keep their number.
+/// Defines a type for the codes of a register, in which unknown codes keep their number.
 macro_rules! codes {
     ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $code:literal $text:literal,)* }) => {
         $(#[$about])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum $name {
             $($(#[$doc])* $variant,)*
-            /// A code that the manual does not know.
+            /// Code that is not in the manual.
             Unknown(u8),
         }
 
         impl $name {
-            /// Every code of the manual with its name, in the manual's order.
+            /// All codes in the manual with their names, in the manual's order.
             pub const TABLE: &'static [(u8, &'static str)] = &[$(($code, $text),)*];
 
-            /// Returns the state for the register's value.
+            /// Decodes a register value.
             pub const fn from_byte(byte: u8) -> Self {
                 match byte {
                     $($code => $name::$variant,)*
@@ -53,7 +53,7 @@ macro_rules! codes {
                 }
             }
 
-            /// Returns the register's value.
+            /// Returns the register value of the code.
             pub const fn byte(self) -> u8 {
                 match self {
                     $($name::$variant => $code,)*
@@ -75,80 +75,80 @@ macro_rules! codes {
 }
 
 codes! {
-    /// Written to the Wiegand test's command register (bank 0, 06h).
+    /// Codes for the command register of the Wiegand test (bank 0, 06h).
     WiegandCommand {
         /// Collects pulses while the motor runs clockwise.
         StartClockwise = 0x01 "start clockwise",
         /// Collects pulses while the motor runs counterclockwise.
         StartCounterclockwise = 0x02 "start counterclockwise",
-        /// Ends the test, at any time.
+        /// Ends the test; allowed at any time.
         Stop = 0x03 "finish test",
-        /// Stores the result; it is visible after a restart.
+        /// Stores the result, which becomes visible after a restart.
         Save = 0x05 "save result",
     }
 }
 
 codes! {
-    /// The status register of the Wiegand test (bank 0, 07h).
+    /// Codes in the status register of the Wiegand test (bank 0, 07h).
     WiegandStatus {
-        /// No test runs.
+        /// No test is running.
         Stopped = 0x00 "test stopped",
-        /// The first direction runs.
+        /// Pulses are being collected in the first direction.
         Clockwise = 0x01 "pulse collection active, clockwise",
-        /// The motor has to turn the other way now.
+        /// The motor must now reverse its direction.
         WaitForDirection = 0x03 "wait for change of motor rotation direction",
-        /// The second direction runs.
+        /// Pulses are being collected in the second direction.
         Counterclockwise = 0x04 "pulse collection active, counterclockwise",
-        /// Both directions are done.
+        /// The test is complete in both directions.
         Complete = 0x06 "test complete",
-        /// The error code (bank 0, 08h) has the reason.
+        /// The test failed for the reason given by the error code (bank 0, 08h).
         Failed = 0x07 "test failed",
-        /// The encoder has detected that the motor turns the other way.
+        /// The encoder has detected that the motor turns in the wrong direction.
         WrongDirection = 0x30 "wrong motor rotation direction",
     }
 }
 
 codes! {
-    /// Written to the calibration's command register (bank 0, 00h).
+    /// Codes for the command register of the calibration (bank 0, 00h).
     CalibrationCommand {
-        /// The first run, with the motor turning counterclockwise.
+        /// Starts the first run, with the motor turning counterclockwise.
         StartCounterclockwise = 0x01 "start counterclockwise",
-        /// The second run, with the motor turning clockwise. Its success is saved automatically; its failure loses the
-        /// table.
+        /// Starts the second run, with the motor turning clockwise. On success the table is saved automatically; on
+        /// failure it is lost.
         StartClockwise = 0x02 "start clockwise",
     }
 }
 
 codes! {
-    /// The status register of the calibration (bank 0, 01h).
+    /// Codes in the status register of the calibration (bank 0, 01h).
     CalibrationStatus {
-        /// Nothing has begun.
+        /// The calibration has not started.
         Idle = 0x00 "not started",
         /// A run is in progress.
         Running = 0x01 "calibration running",
-        /// The first run is done.
+        /// The first run is complete.
         CounterclockwiseDone = 0x02 "calibration finished, counterclockwise",
-        /// The second run is done and the table saved.
+        /// The second run is complete and the table has been saved.
         ClockwiseDone = 0x22 "calibration finished, clockwise",
-        /// The motor turns the other way.
+        /// The motor turns in the wrong direction.
         WrongDirection = 0x30 "wrong rotation direction",
-        /// Not within 25 and 40 °C.
+        /// The temperature is outside the range from 25 to 40 °C.
         Temperature = 0x31 "temperature out of range",
-        /// Not within 300 and 700 rpm.
+        /// The motor speed is outside the range from 300 to 700 rpm.
         Speed = 0x32 "motor speed out of range",
-        /// Without a reason.
+        /// The calibration failed without a stated reason.
         Failed = 0x33 "calibration failure",
     }
 }
 
 codes! {
-    /// Written to the data write's command register (bank 0, 1Ah).
+    /// Codes for the command register of the data write (bank 0, 1Ah).
     DataCommand {
-        /// Opens banks 04h…23h.
+        /// Opens banks 04h to 23h for writing.
         OpenMotorData = 0x01 "get write access to EDS motor data",
-        /// Opens banks 24h…43h.
+        /// Opens banks 24h to 43h for writing.
         OpenOemData = 0x02 "get write access to OEM data",
-        /// Writes the entered values into the flash.
+        /// Writes the entered values to flash.
         Save = 0x03 "save data",
         /// Discards the entered values.
         Cancel = 0x04 "cancel write access",
@@ -156,9 +156,9 @@ codes! {
 }
 
 codes! {
-    /// The status register of the data write (bank 0, 1Bh).
+    /// Codes in the status register of the data write (bank 0, 1Bh).
     DataStatus {
-        /// Write access may be asked for.
+        /// Write access is closed and may be requested.
         Closed = 0x00 "wait for write access",
         /// Data may be entered and saved.
         Open = 0x01 "wait for save command",
@@ -166,58 +166,58 @@ codes! {
 }
 
 codes! {
-    /// Written to the filter selection's command register (bank 0, 24h).
+    /// Codes for the command register of the filter selection (bank 0, 24h).
     FilterCommand {
-        /// Asks for write access.
+        /// Requests write access.
         Open = 0x01 "get write access",
-        /// Keeps the filter and restarts.
+        /// Saves the selected filter and restarts.
         Save = 0x02 "save filter selection",
-        /// [`Filter::Balanced`](super::Filter).
+        /// Selects [`Filter::Balanced`](super::Filter).
         Balanced = 0x03 "balanced filter",
-        /// [`Filter::Dynamic`](super::Filter).
+        /// Selects [`Filter::Dynamic`](super::Filter).
         Dynamic = 0x04 "dynamic filter",
     }
 }
 
 codes! {
-    /// The status register of the filter selection (bank 0, 25h).
+    /// Codes in the status register of the filter selection (bank 0, 25h).
     FilterStatus {
-        /// Write access may be asked for.
+        /// Write access is closed and may be requested.
         Closed = 0x00 "wait for write access",
-        /// The filter may be saved.
+        /// The filter selection may be saved.
         WaitForSave = 0x01 "wait for save command",
-        /// A filter may be chosen.
+        /// A filter may be selected.
         WaitForValue = 0x02 "wait for filter",
     }
 }
 
 codes! {
-    /// Written to the preset's command register (bank 1, 00h).
+    /// Codes for the command register of the preset (bank 1, 00h).
     PresetCommand {
-        /// Sets the shaft's position to the stored preset value; restarts.
+        /// Sets the shaft position to the stored preset value and restarts.
         Both = 0x01 "perform preset, singleturn and multiturn",
-        /// The preset value may be entered.
+        /// Allows a preset value to be entered.
         Edit = 0x02 "enable preset value edit",
-        /// Keeps the preset value and restarts.
+        /// Saves the preset value and restarts.
         Save = 0x03 "save preset value",
-        /// As `Both`, for the singleturn only; restarts.
+        /// Same as `Both`, but for the singleturn position only; restarts.
         Singleturn = 0x04 "perform preset, singleturn",
-        /// As `Both`, for the multiturn only; restarts.
+        /// Same as `Both`, but for the multiturn position only; restarts.
         Multiturn = 0x05 "perform preset, multiturn",
     }
 }
 
 codes! {
-    /// The status register of the preset (bank 1, 01h).
+    /// Codes in the status register of the preset (bank 1, 01h).
     PresetStatus {
-        /// No value is expected.
+        /// No preset value is expected.
         Idle = 0x00 "idle",
         /// The preset value may be entered.
         WaitForValue = 0x01 "wait for value",
     }
 }
 
-/// The preset value: three bytes each, low byte first (bank 1, 02h…07h).
+/// A preset value: three bytes each for singleturn and multiturn, low byte first (bank 1, 02h to 07h).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PresetValue {
     singleturn: u32,
@@ -225,12 +225,13 @@ pub struct PresetValue {
 }
 
 impl PresetValue {
-    /// Registers that hold one.
+    /// Number of registers occupied by a preset value.
     pub const BYTES: u8 = 6;
-    /// The greatest place, and the greatest number of revolutions.
+    /// Maximum singleturn or multiturn value.
     pub const MAX: u32 = (1 << 24) - 1;
 
-    /// Creates a value of 24 bits each; `None` above. The encoder's widths may allow less.
+    /// Creates a preset value from two parts of up to 24 bits each, or returns `None` if one is larger. The encoder's
+    /// widths may allow less.
     pub const fn new(singleturn: u32, multiturn: u32) -> Option<Self> {
         if singleturn <= Self::MAX && multiturn <= Self::MAX {
             Some(PresetValue { singleturn, multiturn })
@@ -239,41 +240,41 @@ impl PresetValue {
         }
     }
 
-    /// Parses the registers in the order of their addresses.
+    /// Parses the register bytes, in order of address.
     pub const fn parse(bytes: [u8; 6]) -> Self {
         let [s0, s1, s2, m0, m1, m2] = bytes;
         PresetValue { singleturn: u32::from_le_bytes([s0, s1, s2, 0]), multiturn: u32::from_le_bytes([m0, m1, m2, 0]) }
     }
 
-    /// Returns the registers in the order of their addresses.
+    /// Returns the register bytes, in order of address.
     pub const fn emit(self) -> [u8; 6] {
         let [s0, s1, s2, _] = self.singleturn.to_le_bytes();
         let [m0, m1, m2, _] = self.multiturn.to_le_bytes();
         [s0, s1, s2, m0, m1, m2]
     }
 
-    /// Returns the place within the revolution.
+    /// Returns the position within the revolution.
     pub const fn singleturn(self) -> u32 {
         self.singleturn
     }
 
-    /// Returns the revolutions.
+    /// Returns the number of revolutions.
     pub const fn multiturn(self) -> u32 {
         self.multiturn
     }
 }
 
-/// A voltage as the Wiegand test gives it, in tenths of a volt (bank 0, 09h…14h).
+/// A voltage reported by the Wiegand test, in tenths of a volt (bank 0, 09h to 14h).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PulseVoltage(u8);
 
-/// The result of a Wiegand test in both directions (bank 0: the last from 09h, the factory's from 0Dh, the saved from
-/// 11h on).
+/// The result of a Wiegand test in both directions (bank 0: the last result from 09h, the factory's from 0Dh, the saved
+/// one from 11h).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WiegandResult {
-    /// Average of the pulses, clockwise.
+    /// Average pulse voltage, clockwise.
     pub average_cw: PulseVoltage,
-    /// The same less four standard deviations.
+    /// Clockwise average minus four standard deviations.
     pub lowest_cw: PulseVoltage,
     /// Average of the pulses, counterclockwise.
     pub average_ccw: PulseVoltage,

@@ -86,7 +86,6 @@ impl Calibration {
         true
     }
 
-    /// Notes a change of the motor's speed.
     pub(super) fn disturb(&mut self, now: Moment) {
         if let Some(run) = &mut self.run {
             (run.ends, run.outcome) = (now, CalibrationStatus::Failed);

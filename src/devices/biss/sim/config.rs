@@ -56,7 +56,6 @@ impl Config {
         &self.faults
     }
 
-    /// Returns the seed of its noise.
     pub const fn seed(&self) -> u64 {
         self.seed
     }

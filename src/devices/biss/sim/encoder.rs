@@ -26,7 +26,6 @@ use crate::devices::biss::protocol::{
 use crate::sim::{Faults, Motor};
 use crate::units::Moment;
 
-/// A virtual encoder.
 #[derive(Clone, Debug)]
 pub struct Encoder {
     firmware: Firmware,
@@ -59,10 +58,7 @@ pub struct Encoder {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Power {
     Off,
-    /// Registers can be asked from then on.
-    Starting {
-        ready: Moment,
-    },
+    Starting { ready: Moment },
     On,
 }
 
@@ -116,7 +112,6 @@ impl Encoder {
         &self.flash
     }
 
-    /// Returns the frame of its position data.
     pub const fn layout(&self) -> &Layout {
         self.shaft.layout()
     }
@@ -125,7 +120,6 @@ impl Encoder {
         self.mode
     }
 
-    /// Returns the motor of its shaft.
     pub fn motor(&self) -> Motor {
         self.drive.motor().clone()
     }
@@ -136,7 +130,6 @@ impl Encoder {
         self.settle(now);
     }
 
-    /// Warms or cools it.
     pub fn set_temperature(&mut self, celsius: i16) {
         self.celsius = celsius;
         self.watch_temperature();
@@ -159,7 +152,6 @@ impl Encoder {
         self.start(now);
     }
 
-    /// Removes the power.
     pub fn disconnect(&mut self) {
         self.abandon();
         self.power = Power::Off;
@@ -388,7 +380,6 @@ impl Encoder {
         self.saved_wiegand = self.flash.wiegand;
     }
 
-    /// Ends all operations in progress.
     fn abandon(&mut self) {
         if self.calibration.abandon() == Ended::Lost {
             self.flash.calibrated = false;

@@ -27,20 +27,21 @@ impl Area {
 /// The effect of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Then {
-    /// The command is refused.
     Refused,
     /// Nothing further.
     Nothing,
     /// An area is opened; its content must be passed to [`DataEntry::open`].
     Open(Area),
-    /// Data goes into the flash.
     SaveData(Area, Vec<u8>),
     /// The filter is written to the flash; a restart follows.
     SaveFilter(Filter),
     /// The preset value is written to the flash; a restart follows.
     SavePreset(PresetValue),
     /// The position becomes the preset value, in its singleturn, its multiturn or both; a restart follows.
-    Preset { singleturn: bool, multiturn: bool },
+    Preset {
+        singleturn: bool,
+        multiturn: bool,
+    },
 }
 
 /// Write access to motor or OEM data.
@@ -72,7 +73,6 @@ impl DataEntry {
         then
     }
 
-    /// Opens an area with its content.
     pub(super) fn open(&mut self, area: Area, bytes: Vec<u8>) {
         self.open = Some((area, bytes));
     }

@@ -56,7 +56,6 @@ impl Flash {
         self.calibrated
     }
 
-    /// Returns the number of writes.
     pub const fn cycles(&self) -> u32 {
         self.cycles
     }

@@ -13,7 +13,6 @@ pub(super) struct Shaft {
     /// Mechanical place in steps at `since`.
     place: f64,
     since: Moment,
-    /// Position less mechanical place.
     offset: u64,
     layout: Layout,
 }

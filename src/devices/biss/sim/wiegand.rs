@@ -10,7 +10,6 @@ use crate::units::Moment;
 pub(super) struct Pulses {
     /// Average; 0: no pulses.
     pub(super) average: u8,
-    /// Average less four standard deviations.
     pub(super) lowest: u8,
 }
 

@@ -73,7 +73,6 @@ impl Encoder {
         self.wish_watched();
     }
 
-    /// Passes the watched values to the session.
     pub(super) fn wish_watched(&mut self) {
         let ranges = self.record.watched().into_iter().filter_map(|own| RegisterRange::new(own.address, own.width));
         if let Some(line) = &self.session.line {

@@ -13,7 +13,6 @@ use crate::devices::biss::protocol::{Register, RegisterAddress};
 pub enum BissAction {
     /// Read errors, warnings, temperature and mode.
     ReadStatus,
-    /// The device check.
     Check,
     /// While the position is read all the time, read this too, or no more.
     Watch(Box<Register>, bool),
@@ -29,31 +28,24 @@ pub enum BissAction {
         start: RegisterAddress,
         bytes: Vec<u8>,
     },
-    /// Take the edits of a range back.
     Revert {
         /// First byte.
         start: RegisterAddress,
         count: usize,
     },
-    /// Show the effect of a change.
     Plan(Box<Change>),
     /// Show the effect of a mounting run; the plain data comes from a profile that is open in another session.
     PlanMounting {
         /// The steps, without the data.
         run: Box<MountingRun>,
         motor: MotorSource,
-        /// Session of the profile.
         data: Option<SessionId>,
     },
-    /// Answer the task of a procedure.
     Answer(Task, Answer),
-    /// Put a procedure that is over away.
     CloseGuide,
-    /// Back to operation, with the password cleared.
     LeadBack,
     /// Turn the virtual encoder's shaft, in revolutions per minute.
     Turn(f64),
-    /// Save the profile.
     Save(PathBuf),
 }
 

@@ -21,14 +21,10 @@ use crate::units::Parity;
 /// Kind of connection to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BissLinkKind {
-    /// The virtual encoder in this program.
     #[default]
     Virtual,
-    /// Configuration pin, over a serial port.
     Pin,
-    /// Bus, over an adapter.
     Bus,
-    /// A recorded trace.
     Replay,
 }
 
@@ -41,18 +37,13 @@ pub struct BissForm {
     pub behind_adapter: bool,
     /// Over a network, and not a serial port of this machine.
     pub network: bool,
-    /// Serial port.
     pub port: String,
-    /// Name or address of a device server.
     pub host: String,
     pub tcp_port: String,
-    /// The recording.
     pub file: String,
-    /// Parity on the configuration pin.
     pub parity: Parity,
     /// Byte order of register numbers on the configuration pin; `None`: detect it.
     pub order: Option<ByteOrder>,
-    /// Whether the line echoes; unknown: detect it.
     pub echo: Echo,
     /// The adapter leaves the encoder's supply on at the end.
     pub leave_supply: bool,
@@ -178,7 +169,6 @@ impl BissForm {
         (FrameParameters::entries(), LineParameters::entries())
     }
 
-    /// The parameters that are typed, over whatever way.
     fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == BissLinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
         let (frame, line) = Self::of_every_way();

@@ -22,25 +22,20 @@ use crate::sim::Motor;
 /// A BiSS encoder, or a profile of one.
 pub struct Encoder {
     pub session: Session<Biss>,
-    /// Everything read of it.
     pub survey: Option<Survey>,
     /// The status as last read.
     pub status: Option<Status>,
     /// The last device check.
     pub check: Option<Vec<CheckLine>>,
-    /// The description of its registers.
     pub description: Option<Arc<Description>>,
-    /// Its registers and their edits.
     pub memory: Memory,
     /// Its registers as a table.
     pub table: Table,
-    /// The recording from polling.
     pub record: Record,
     /// The running procedure, or the last one with its end.
     pub guide: Option<Guide>,
     /// Why the last request for data was refused.
     pub refusal: Option<Text>,
-    /// Motor of the virtual encoder.
     pub motor: Option<Motor>,
     pub(super) meaning: Meaning,
     /// Banks read because they became visible, or that could not be read: they are not requested automatically again.
@@ -69,7 +64,6 @@ impl Encoder {
         }
     }
 
-    /// Sets the description of its registers.
     pub(super) fn describe(&mut self, description: Option<Arc<Description>>) {
         let sheet = self.survey.as_ref().and_then(|survey| survey.identity.data_sheet.as_ref());
         let last = sheet.and_then(|sheet| sheet.common.eds.as_ref().ok()).and_then(Eds::last_user_bank);
@@ -77,7 +71,6 @@ impl Encoder {
         self.description = description;
     }
 
-    /// Takes the registers of a profile.
     pub(super) fn take_profile(&mut self, profile: &BissProfile) {
         let sheets = profile.recorded.eds.iter().map(|listed| listed.bank);
         for bank in profile.banks().chain(sheets) {

@@ -28,7 +28,6 @@ use crate::devices::biss::protocol::{CrcError, DescriptionError, DeviceMode, Lay
 use crate::link::LinkError;
 use crate::store::StoreError;
 
-/// Returns a name of a description.
 pub fn name(name: &Name) -> Text {
     Text::new("plain.words").with_name("words", name.english(), name.german())
 }

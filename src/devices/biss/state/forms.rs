@@ -10,7 +10,6 @@ use crate::devices::biss::state::TEXTS;
 pub struct PresetForm {
     /// Degrees within the revolution.
     pub degrees: String,
-    /// Revolutions.
     pub turns: String,
 }
 
@@ -21,7 +20,6 @@ impl Default for PresetForm {
 }
 
 impl PresetForm {
-    /// Creates the entries of a value.
     pub fn of(value: PresetValue, layout: &Layout) -> Self {
         let steps = (1_u64 << layout.singleturn_bits()) as f64;
         let degrees = f64::from(value.singleturn()) * 360.0 / steps;

@@ -14,7 +14,6 @@ pub struct Guide {
     /// The step at which it was interrupted: the step reported last is of the return to operation.
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
-    /// The skipped tasks, with their operations.
     skips: Vec<(usize, Task)>,
     /// The end; `None` while it runs.
     pub end: Option<End>,
@@ -33,7 +32,6 @@ pub enum End {
         before: Vec<Outcome>,
         /// The encoder may not be in operation.
         may_lead_back: bool,
-        /// The user cancelled.
         cancelled: bool,
     },
 }
@@ -47,7 +45,6 @@ pub enum Reached {
     Waits,
     Runs,
     Skipped,
-    /// It ended the procedure.
     Failed,
     /// The user cancelled the procedure in this step.
     Cancelled,
@@ -58,7 +55,6 @@ pub enum Reached {
 /// A step of the whole.
 #[derive(Clone, Debug)]
 pub struct GuideStep<'a> {
-    /// The operation that it belongs to.
     pub op: &'a Op,
     /// First step of its operation.
     pub is_first: bool,
@@ -71,12 +67,10 @@ impl Guide {
         Guide { ops, progress: None, cut: None, seat: OperatorChannel::default(), skips: Vec::new(), end: None }
     }
 
-    /// Returns whether the procedure is running.
     pub fn is_running(&self) -> bool {
         self.end.is_none()
     }
 
-    /// Returns its operations.
     pub fn ops(&self) -> &[Op] {
         &self.ops
     }
@@ -90,7 +84,6 @@ impl Guide {
         self.progress.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
     }
 
-    /// Returns the present task of the operator.
     pub fn demand(&self) -> Option<&Demand> {
         match self.detail()? {
             Detail::Demand(demand) => Some(demand),
@@ -98,7 +91,6 @@ impl Guide {
         }
     }
 
-    /// Answers the present task.
     pub(super) fn answer(&mut self, task: Task, answer: Answer) {
         if self.is_running() {
             if let Some(op) = self.progress.as_ref().map(|news| news.op).filter(|_| answer == Answer::Skip) {

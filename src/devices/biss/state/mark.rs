@@ -7,9 +7,7 @@ use crate::devices::biss::procedures::Bits;
 /// A mark on a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// The position is invalid.
     Invalid,
-    /// The encoder warns.
     Warned,
 }
 

@@ -25,7 +25,6 @@ pub(super) struct Meaning {
 }
 
 impl Meaning {
-    /// Returns the meaning of a frame.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
         let meaning = match entry.direction {

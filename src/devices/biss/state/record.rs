@@ -44,14 +44,11 @@ pub struct Record {
     last: Option<PositionReading>,
     crc_errors: u64,
     lost: u64,
-    /// The latest stream.
     stream: Option<Streamed>,
 }
 
-/// A stream of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Streamed {
-    /// Number of the next frame.
     next: u64,
     period_ns: i64,
     /// The clock of the bus in hertz.
@@ -68,7 +65,6 @@ impl Streamed {
 }
 
 impl Record {
-    /// Begins a session; earlier recordings stay.
     pub(super) fn begin(&mut self, began: &Zoned) {
         (self.last, self.crc_errors, self.stream) = (None, 0, None);
         self.track.begin(began);
@@ -158,7 +154,6 @@ impl Record {
         *batch = Batch::default();
     }
 
-    /// Adds frames with a wrong checksum.
     pub(super) fn add_crc_errors(&mut self, count: u32) {
         self.crc_errors += u64::from(count);
     }
@@ -200,7 +195,6 @@ impl Record {
         self.stream.as_ref()
     }
 
-    /// Returns the number of recorded positions.
     pub fn positions(&self) -> u64 {
         self.track.positions()
     }

@@ -9,7 +9,6 @@ use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 
-/// Review of a write.
 pub type Review = review::Review<Biss>;
 pub type ReviewState = review::ReviewState<Biss>;
 

@@ -28,11 +28,9 @@ pub struct Group {
 pub struct Row {
     /// The register; an undescribed byte is one of width 1, without a name.
     pub register: Register,
-    /// It belongs to a plain data area.
     pub is_data: bool,
 }
 
-/// Row with its value.
 #[derive(Clone, Debug)]
 pub struct RegisterEntry<'a> {
     pub row: &'a Row,
@@ -40,7 +38,6 @@ pub struct RegisterEntry<'a> {
     pub bytes: Option<Vec<u8>>,
     /// Its value has changed since the previous reading.
     pub has_changed: bool,
-    /// Its edited value differs from the encoder's.
     pub is_edited: bool,
 }
 
@@ -55,7 +52,6 @@ impl Table {
         Table { groups: groups.map(|bank| Group::of(description, bank)).collect() }
     }
 
-    /// Returns the direct registers, then the banks.
     pub fn groups(&self) -> &[Group] {
         &self.groups
     }
@@ -96,7 +92,6 @@ impl Group {
         self.rows.iter().all(|row| memory.read(row.register.address).is_some() || row.register.access == Access::W)
     }
 
-    /// Returns a row with its value.
     pub fn entry<'a>(&'a self, row: usize, memory: &Memory) -> Option<RegisterEntry<'a>> {
         let row = self.rows.get(row)?;
         let places = || {

@@ -29,7 +29,6 @@ pub(super) fn job(job: &BissJob) -> Text {
     }
 }
 
-/// Returns why an edit was refused.
 pub(super) fn not_edited(error: MemoryError) -> Text {
     match error {
         MemoryError::NotRead(at) => TEXTS.text("registers.unread").with("address", at),

@@ -29,14 +29,12 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
-    /// Answers the task of a procedure.
     pub(super) fn answer(&mut self, task: Task, answer: Answer) {
         if let Some(guide) = &mut self.guide {
             guide.answer(task, answer);
         }
     }
 
-    /// Puts a procedure that is over away.
     pub(super) fn close_guide(&mut self) {
         if self.guide.as_ref().is_some_and(|guide| !guide.is_running()) {
             self.guide = None;

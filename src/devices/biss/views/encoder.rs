@@ -103,7 +103,6 @@ fn facts(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     }
 }
 
-/// Draws the recorded part of a profile.
 fn recorded(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIdentity) {
     let or_none = |text: String| if text.is_empty() { say(theme, "biss_card.not_in_profile") } else { text };
     row(ui, theme, &theme.say("encoder_card.serial"), theme.mono(or_none(identity.serial_number.clone())));

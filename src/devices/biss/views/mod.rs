@@ -23,16 +23,13 @@ use crate::ui::{NamedAction, Theme, backups, icons, page, status_line};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// Identity, status, frame and wiring.
     #[default]
     Encoder,
     /// Registers, bank after bank.
     Registers,
-    /// Motor and OEM data.
     Data,
     /// Calibration, Wiegand test, preset, filter: step by step.
     Procedures,
-    /// Profiles, backups and the logbook.
     Backups,
 }
 
@@ -93,7 +90,6 @@ fn unsaved_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
     ui.add_space(theme.space.inside);
 }
 
-/// Draws the button that returns to operation.
 fn lead_back_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = theme.say("lead_back_card.button");
     if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {

@@ -12,7 +12,6 @@ use crate::ui::{Theme, icons};
 /// Speeds that the procedures ask for, and rest.
 const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
 
-/// Draws the motor and its speed.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
     folding_card(ui, theme, "motor_card.title", |ui| {
         paragraph(ui, theme.caption(theme.say("motor_card.words")));

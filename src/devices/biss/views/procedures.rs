@@ -91,7 +91,6 @@ struct Mounting<'v> {
     form: &'v mut PresetForm,
 }
 
-/// Returns the stored preset value, to begin with.
 fn stored(encoder: &Encoder) -> PresetForm {
     let value = encoder.survey.as_ref().and_then(|survey| survey.preset);
     let layout = encoder.identity().map(|identity| &identity.layout);
@@ -161,7 +160,6 @@ fn mounting_ui(
     });
 }
 
-/// Draws an optional part with its description.
 fn choice(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
     ui.checkbox(on, say(theme, id));
     ui.horizontal_top(|ui| {

@@ -91,7 +91,6 @@ pub(super) fn check_acknowledged(runner: &mut Runner, output: &Output, drive: Dr
     }
 }
 
-/// Returns the drives that are plugged in.
 fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
     Ok(result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity.drives))
 }

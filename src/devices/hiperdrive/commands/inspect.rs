@@ -176,7 +176,6 @@ pub(super) fn error_text(code: ErrorCode) -> String {
     format!("{}: {} {}", words.name.terminal(), words.cause.terminal(), words.remedy.terminal())
 }
 
-/// Returns a state for scripts.
 pub(super) fn state_word(state: State) -> &'static str {
     match state {
         State::NotReady => "not-ready",

@@ -23,7 +23,6 @@ pub(super) struct BytesContext {
 pub(super) struct WordMeaning {
     pub(super) direction: &'static str,
     pub(super) lines: Vec<String>,
-    /// An object.
     pub(super) json: Json,
 }
 

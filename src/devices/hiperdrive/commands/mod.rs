@@ -28,7 +28,6 @@ use crate::devices::hiperdrive::profile::{Item, ItemError};
 use crate::devices::hiperdrive::protocol::{KIND, PARAMETERS};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// The commands for drives.
 pub(crate) struct HiperdriveCommands;
 
 impl DeviceCommands for HiperdriveCommands {

@@ -38,9 +38,7 @@ const END: Duration = Duration::from_secs(3);
 enum MotionOutcome {
     /// The act ended like this.
     Ended(Ended),
-    /// Ctrl-C.
     Interrupted,
-    /// The time is up.
     Late,
 }
 

@@ -32,7 +32,6 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     })
 }
 
-/// Returns a part of the scale.
 fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u16>> {
     let Some(number) = ParameterNumber::of_drive(number, drive) else { return Ok(None) };
     Ok(match value(runner, number)? {
@@ -48,7 +47,6 @@ struct TurnPosition {
     turns: i64,
     /// Steps within the turn. Not always whole, because a turn is not always a whole number of steps.
     steps: f64,
-    /// Within the turn.
     degrees: f64,
 }
 

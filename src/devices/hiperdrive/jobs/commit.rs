@@ -39,7 +39,6 @@ impl Planned for Prepared {
         op.note()
     }
 
-    /// Returns everything that the device stores.
     fn before_image(&self) -> String {
         backup_of(Body::new(HiperdriveProfile::of(self.identity.profile(), self.image.clone()))).emit()
     }

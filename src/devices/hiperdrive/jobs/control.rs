@@ -24,7 +24,6 @@ pub(super) struct Control {
     open: Option<Open>,
     /// The device and its drives as of the last opening.
     identity: Option<Identity>,
-    /// State of reading the limits.
     pub(super) rules_refresh: RulesRefresh,
 }
 
@@ -143,7 +142,6 @@ impl Hiperdrive {
         }
     }
 
-    /// Stops all drives and closes the cyclic connection.
     pub(super) fn release(&mut self, context: &mut SessionContext) -> Result<(), Error> {
         let Some(Open { cyclic, close }) = self.control.open.take() else { return Ok(()) };
         cyclic.close();

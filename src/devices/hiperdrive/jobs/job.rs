@@ -21,9 +21,7 @@ pub const WEAR_WARNING: u64 = 50_000;
 pub enum HiperdriveJob {
     /// Identifies the device after connecting, for a window.
     Hello,
-    /// Everything that can be read.
     Survey,
-    /// Identifies the device.
     Identify,
     /// Errors and states of all drives.
     Status,
@@ -32,9 +30,7 @@ pub enum HiperdriveJob {
     /// Reads the position of a drive once.
     Position(DriveNumber),
     Read(ParameterNumber),
-    /// Address switches and TCP/IP object.
     Network,
-    /// Everything that can be restored.
     Save,
     /// Makes a plan; writes nothing.
     Prepare(Change),
@@ -42,9 +38,7 @@ pub enum HiperdriveJob {
     Commit(Box<Commit>),
     /// Opens the cyclic connection. This moves nothing.
     Take,
-    /// Stops all drives and closes it.
     Give,
-    /// Polls this drive from now on.
     Watch(DriveNumber),
 }
 
@@ -59,7 +53,6 @@ pub enum Change {
     Write(Box<Image>),
     /// Make it like this, and save nothing.
     Try(Box<Image>),
-    /// The drive's place becomes this position.
     SetPosition {
         drive: DriveNumber,
         /// Position in scaled steps, to be rounded to a multiple of 64.
@@ -67,25 +60,19 @@ pub enum Change {
         /// Save it, and all that was not saved before.
         save: bool,
     },
-    /// The device does something.
     Do(Service),
-    /// Changes the source of the IP address.
     Network(NetworkSettings),
 }
 
 /// Kind of change, by how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// Restore of a profile: repeating it completes it.
     Restore,
     /// Edits: those not yet written remain edits.
     Edits,
-    /// Values are written for now.
     Try,
     Position,
-    /// The device does something.
     Service(Service),
-    /// The address.
     Network,
 }
 
@@ -102,12 +89,10 @@ impl Change {
     }
 }
 
-/// Plan, ready for review.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: HiperdrivePlan,
-    /// The device that it is for.
     pub identity: Identity,
     /// The stored values of the device, as read for the plan.
     pub image: Image,

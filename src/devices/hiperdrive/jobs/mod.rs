@@ -1,5 +1,5 @@
-//! HIPERDRIVE drives behind an adapter or a hub as seen by a session: its jobs, the cyclic connection that moves them, and
-//! the handle for motion.
+//! HIPERDRIVE drives behind an adapter or a hub as a device of a session: its jobs, the cyclic connection that moves
+//! the drives, and the motion handle.
 
 mod commit;
 mod control;
@@ -41,9 +41,7 @@ pub struct Hiperdrive {
     wire: Box<dyn ByteLink>,
     station: Station,
     control: Control,
-    /// The polled drive.
     watched: DriveNumber,
-    /// The virtual one.
     target: Option<Target>,
     remark: Option<DeviceMessage>,
 }
@@ -61,7 +59,6 @@ const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
-    /// Returns the host's side of explicit messages.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
@@ -69,11 +66,9 @@ impl Hiperdrive {
 
 /// The start of a session with an adapter or a hub.
 pub struct DeviceConnection {
-    /// Explicit messages.
     pub wire: Box<dyn ByteLink>,
     /// Port for cyclic data; `None` for a link without one.
     pub port: Option<Box<dyn DatagramPort>>,
-    /// The known state of the device.
     pub station: Station,
     /// The virtual device, if it runs in this process.
     pub target: Option<Target>,
@@ -97,7 +92,6 @@ impl Session<Hiperdrive> {
         self.device.control.motion()
     }
 
-    /// Returns the state of the device.
     pub fn station(&self) -> &Station {
         &self.device.station
     }

@@ -1,5 +1,5 @@
-//! The handle that moves drives. A request goes into a cell that holds only the latest one; the state of the drives comes
-//! back the same way. The thread of the cyclic connection reads requests and writes the state; neither side waits.
+//! The motion handle. Requests pass through a cell that only holds the latest one; the state of the drives is returned
+//! in the same way. The thread of the cyclic connection reads requests and writes the state; neither side waits.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -33,7 +33,6 @@ struct Cell {
     experts: BTreeSet<DriveNumber>,
     /// Parameters to be read through the parameter words, with the time of the latest request for each.
     watched: BTreeMap<ParameterNumber, Moment>,
-    /// The watch over explicit messages.
     session: SessionWatch,
     punctual: bool,
     view: MotionSnapshot,
@@ -47,7 +46,6 @@ struct Cell {
 #[derive(Clone, Debug)]
 pub struct DrivesSnapshot {
     pub at: Moment,
-    /// The state of the drives.
     pub view: MotionSnapshot,
     pub limits: BTreeMap<DriveNumber, DriveLimits>,
 }
@@ -55,11 +53,9 @@ pub struct DrivesSnapshot {
 /// The state of the drives, and the quality of their connection.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotionSnapshot {
-    /// The cyclic connection is there.
     pub open: bool,
     /// The drives of the connection with their latest state, by number.
     pub drives: Vec<DriveView>,
-    /// The connection.
     pub link: LinkFigures,
     /// Parameters read through the parameter words; `None` if the connection has none.
     pub parameters: Option<ParameterReadings>,
@@ -79,7 +75,6 @@ pub struct DriveView {
     pub received_at: Option<Moment>,
     /// The setpoint sent last.
     pub sent: Setpoint,
-    /// The phase of its motion.
     pub phase: Phase,
     /// The running act, or else the last one; 0 for none.
     pub act: u64,
@@ -128,7 +123,6 @@ impl Motion {
         }
     }
 
-    /// Stops all drives.
     pub fn stop(&self) {
         let drive = self.lock().intent.drive;
         self.intend(drive, MotionRequest::Stop);
@@ -139,12 +133,10 @@ impl Motion {
         self.lock().intent.number == number
     }
 
-    /// Returns the state of the drives.
     pub fn view(&self) -> MotionSnapshot {
         self.lock().view.clone()
     }
 
-    /// Returns whether the cyclic connection is there.
     pub fn is_open(&self) -> bool {
         self.lock().view.open
     }
@@ -177,7 +169,6 @@ impl Motion {
         self.with_limits(drive, |limits| limits.doubt(now));
     }
 
-    /// Returns the drive of the latest request.
     pub(super) fn wanted_drive(&self) -> DriveNumber {
         self.lock().intent.drive
     }
@@ -255,7 +246,6 @@ impl Motion {
         cell.view.open && cell.view.drives.iter().any(|drive| drive.phase != Phase::Idle)
     }
 
-    /// Publishes the new state of the drives.
     pub(super) fn publish(&self, drives: &Drives) {
         let of = |man: &DeadMan| DriveView {
             number: man.drive(),
@@ -301,7 +291,6 @@ impl Motion {
         self.lock().is_shutting_down = true;
     }
 
-    /// Returns whether the program ends.
     pub(super) fn is_shutting_down(&self) -> bool {
         self.lock().is_shutting_down
     }

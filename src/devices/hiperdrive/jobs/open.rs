@@ -1,4 +1,4 @@
-//! Opening a session with an adapter or a hub from a link URL.
+//! Opening a session with an adapter or a hub from a link.
 
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex};

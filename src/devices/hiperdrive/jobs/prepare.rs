@@ -1,4 +1,4 @@
-//! Makes a plan from a change. Reads; writes nothing.
+//! Preparation of a plan from a change. Only reads.
 
 use super::{Change, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::hiperdrive::procedures::write::{Remedy, remedy};

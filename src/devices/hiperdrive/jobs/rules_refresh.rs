@@ -1,5 +1,5 @@
-//! Reads the limits of drives repeatedly while they may be moved, because another master may change them: those of the
-//! drive that is shown, and of the one moved last. It has its own interval, whatever else is polled.
+//! Repeated reading of the limits while drives may be moved, because another master may change them: limits of the
+//! displayed drive and of the drive moved last. It has its own interval, independent of other polling.
 
 use std::time::Duration;
 

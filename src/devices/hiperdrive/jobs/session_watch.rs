@@ -1,14 +1,14 @@
-//! The watch over explicit messages while drives are under control: how long the device has left a request without an
-//! answer. A device that is silent here ends a motion as fast as any other loss, though its cyclic packets continue.
+//! Supervision of explicit messages while drives are under control: how long the device has left a request without a
+//! reply. A device that stops replying ends a motion as fast as any other loss, even if its cyclic packets continue.
 //!
-//! | what | time |
+//! | case | time |
 //! |---|---|
-//! | a request, at least, while a drive moves ([`REQUEST`]) | 60 ms |
-//! | without an answer, at most ([`PATIENCE`]), or twice what the device took recently | 130 ms |
-//! | together | 190 ms |
+//! | minimum rate of requests while a drive moves ([`REQUEST`]) | 60 ms |
+//! | maximum time without a reply ([`PATIENCE`]), or twice the recent response time | 130 ms |
+//! | total | 190 ms |
 //!
-//! The time counted is the time the thread has listened: a thread that a busy computer kept from listening cannot conclude
-//! that there was no answer. After [`UNHEARD`] more, it counts as no answer.
+//! Only time during which the thread has listened counts: a thread that was prevented from listening by a busy computer
+//! cannot conclude that there was no reply. After a further [`UNHEARD`], the reply counts as missing.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -43,14 +43,12 @@ pub(super) struct SessionWatch {
 }
 
 impl SessionWatch {
-    /// Notes that a request is sent.
     pub(super) const fn ask(&mut self, now: Moment) {
         if self.requested.is_none() {
             self.requested = Some(now);
         }
     }
 
-    /// Notes that a frame arrived.
     pub(super) fn answer(&mut self, now: Moment) {
         self.broken = false;
         // A parameter that takes seconds does not make the others slow.

@@ -1,5 +1,4 @@
-//! The device check: the findings about an adapter or a hub and its drives, each with a verdict. It sets nothing and moves
-//! nothing.
+//! Device check: the findings about an adapter or a hub and its drives, each with a verdict. Nothing is set or moved.
 
 use std::fmt;
 use std::time::Duration;
@@ -23,19 +22,13 @@ pub type HiperdriveStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
-    /// Explicit messages are answered.
     Messages,
-    /// Identity of the device.
     Device,
-    /// The control supply.
     Supply,
-    /// Temperature of the device.
     Temperature,
-    /// Source of its address.
     Address,
     /// Parameter 47: the memory is intact, and no save is in progress.
     Memory,
-    /// The drives plugged in.
     Drives,
     Request(DriveNumber),
     /// RS-485 to a drive.
@@ -45,7 +38,6 @@ pub enum CheckStep {
     /// State and errors of a drive.
     Errors(DriveNumber),
     DriveTemperature(DriveNumber),
-    /// Scaling, limits and position of a drive.
     Range(DriveNumber),
 }
 
@@ -76,7 +68,6 @@ impl fmt::Display for CheckStep {
 pub enum CheckFinding {
     /// Number of readings of a value, and the longest reply time.
     Replies {
-        /// Number of requests.
         requested: u32,
         /// The longest, in milliseconds.
         slowest_ms: u64,
@@ -85,14 +76,12 @@ pub enum CheckFinding {
     },
     Category(String),
     SerialNumber(String),
-    /// Software version of the device.
     Version(String),
     /// Tenths of a volt.
     Supply(i64),
     /// Degrees Celsius.
     Temperature(i64),
     Switch(AddressSwitch),
-    /// The address switches have an undefined setting.
     UnknownSwitch(i64),
     /// Source of the address with the switches at 0.
     Source(AddressSource),
@@ -100,7 +89,6 @@ pub enum CheckFinding {
     Saved,
     /// Parameter 47 is not 0: the memory is faulty, or the device is busy.
     NotSaved(i64),
-    /// A drive is plugged in.
     Drive {
         number: DriveNumber,
         variant: Variant,
@@ -122,7 +110,6 @@ pub enum CheckFinding {
     Timeout(i64),
     /// Parameter 186 is not a time: a drive without communication continues to move.
     NoTimeout,
-    /// State in the state machine.
     State(State),
     /// Its status word is implausible: process data may have the other byte order.
     StrayStatus(u16),
@@ -163,14 +150,10 @@ pub enum CheckFinding {
     BeyondTravel {
         /// Parameter 158 or 160.
         limit: i64,
-        /// The limit in turns.
         turns: f64,
-        /// The travel in turns either way.
         most: i32,
     },
-    /// The position lies between the limits.
     Within(i64),
-    /// The position is outside the limits.
     Outside {
         position: i64,
         /// Parameter 158.

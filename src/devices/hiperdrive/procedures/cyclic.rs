@@ -1,12 +1,14 @@
-//! The cyclic connection as seen by its originator: sending, receiving, counting, and loss. Pure: packets and times are
-//! arguments, and nothing waits here.
+//! Originator side of the cyclic connection: sending, receiving, counting and loss detection. Pure: packets and times
+//! are arguments, and nothing blocks.
 //!
 //! ```text
-//! drives: a dead-man each ── connection: counts, layout, intervals ──▶ packets (sent by the owner of a clock and a port)
+//! drives: a dead-man each ── connection: counts, layout, intervals ──▶ packets (sent by the owner of a clock and a
+//! port)
 //! ```
 //!
-//! If nothing has arrived for three intervals, motion stops. After that time of uninterrupted listening, the connection is
-//! lost: the drives are stopped, then switched off, and the connection ends. It is never restored; the user opens another.
+//! If nothing has arrived for three intervals, motion stops. If nothing arrives in a further such period of
+//! uninterrupted listening, the connection is lost: the drives are stopped, then switched off, and the connection ends.
+//! It is never restored; the user opens another.
 
 mod connection;
 mod drives;

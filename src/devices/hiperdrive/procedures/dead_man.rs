@@ -1,16 +1,17 @@
-//! The dead-man. It alone makes the control word of a drive, in every interval, from the drive's report, the user's request
-//! and the drive's permit (reference 3). Pure: time is an argument, and nothing waits.
+//! The dead-man. It alone generates the control word of a drive in every interval, from the drive's report, the user's
+//! request and the drive's permit (reference 3). Pure: time is an argument, and nothing blocks.
 //!
-//! Invariants, for any input:
-//! - A word that could start a motion is sent only while a fresh act of the user requests that motion. All others are
-//!   standing words ([`ControlWord::is_standing`]): they start nothing, whatever the drive reports and however late.
-//! - The call that learns of a reason to stop returns a standing word.
-//! - An act that has ended never starts again. Neither does one that was not refreshed until it could start.
+//! Invariants for any input:
+//! - A word that could start a motion is sent only while a fresh act of the user requests that motion. All other words
+//!   are standing words ([`ControlWord::is_standing`]), which start nothing, whatever the drive reports and however
+//!   late.
+//! - The call that receives a reason to stop returns a standing word.
+//! - An act that has ended never starts again; neither does one that was not refreshed until it could start.
 //! - A motion beyond the limits, or away from its target, is stopped with the report that shows it (`watch`).
-//! - A drive that has run in speed mode is led through 0400 before anything else. This makes it discard the job that
-//!   clearing bit 12 would start. While no job is running, the target is the present position.
+//! - A drive that has run in speed mode is led through 0400 before anything else, which discards the job that clearing
+//!   bit 12 would start. While no job is running, the target is the present position.
 //!
-//! A motion leads the drive up to *enabled* by itself, but never out of a fault or the lock.
+//! A motion leads the drive up to *enabled* without further requests, but never out of a fault or the switch-on lock.
 
 mod act;
 mod cause;
@@ -41,11 +42,9 @@ pub struct DeadMan {
     received: Option<(Moment, Actual)>,
     /// Time of the first report.
     first: Option<Moment>,
-    /// Number of reports received.
     reports: u64,
     sent: Setpoint,
     stage: Stage,
-    /// The goal at rest.
     level: Goal,
     act: Option<Act>,
     /// Acts up to this number no longer start.
@@ -65,13 +64,11 @@ struct Act {
     /// The latest request of the act: pausing a job counts as one, too.
     request: MotionRequest,
     motion: Option<Motion>,
-    /// Supervision of a motion that has begun.
     watch: Option<Watch>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Motion {
-    /// The request that started it.
     request: MotionRequest,
     kind: MotionKind,
 }
@@ -160,7 +157,6 @@ impl DeadMan {
         self.ended
     }
 
-    /// Returns the phase of the motion.
     pub fn phase(&self) -> Phase {
         let kind = self.act.and_then(|act| act.motion).map(|motion| motion.kind);
         match (&self.stage, kind) {
@@ -228,7 +224,6 @@ impl DeadMan {
         }
     }
 
-    /// Ends an act. The caller stops its motion.
     fn end(&mut self, how: Ended) {
         if let Some(act) = self.act.take() {
             self.spent = self.spent.max(act.number);

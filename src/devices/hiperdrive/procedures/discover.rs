@@ -1,4 +1,4 @@
-//! Discovery: a ListIdentity request by broadcast, with one second for the replies. No connection is opened.
+//! Discovery: broadcasts a ListIdentity request and collects replies for one second. No connection is opened.
 
 use core::net::Ipv4Addr;
 use std::time::Duration;
@@ -8,12 +8,9 @@ use crate::buses::ethernet_ip::protocol::{Body, Command, Frame, IdentityItem};
 use crate::devices::hiperdrive::protocol::VENDOR;
 use crate::link::{Broadcast, Cancel, Clock};
 
-/// Device that has replied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DiscoveredDevice {
-    /// Address of the reply.
     pub address: Ipv4Addr,
-    /// Port of explicit messages.
     pub port: u16,
     pub identity: IdentityItem,
 }

@@ -1,4 +1,4 @@
-//! Errors of drives behind EtherNet/IP, with the facts that a user needs.
+//! Errors of drives behind EtherNet/IP, with the facts that a message requires.
 
 use std::fmt;
 use std::time::Duration;
@@ -15,25 +15,13 @@ use crate::profile::DeviceError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequestedItem {
     Session,
-    /// A parameter's value.
     Parameter(ParameterNumber),
-    /// Set a parameter's value.
     Set(ParameterNumber),
-    /// The identity object.
     Identity,
-    /// An attribute of the TCP/IP object.
-    Network {
-        attribute: u16,
-    },
-    /// Set an attribute of the TCP/IP object.
-    SetNetwork {
-        attribute: u16,
-    },
-    /// MAC address.
+    Network { attribute: u16 },
+    SetNetwork { attribute: u16 },
     Mac,
-    /// The cyclic connection.
     Open,
-    /// An end of the cyclic connection.
     Close,
 }
 
@@ -65,15 +53,8 @@ pub enum Damage {
     /// No message in it.
     #[error("a frame without a message")]
     Empty,
-    /// Reply to another service.
     #[error("a reply to service {got:02X}h where one to {requested:02X}h was expected")]
-    Service {
-        /// The service that was asked.
-        requested: u8,
-        /// The one that is answered.
-        got: u8,
-    },
-    /// Incomplete packet.
+    Service { requested: u8, got: u8 },
     #[error("a frame that was cut off after {bytes} bytes")]
     Cut {
         /// Number of bytes received.
@@ -84,7 +65,6 @@ pub enum Damage {
 /// Replies that arrived after their time limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Late {
-    /// Time of the slowest reply.
     pub took: Duration,
     /// Time limit of a reply, besides the margin of the line.
     pub waited: Duration,
@@ -93,7 +73,6 @@ pub struct Late {
 /// Why a device refused a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
-    /// The service requested.
     pub service: Service,
     pub status: GeneralStatus,
     /// The words after the status.
@@ -138,10 +117,8 @@ pub struct WrongLength {
 /// Why an exchange or a check failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// The wire.
     #[error(transparent)]
     Link(LinkError),
-    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// Bytes keep coming that are no frames.
@@ -150,26 +127,21 @@ pub enum Error {
     #[error("no reply: {requested} (attempts: {tries})")]
     NoReply {
         requested: RequestedItem,
-        /// Number of attempts.
         tries: u32,
         /// A reply that arrived too late; `None` if none arrived.
         late: Option<Late>,
     },
-    /// Invalid reply.
     #[error("{requested}: {cause} (attempts: {tries})")]
     Damaged {
         requested: RequestedItem,
-        /// Number of attempts.
         tries: u32,
         /// Damage of the last reply.
         cause: Damage,
     },
-    /// The frame was refused.
     #[error("{requested}: {status}")]
     Encapsulation { requested: RequestedItem, status: EncapsulationStatus },
     #[error("{requested}: {refusal}")]
     Refused { requested: RequestedItem, refusal: Refusal },
-    /// Another master has the cyclic connection.
     #[error("another master is connected: 0x{extended:04X}")]
     OtherMaster {
         /// The word after the status: 0100h or 0106h.
@@ -181,10 +153,8 @@ pub enum Error {
     TooSlow {
         /// The interval that was asked for, in milliseconds.
         asked_ms: u64,
-        /// The longer of those that it gives.
         got_ms: u64,
     },
-    /// This session has the cyclic connection.
     #[error("the cyclic connection is open")]
     InControl,
     /// Such a link has no cyclic connection, for example a recording.
@@ -198,18 +168,10 @@ pub enum Error {
     NoNumber(u16),
     /// The place does not exist.
     #[error("there is no drive {}: {} has {}", drive.get(), topology.category(), topology.drives())]
-    NoPlace {
-        /// The drive addressed.
-        drive: DriveNumber,
-        /// The topology of the device.
-        topology: Topology,
-    },
+    NoPlace { drive: DriveNumber, topology: Topology },
     /// No drive is connected at this place.
     #[error("no drive is connected to port {}", drive.get())]
-    NoDrive {
-        /// The place.
-        drive: DriveNumber,
-    },
+    NoDrive { drive: DriveNumber },
     /// Parameter 152 is 0.
     #[error("drive {} is not requested: parameter 152 is 0", drive.get())]
     NotRequested { drive: DriveNumber },
@@ -245,25 +207,17 @@ pub enum Error {
     },
     /// A written value does not read back.
     #[error("parameter {number} ({}) reads {reads} after {wanted} was written", named(*number))]
-    NotTaken {
-        number: ParameterNumber,
-        /// The value written.
-        wanted: i64,
-        /// The value read.
-        reads: i64,
-    },
+    NotTaken { number: ParameterNumber, wanted: i64, reads: i64 },
     /// Network settings that were written do not read back.
     #[error("attribute {attribute} of the TCP/IP object does not read back as it was written")]
     NetworkNotTaken { attribute: u16 },
     /// Parameter 47 does not become 0.
     #[error("parameter 47 is still {reads} after {milliseconds} ms")]
     Busy {
-        /// The value read.
         reads: i64,
         /// Time waited, in milliseconds.
         milliseconds: u64,
     },
-    /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed { item: String },
 }
@@ -296,7 +250,6 @@ impl Error {
         matches!(self, Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent)
     }
 
-    /// Returns whether the user cancelled it.
     pub const fn is_cancelled(&self) -> bool {
         matches!(self, Error::Cancelled)
     }

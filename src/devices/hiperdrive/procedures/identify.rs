@@ -1,4 +1,4 @@
-//! Reads the identity, the status, and everything else that can be read (reference 4). Sets nothing.
+//! Reading the identity, the status, and everything else that can be read (reference 4). Sets nothing.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,6 @@ use crate::units::Moment;
 /// The identity of an adapter or a hub, and of its drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// Places for drives.
     pub topology: Topology,
     /// Parameter 13.
     pub category: String,
@@ -29,13 +28,11 @@ pub struct Identity {
     pub production_date: String,
     /// Parameter 19.
     pub version: String,
-    /// Those that are plugged in.
     pub drives: Vec<DriveIdentity>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DriveIdentity {
-    /// Place of the drive.
     pub number: DriveNumber,
     /// Parameter 120.
     pub variant: Variant,
@@ -55,7 +52,6 @@ pub struct DriveIdentity {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
     pub identity: Identity,
-    /// IP address and its source.
     pub network: Network,
     /// Every parameter of the device and of its drives. Those that the device refuses are missing.
     pub values: BTreeMap<ParameterNumber, Value>,
@@ -66,7 +62,6 @@ pub struct Survey {
 /// The status of a device and its drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
-    /// Those that are plugged in.
     pub drives: Vec<DriveStatus>,
     /// Parameter 9: tenths of a volt of the control supply.
     pub supply_tenths: i64,
@@ -76,7 +71,6 @@ pub struct Status {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DriveStatus {
-    /// Place of the drive.
     pub number: DriveNumber,
     /// Parameter 105.
     pub status: StatusWord,
@@ -118,7 +112,6 @@ impl Steps<'_> {
 /// The position and speed of a drive at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DriveReading {
-    /// Time of the reading.
     pub at: Moment,
     pub drive: DriveNumber,
     /// Parameters 105 to 107.
@@ -126,7 +119,6 @@ pub struct DriveReading {
 }
 
 impl Identity {
-    /// Returns a drive that is plugged in.
     pub fn drive(&self, number: DriveNumber) -> Option<&DriveIdentity> {
         self.drives.iter().find(|drive| drive.number == number)
     }
@@ -314,7 +306,6 @@ fn word(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<u16, E
     Ok(master.read_number(of(base, drive)?)? as u16)
 }
 
-/// Returns a parameter of the device.
 pub(super) fn own(number: u16) -> Result<ParameterNumber, Error> {
     ParameterNumber::new(number).ok_or(Error::NoNumber(number))
 }

@@ -1,7 +1,7 @@
-//! The limits of a drive's motion, with one owner: scale, limits, confirmation, locks and time of reading are one value.
+//! Motion limits of a drive with a single owner: scale, limits, confirmation, locks and time of reading form one value.
 //!
-//! The worker updates it when it reads parameters, the dead-man gets a [`Permit`] from it for each packet, the window shows
-//! it, and the settings store the part that has to survive a session (limits to be confirmed).
+//! The worker updates it when parameters are read, the dead-man obtains a [`Permit`] from it for each packet, the
+//! window displays it, and the settings store the part that must outlast a session (limits to be confirmed).
 
 use std::time::Duration;
 

@@ -1,8 +1,8 @@
-//! The host's side of explicit messages (reference 7): one session per connection; a request and its reply, matched by the
-//! context that numbers them. Late replies are skipped and counted.
+//! Host side of explicit messages (reference 7): one session per connection; requests and replies are matched by a
+//! numbered context. Late replies are skipped and counted.
 //!
-//! Reads are repeated. A request that sets something is sent once. If its reply is lost, the value is read back, which on a
-//! stream is answered after it.
+//! Reads are repeated. A request that sets a value is sent once; if its reply is lost, the value is read back, which
+//! the device answers after the lost request because the stream keeps the order.
 
 mod connection;
 mod refused;
@@ -76,12 +76,10 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// Returns the state of the connection.
     pub fn station(&self) -> &Station {
         self.station
     }
 
-    /// Takes over the reported topology.
     pub(super) fn learn(&mut self, topology: Topology) {
         self.station.known.topology = Some(topology);
     }
@@ -94,7 +92,6 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(duration)?)
     }
 
-    /// Checks whether the user has cancelled.
     pub(super) fn check_cancel(&self) -> Result<(), Error> {
         Ok(self.line.check_cancel()?)
     }
@@ -198,7 +195,6 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads an attribute of another object.
     pub(super) fn attribute(&mut self, requested: RequestedItem, class: u16, attribute: u16) -> Result<Vec<u8>, Error> {
         Ok(self.request(requested, &Request::get(class, 1, attribute), Repeats::Always)?.data)
     }
@@ -223,7 +219,6 @@ impl<'a> Master<'a> {
         Repeats::Never { takes }.within(self.station.link.timeout)
     }
 
-    /// Asks something of an object.
     fn request(&mut self, requested: RequestedItem, request: &Request, repeats: Repeats) -> Result<Reply, Error> {
         self.request_with(requested, request, &[], repeats).map(|(reply, _)| reply)
     }

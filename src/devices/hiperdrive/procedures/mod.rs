@@ -1,9 +1,9 @@
-//! The procedures of HIPERDRIVE drives behind an EtherNet/IP adapter or hub: explicit messages for all reading and writing,
-//! and the cyclic connection for motion. Reading changes nothing. The reference is the project's "hiperdrive".
+//! Procedures of HIPERDRIVE drives behind an EtherNet/IP adapter or hub: explicit messages for all reading and writing,
+//! and the cyclic connection for motion. Reading changes nothing. "Reference" is the project's "hiperdrive".
 //!
 //! ```text
 //! identify, survey, status, network, check, write ── master: session, request ⇄ reply ──▶ a stream of bytes (TCP)
-//! what a person wants ── dead_man (one a drive): control words ── cyclic: packets, counts ──▶ datagrams (UDP)
+//! motion requests ── dead_man (one per drive): control words ── cyclic: packets, counts ──▶ datagrams (UDP)
 //! ```
 
 pub mod check;

@@ -1,4 +1,4 @@
-//! IP address and its source: the address switches and the TCP/IP object (reference 1).
+//! IP address and its source: address switches and TCP/IP object (reference 1).
 
 use super::error::RequestedItem;
 use super::identify::own;
@@ -16,7 +16,6 @@ pub struct Network {
     pub control: Option<ConfigurationControl>,
     /// Attribute 5: address, mask, gateway, name servers, domain.
     pub interface: Option<InterfaceConfiguration>,
-    /// MAC address.
     pub mac: Option<[u8; 6]>,
 }
 
@@ -56,7 +55,6 @@ pub fn settings(master: &mut Master<'_>) -> Result<NetworkSettings, Error> {
     Ok(NetworkSettings { source: control.source(), interface })
 }
 
-/// Returns an attribute of the TCP/IP object.
 fn attribute<T>(
     master: &mut Master<'_>,
     attribute: u16,

@@ -1,4 +1,4 @@
-//! The parameters that limit a drive's motion, and how they are read: all at once, or one group after the other.
+//! The parameters that limit the motion of a drive, read all at once or one group after another.
 
 use super::identify::of;
 use super::{Error, Master};

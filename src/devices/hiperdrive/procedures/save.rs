@@ -1,4 +1,4 @@
-//! Reads values to be saved, and to plan with.
+//! Reading of the values that are saved or required for planning.
 
 use super::identify::{IdentifyProgress, identify, of};
 use super::{DriveIdentity, Error, Identity, Master};

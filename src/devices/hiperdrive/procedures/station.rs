@@ -1,4 +1,4 @@
-//! The state of an adapter or a hub that is kept between jobs.
+//! State of an adapter or a hub that is kept between jobs.
 
 use std::collections::VecDeque;
 use std::collections::hash_map::RandomState;
@@ -19,7 +19,6 @@ parameters! {
     /// Connection to an adapter or a hub, as given by a link.
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
-        /// Interval between cyclic packets.
         pub interval: Duration = Duration::from_millis(10), "rpi" => Milliseconds(5..=100), "connect.interval";
         /// Order of the bytes of process data.
         pub order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
@@ -54,7 +53,6 @@ pub struct Station {
     pub(super) late: u64,
     /// Identifies the originator of connections: different for each session.
     pub(super) originator: u32,
-    /// Number of connections opened by this session.
     pub(super) connections: u16,
     pub(super) known: KnownState,
 }
@@ -72,7 +70,6 @@ impl Station {
     /// up.
     const OPEN: usize = 8;
 
-    /// Creates the state of an unused device.
     pub fn new(margin: Duration) -> Self {
         // Two studios in a network must not open their connections under the same name.
         let random = RandomState::new().build_hasher().finish();

@@ -1,4 +1,4 @@
-//! Temperatures that are watched beside the position: of the device (parameter 11), and of a drive (119).
+//! Temperatures watched together with the position: of the device (parameter 11) and of a drive (119).
 
 use super::identify::{of, own};
 use super::{DriveReading, Error, Master};

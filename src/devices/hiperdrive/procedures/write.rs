@@ -1,4 +1,4 @@
-//! Writes a plan into a device: reads its base again, carries out each operation and reads it back (reference 4).
+//! Execution of a plan: reads its base again, carries out each operation and reads it back (reference 4).
 
 use std::time::Duration;
 
@@ -36,9 +36,7 @@ const BEGINS: Duration = Duration::from_millis(100);
 
 /// A device into which a plan is written.
 pub struct DeviceWrite<'w, 'm> {
-    /// The host's side of explicit messages.
     pub master: Master<'m>,
-    /// The device for which the plan was made.
     pub identity: &'w Identity,
 }
 
@@ -81,7 +79,6 @@ impl Write for DeviceWrite<'_, '_> {
         Ok(())
     }
 
-    /// Cancellation is checked between two operations.
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Error> {
         if !is_within_a_place(&confirmed.plan().ops, done.ops) {
             self.master.check_cancel()?;

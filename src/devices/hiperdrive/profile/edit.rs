@@ -1,4 +1,5 @@
-//! Plans for changes, each checked against the device's own rules before anything is sent, with one save after all of them.
+//! Planning of changes. Each is checked against the rules of the device before anything is sent, followed by a single
+//! save.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -15,14 +16,14 @@ use crate::devices::hiperdrive::protocol::{
 /// Positions of drives, in scaled steps (107).
 pub type Positions = BTreeMap<DriveNumber, i32>;
 
-/// Plans the changes that give a device the wanted values: only differences are written, and saved where possible. Values
-/// that the wanted image does not contain stay as they are. `device` must contain all values of the wanted image and, for
-/// each drive whose scale or limits change, all four of those (154 to 160). The position is checked if it is known, the
-/// travel if the variant is known.
+/// Plans the changes that give a device the wanted values. Only differences are written, and saved where possible;
+/// values that the wanted image lacks are left unchanged. `device` must contain all values of the wanted image and, for
+/// each drive whose scale or limits change, all four of them (154 to 160). The position is checked if known, the travel
+/// if the variant is known.
 ///
-/// A drive is requested before anything else is written, since that resets it, and its request is removed last. In between,
-/// drive by drive: the scale of the position, the scale of the speed and the maximum speed, then the limits in an order
-/// that the drive accepts at its present position, then the rest. The position in a new scale is calculated.
+/// A drive is requested before anything else is written, because requesting resets it, and its request is removed last.
+/// In between, drive by drive: the position scale, the speed scale and the maximum speed, then the limits in an order
+/// that the drive accepts at its present position, then all other values. The position in a new scale is calculated.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -61,11 +62,11 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
 }
 
-/// Plans to make this the present position, rounded to 64 steps, and to save that. 198 is written even if it already has
-/// this value, since the writing sets the position.
+/// Plans to set the present position to a value, rounded to 64 steps, and to save it. 198 is written even if the value
+/// is unchanged, since writing it sets the position.
 ///
 /// # Errors
-/// The position is not within the limits after rounding, or beyond the drive's travel; or the drive is missing.
+/// The rounded position is outside the limits or beyond the travel of the drive, or the drive is missing.
 pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32) -> Result<HiperdrivePlan, PlanError> {
     let device = &state.image;
     let own = |number| ParameterNumber::of_drive(number, drive);
@@ -91,7 +92,7 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
 }
 
 /// Plans a service. Its base is everything that the device stores, since the old values cannot be determined
-/// afterwards; that of an acknowledgement is empty.
+/// afterwards; the base of an acknowledgement is empty.
 pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     let values = match service {
         Service::Acknowledge(_) => BTreeMap::new(),

@@ -1,15 +1,15 @@
-//! Why a HIPERDRIVE profile is refused.
+//! Reasons why a HIPERDRIVE profile is refused.
 
 use super::item::{Item, ItemError};
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange};
 
-/// Why an entry of a profile is refused.
+/// The reason why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
-    /// A drive that is already in the list.
+    /// The drive occurs twice.
     #[error("drive {} appears twice", .0.get())]
     DriveTwice(DriveNumber),
-    /// A parameter that already has a value.
+    /// The parameter occurs twice.
     #[error("{0} appears twice")]
     Twice(Item),
     /// The marked item is not a parameter.
@@ -18,24 +18,24 @@ pub enum EntryError {
     /// The marked item is not a setting.
     #[error("{0} is not saved and does not belong to the mounting")]
     NoMounting(Item),
-    /// A parameter that is no setting.
+    /// The parameter is not a setting.
     #[error("{name} is not saved by the device and is not part of a profile", name = .0.name())]
     NotKept(Item),
-    /// The device has no such parameter.
+    /// The device has no parameter with this number.
     #[error("parameter {0} does not exist")]
     NoParameter(String),
-    /// Drives have no such parameter.
+    /// Drives have no parameter with this number.
     #[error(
         "drives have no parameter {number}; give those of drive {drive} with the numbers of drive 1, 100 to 199",
         drive = .drive.get()
     )]
     NoParameterOfDrive {
-        /// As written in the profile.
+        /// The number as written in the profile.
         number: String,
         /// The drive that the entry belongs to.
         drive: DriveNumber,
     },
-    /// A number that the parameter cannot be.
+    /// The value is outside the range of the parameter.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
 }

@@ -1,22 +1,22 @@
-//! Errors of planning.
+//! Errors of planning a change.
 
 use super::Item;
 use crate::buses::ethernet_ip::protocol::AddressError;
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, Topology, Variant};
 
-/// Difference of type between profile and device: of the whole (parameter 13), or of the drive at a place (parameter 120),
-/// whose variant determines travel, speed and torque.
+/// A difference of type between profile and device: of the adapter or hub (parameter 13), or of a drive (parameter
+/// 120), whose variant determines travel, speed and torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OtherType {
-    /// An adapter, and hubs with four and with eight places, are three types.
+    /// Adapters, hubs with four ports and hubs with eight ports are three different types.
     #[error("the profile is of a {}, the device is a {}", profile.category(), device.category())]
     Device {
-        /// In the profile.
+        /// Topology in the profile.
         profile: Topology,
         /// Topology of the device.
         device: Topology,
     },
-    /// At a place there is a drive of another variant than the profile's.
+    /// The drive in a port has another variant than in the profile.
     #[error(
         "drive {}: the profile is of variant {} ({}), the drive is of variant {} ({})",
         drive.get(),
@@ -26,117 +26,117 @@ pub enum OtherType {
         device.row().map_or("in no table", |row| row.name)
     )]
     Drive {
-        /// The drive.
+        /// Number of the drive.
         drive: DriveNumber,
-        /// In the profile.
+        /// Variant in the profile.
         profile: Variant,
         /// Variant of the drive.
         device: Variant,
     },
 }
 
-/// Why a change cannot be planned. Nothing has been written.
+/// The reason why a change cannot be planned. Nothing has been written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another adapter or hub.
     #[error("the profile is of serial number {profile:?}, the device has {device:?}")]
     OtherDevice {
-        /// In the profile.
+        /// Serial number in the profile.
         profile: String,
-        /// In the device.
+        /// Serial number of the device.
         device: String,
     },
-    /// The drive at a place is not the one that the profile was read from.
+    /// The profile was read with another drive in this port.
     #[error("drive {}: the profile is of serial number {profile:?}, the drive has {device:?}", drive.get())]
     OtherDrive {
-        /// The drive.
+        /// Number of the drive.
         drive: DriveNumber,
-        /// In the profile.
+        /// Serial number in the profile.
         profile: String,
-        /// In the drive.
+        /// Serial number of the drive.
         device: String,
     },
     /// The profile was read from another type of device or drive.
     #[error(transparent)]
     OtherType(#[from] OtherType),
-    /// A number out of the parameter's range.
+    /// The value is outside the range of the parameter.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// A read-only parameter.
+    /// The parameter is read-only.
     #[error("parameter {item} ({}) can only be read", item.name())]
     ReadOnly {
         /// The item.
         item: Item,
     },
-    /// 101 to 104: these move drives, which is allowed over the cyclic connection only.
+    /// Parameters 101 to 104 move drives, which is allowed over the cyclic connection only.
     #[error("parameter {item} ({}) moves the drive and is never written as a parameter", item.name())]
     Moves {
         /// The item.
         item: Item,
     },
-    /// 47, 197 to 199: these trigger actions, and are services of their own.
+    /// Parameters 47 and 197 to 199 trigger actions, which are separate services.
     #[error("parameter {item} ({}) does something and keeps nothing", item.name())]
     Acts {
         /// The item.
         item: Item,
     },
-    /// The present value is not known: it was not read, or its drive is missing.
+    /// The present value is unknown: it has not been read, or its drive is missing.
     #[error("parameter {item} ({}) was not read before it is to be changed", item.name())]
     NotRead {
         /// The item.
         item: Item,
     },
-    /// The upper limit would not be above the lower one.
+    /// The upper limit would not exceed the lower limit.
     #[error("drive {}: the lower limit {lower} is not below the upper limit {upper}", drive.get())]
     LimitsCrossed {
-        /// The drive of the limits.
+        /// Number of the drive.
         drive: DriveNumber,
-        /// As planned.
+        /// Planned lower limit.
         lower: i64,
-        /// As planned.
+        /// Planned upper limit.
         upper: i64,
     },
-    /// The drive's position is outside the planned limits.
+    /// The position of the drive is outside the planned limits.
     #[error("drive {}: the actual position {position} is outside the limits {lower} to {upper}", drive.get())]
     PositionOutside {
-        /// The drive.
+        /// Number of the drive.
         drive: DriveNumber,
-        /// The drive's position in the new scale.
+        /// Position in the new scale.
         position: i64,
-        /// As planned.
+        /// Planned lower limit.
         lower: i64,
-        /// As planned.
+        /// Planned upper limit.
         upper: i64,
     },
-    /// The actual position would have no room in 32 bits.
+    /// The position in the new scale exceeds 32 bits.
     #[error("drive {}: the actual position would be {position} steps, beyond −2147483648 to 2147483647", drive.get())]
     PositionTooLarge {
-        /// The drive.
+        /// Number of the drive.
         drive: DriveNumber,
-        /// In scaled steps.
+        /// Position in scaled steps.
         position: i64,
     },
-    /// The position to be set is outside the limits after rounding.
+    /// The position to set is outside the limits after rounding.
     #[error(
         "drive {}: position {position} becomes {becomes}, which is not within the limits {lower} to {upper}",
         drive.get()
     )]
     ReferenceOutside {
-        /// The drive.
+        /// Number of the drive.
         drive: DriveNumber,
-        /// As requested.
+        /// Requested position.
         position: i32,
-        /// Rounded to 64 steps; may not fit into 32 bits.
+        /// Position rounded to 64 steps; may exceed 32 bits.
         becomes: i64,
-        /// Present value.
+        /// Present lower limit.
         lower: i64,
-        /// Present value.
+        /// Present upper limit.
         upper: i64,
     },
-    /// Addresses at which a device cannot be reached.
+    /// The device would be unreachable at these addresses.
     #[error(transparent)]
     Address(#[from] AddressError),
-    /// An unknown source of addresses is kept if found, and never set.
+    /// The address source is unknown; it is preserved if found, but never set.
     #[error("{0} is no source of addresses: they are 0 stored, 1 BOOTP and 2 DHCP")]
     Source(u8),
 }

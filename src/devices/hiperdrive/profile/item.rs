@@ -1,4 +1,4 @@
-//! The names of parameters as `read` takes them: `158` of the device or drive 1, `158 drive 2` or `258` of another drive.
+//! Parameter names as accepted by `read`: `158` of the device or drive 1, `158 drive 2` or `258` of another drive.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,33 +9,34 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Item(pub ParameterNumber);
 
-/// Why a text does not name a parameter.
+/// The reason why a string does not name a parameter.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
-    /// Not of any valid form.
+    /// The string has none of the valid forms.
     #[error("{0:?} is not a parameter: give a number such as 47 or 158, or for another drive \"158 drive 2\" or 258")]
     Unknown(String),
-    /// The manual has no parameter of that number.
+    /// The manual has no parameter with this number.
     #[error("parameter {0} does not exist")]
     NoParameter(u16),
-    /// A parameter of the device has no drive, and there are drives 1 to 8 alone.
+    /// The parameter does not belong to a drive, or the drive number is not 1 to 8.
     #[error(
         "parameter {number} does not belong to drive {drive}: drives are 1 to 8, and parameters below 100 belong to the \
          device"
     )]
     NoDrive {
-        /// As given.
+        /// The given parameter number.
         number: u16,
-        /// As given.
+        /// The given drive number.
         drive: u8,
     },
 }
 
 impl Item {
-    /// Returns the item for a number and, separately, a drive; a number that already names another drive keeps it.
+    /// Returns the item for a parameter number and an optional drive; a number that already refers to another drive is
+    /// kept.
     ///
     /// # Errors
-    /// [`ItemError`] if there is no such parameter, or a drive does not have it.
+    /// [`ItemError`] if the parameter does not exist, or the drive does not have it.
     pub fn of(number: u16, drive: Option<u8>) -> Result<Self, ItemError> {
         let own = ParameterNumber::new(number).ok_or(ItemError::NoParameter(number))?;
         let own = match drive {
@@ -54,7 +55,7 @@ impl Item {
         own.row().map(|_| Item(own)).ok_or(ItemError::NoParameter(number))
     }
 
-    /// Returns its name in the table; empty if the table has none.
+    /// Returns the name in the parameter table; empty if the table has none.
     pub fn name(self) -> &'static str {
         self.0.row().map_or("", |row| row.name)
     }
@@ -83,7 +84,7 @@ impl FromStr for Item {
 }
 
 impl Item {
-    /// Parses a parameter's number: decimal, or hexadecimal with `0x`; without a sign.
+    /// Parses a parameter number: decimal, or hexadecimal with `0x`, without a sign.
     pub fn number(text: &str) -> Option<u16> {
         let (digits, radix) = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
             Some(digits) => (digits, 16),

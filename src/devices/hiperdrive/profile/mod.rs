@@ -1,5 +1,5 @@
-//! HIPERDRIVE profiles: the values that an adapter or a hub stores for itself and its drives, how two profiles differ, and
-//! what a write would do.
+//! HIPERDRIVE profiles: the values that an adapter or a hub stores for itself and its drives, the differences between
+//! two profiles, and the plan of a write.
 
 #![warn(missing_docs)]
 

@@ -1,24 +1,24 @@
-//! The network settings of a device, and their plan: the TCP/IP object, CIP class F5h (reference 1). They apply with
-//! the address switch at 0, the addresses also with it at 97.
+//! Network settings of a device and their plan: TCP/IP object, CIP class F5h (reference 1). They apply if the address
+//! switch is at 0; the addresses also if it is at 97.
 
 use super::{Base, HiperdrivePlan, Op, PlanError};
 use crate::buses::ethernet_ip::protocol::{AddressSource, InterfaceConfiguration};
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 
-/// The content of the object.
+/// Content of the TCP/IP object.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct NetworkSettings {
-    /// Attribute 3.
+    /// Address source, attribute 3.
     pub source: AddressSource,
-    /// Attribute 5.
+    /// Interface configuration, attribute 5.
     pub interface: InterfaceConfiguration,
 }
 
-/// Plans the source of the IP address. The addresses are written only if the source is the stored ones; otherwise they are
+/// Plans a change of the address source. Addresses are written only if the source is *stored*; otherwise they are
 /// ignored. `switch` is parameter 12, if known.
 ///
 /// # Errors
-/// Addresses at which a device cannot be reached, or an unknown source.
+/// The device would be unreachable at the addresses, or the source is unknown.
 pub fn plan_network(
     now: &NetworkSettings,
     switch: Option<i64>,

@@ -1,4 +1,4 @@
-//! The operations that change a device, their cost, and their base.
+//! Operations that change a device, their cost, and the values on which they are based.
 
 use std::collections::BTreeMap;
 
@@ -11,24 +11,24 @@ use crate::profile::{Operation, Plan};
 /// A planned write to an adapter or a hub.
 pub type HiperdrivePlan = Plan<Base, Op>;
 
-/// Values that a plan is based on: everything that its operations change or depend on. Positions of drives are not
-/// included, since they change by themselves.
+/// The values on which a plan is based: everything that its operations change or depend on. Drive positions are
+/// excluded, since they change on their own.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
-    /// Parameters by their own numbers.
+    /// Values by parameter number.
     pub values: BTreeMap<ParameterNumber, i64>,
-    /// The TCP/IP object, if the plan changes it.
+    /// Network settings, if the plan changes them.
     pub network: Option<NetworkSettings>,
 }
 
 impl Base {
-    /// Returns its parameters.
+    /// Returns the parameter values as an image.
     pub fn image(&self) -> Image {
         Image { values: self.values.clone() }
     }
 }
 
-/// Returns the parameters that a plan writes, as they will be.
+/// Returns the parameters that a plan writes, with their new values.
 pub fn written(plan: &HiperdrivePlan) -> Image {
     let written = plan.ops.iter().filter_map(|op| match op {
         Op::Write { number, new, .. } => Some((*number, *new)),
@@ -37,21 +37,21 @@ pub fn written(plan: &HiperdrivePlan) -> Image {
     Image { values: written.collect() }
 }
 
-/// One thing that is done.
+/// A single operation of a plan.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// A parameter is written, and read back.
+    /// Write a parameter and read it back.
     Write {
-        /// The parameter.
+        /// Parameter to write.
         number: ParameterNumber,
-        /// The old value; `None` if it is not known.
+        /// Old value, if known.
         old: Option<i64>,
-        /// The new value.
+        /// New value.
         new: i64,
     },
-    /// The device does something.
+    /// Execute a service.
     Service(Service),
-    /// Write to the TCP/IP object: attribute 3, then attribute 5, since setting 3 to 0 stores the present address.
+    /// Write the TCP/IP object: attribute 3 before attribute 5, because setting 3 to 0 stores the present address.
     Network {
         /// Present settings.
         from: NetworkSettings,
@@ -78,7 +78,7 @@ pub enum Service {
 }
 
 impl Service {
-    /// Returns the value of parameter 47; `None` for an acknowledgement.
+    /// Returns the value of parameter 47, or `None` for an acknowledgement.
     pub const fn code(self) -> Option<i64> {
         match self {
             Service::Save => Some(1),
@@ -90,7 +90,7 @@ impl Service {
         }
     }
 
-    /// Returns the service for a value of parameter 47; `None` if the value requests nothing.
+    /// Returns the service for a value of parameter 47, or `None` if the value requests nothing.
     pub const fn of_code(code: i64) -> Option<Self> {
         match code {
             1 => Some(Service::Save),
@@ -104,7 +104,7 @@ impl Service {
 }
 
 impl HiperdrivePlan {
-    /// Removes the save at the end: written values may then be lost at power-off unless they are saved later.
+    /// Removes the final save. Written values are lost at power-off unless they are saved later.
     pub fn without_save(mut self) -> Self {
         if self.ops.last() == Some(&Op::Service(Service::Save)) {
             self.ops.pop();
@@ -124,7 +124,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the name of the changed item, as `read` takes it if it can be read.
+    /// Returns the name of the changed item, as accepted by `read` if the item is readable.
     pub fn item(&self) -> String {
         match self {
             Op::Write { number, .. } => Item(*number).to_string(),
@@ -135,7 +135,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes as a comparison counts them; a save changes nothing.
+    /// Returns the number of changes, counted as in a comparison; a save counts as none.
     pub const fn weight(&self) -> u64 {
         match self {
             Op::Write { .. } | Op::Network { .. } => 1,
@@ -143,8 +143,8 @@ impl Op {
         }
     }
 
-    /// Returns the changes, old and new, in one line for the logbook. The terms are the manual's, in any language of the
-    /// window.
+    /// Returns the changes, old and new, as one line for the logbook. The terms are those of the manual in every window
+    /// language.
     pub fn note(&self) -> String {
         match self {
             Op::Write { number, old: Some(old), new } => format!("{}: {old} → {new}", Item(*number)),

@@ -1,4 +1,4 @@
-//! The saved content of an adapter or a hub with its drives: identities, and stored values.
+//! Saved content of an adapter or a hub with its drives: identities and stored values.
 
 use std::collections::BTreeMap;
 
@@ -7,66 +7,66 @@ use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Family, Topology, Variant};
 use crate::profile::ron_text::Unknown;
 
-/// Profile of an adapter or a hub.
+/// A profile of an adapter or a hub.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HiperdriveProfile {
-    /// The identity.
+    /// Identity of the device.
     pub identity: ProfileIdentity,
-    /// The stored values. A missing parameter is not in the profile.
+    /// Stored values. Parameters that are not in the profile are missing.
     pub image: Image,
     /// Values that belong to the mounting and are never restored.
     pub mounting: Vec<MountingMark>,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: UnknownEntries,
 }
 
-/// Identity of an adapter or a hub; empty in a profile made by hand.
+/// Identity of an adapter or a hub; empty in a profile written by hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
-    /// From parameter 13.
+    /// Topology, from parameter 13.
     pub topology: Option<Topology>,
-    /// Parameter 15.
+    /// Name, parameter 15.
     pub name: String,
-    /// Parameter 16.
+    /// Article number, parameter 16.
     pub article_number: String,
-    /// Parameter 17, decimal; empty if the profile is of no particular device.
+    /// Serial number, parameter 17, in decimal; empty if the profile belongs to no particular device.
     pub serial_number: String,
-    /// Parameter 19.
+    /// Version, parameter 19.
     pub version: String,
-    /// Its drives, by place.
+    /// Drives by port.
     pub drives: Vec<ProfileDrive>,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// The identity of a drive.
+/// Identity of a drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileDrive {
-    /// Place of the drive.
+    /// Number of the drive, which is its port.
     pub number: DriveNumber,
-    /// Parameter 120; `None` if it is not known.
+    /// Variant, parameter 120, if known.
     pub variant: Option<Variant>,
-    /// Parameter 121.
+    /// Name, parameter 121.
     pub name: String,
-    /// Parameter 122.
+    /// Article number, parameter 122.
     pub article_number: String,
-    /// Parameter 123; empty if it is not known.
+    /// Serial number, parameter 123; empty if unknown.
     pub serial_number: String,
-    /// Parameter 125.
+    /// Version, parameter 125.
     pub version: String,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// Something that is right for one drive on one machine and no other.
+/// A mark on a value that is valid for one drive on one machine only.
 pub type MountingMark = crate::profile::MountingMark<Item>;
 
-/// Unknown entries among the parameters of the device (`None`) and of its drives, which are preserved.
+/// Unknown entries among the parameters of the device (`None`) and of its drives.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries(pub(super) BTreeMap<Option<DriveNumber>, Vec<(ron::Value, ron::Value)>>);
 
 impl HiperdriveProfile {
-    /// Creates the profile of a device that was read, with the values of the mounting marked.
+    /// Creates a profile from a reading and marks the values of the mounting.
     pub fn of(identity: ProfileIdentity, image: Image) -> Self {
         let mut profile =
             HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: UnknownEntries::default() };
@@ -74,7 +74,7 @@ impl HiperdriveProfile {
         profile
     }
 
-    /// Marks the items that belong to the mounting and are not marked yet: the reference of each drive (198).
+    /// Marks all unmarked items that belong to the mounting: the reference of each drive (198).
     pub fn mark_mounting(&mut self) {
         let references = self.image.values.keys().copied().filter(|number| number.base() == REFERENCE).map(Item);
         for item in references.collect::<Vec<_>>() {
@@ -85,17 +85,17 @@ impl HiperdriveProfile {
         }
     }
 
-    /// Returns whether an item belongs to the mounting: it is marked, or is a drive's reference.
+    /// Returns whether an item belongs to the mounting: it is marked, or is the reference of a drive.
     pub fn is_mounting(&self, item: Item) -> bool {
         item.0.base() == REFERENCE || self.is_marked(item)
     }
 
-    /// Returns the items in the profile, in the order in which they are compared.
+    /// Returns the items of the profile in comparison order.
     pub fn items(&self) -> impl Iterator<Item = Item> {
         self.image.values.keys().copied().map(Item)
     }
 
-    /// Returns the identity of the drive at a place; `None` if it is not known.
+    /// Returns the identity of a drive, if known.
     pub fn drive(&self, number: DriveNumber) -> Option<&ProfileDrive> {
         self.identity.drives.iter().find(|drive| drive.number == number)
     }
@@ -106,19 +106,19 @@ impl HiperdriveProfile {
 }
 
 impl ProfileIdentity {
-    /// Returns whether nothing is known of the device itself.
+    /// Returns whether nothing is known about the adapter or hub itself.
     pub fn is_of_no_device(&self) -> bool {
         *self == ProfileIdentity { drives: self.drives.clone(), ..ProfileIdentity::default() }
     }
 }
 
 impl ProfileDrive {
-    /// Returns its family, if its variant is known.
+    /// Returns the family of the drive, if its variant is known.
     pub fn family(&self) -> Option<Family> {
         self.variant?.row().map(|row| row.family)
     }
 
-    /// Creates the identity of a drive at a place, with nothing known.
+    /// Creates an unknown identity for a port.
     pub fn at(number: DriveNumber) -> Self {
         ProfileDrive {
             number,

@@ -1,4 +1,5 @@
-//! Planning a restore: only differences, one save after them, and never a drive's reference, which belongs to its machine.
+//! Planning of a restore: differences only, a single save at the end, and never the reference of a drive, which belongs
+//! to its machine.
 
 pub use crate::profile::RestoreOptions;
 
@@ -9,14 +10,14 @@ use super::{
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Travel};
 
-/// Present state of a device, as far as a plan needs it.
+/// Present state of a device, as far as planning requires it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
-    /// The identity.
+    /// Identity of the device.
     pub identity: ProfileIdentity,
-    /// The stored values.
+    /// Stored values.
     pub image: Image,
-    /// Positions of its drives.
+    /// Positions of the drives.
     pub positions: Positions,
 }
 
@@ -28,11 +29,11 @@ impl DeviceState {
     }
 }
 
-/// The outcome of planning a restore.
+/// Result of planning a restore.
 pub type Restore = crate::profile::Restore<HiperdrivePlan, Item>;
 
-/// Plans a restore, at the places that both have. Onto another device, the mounting is left out: items marked by the user
-/// and each drive's reference (198), which is never written.
+/// Plans a restore for the ports that profile and device have in common. On another device, mounting values are left
+/// out: items marked by the user and the reference of each drive (198), which is never written.
 ///
 /// # Errors
 /// See [`PlanError`]; nothing has been written.
@@ -63,8 +64,8 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
-/// Refuses a device or drives that the profile was not read from, and those of another type. A profile without an identity
-/// fits any device; a place without a drive is accepted.
+/// Refuses an adapter, a hub or drives other than those of the profile, and other types. A profile without an identity
+/// fits any device; an empty port is accepted.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`], [`PlanError::OtherDrive`].

@@ -1,4 +1,4 @@
-//! Test profiles: a hub with drives, to be changed.
+//! Test profiles: a hub with drives, as a basis for changes.
 
 use super::{HiperdriveProfile, Image, ProfileDrive, ProfileIdentity};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Variant};
@@ -32,7 +32,6 @@ pub(super) fn image_of(values: &[(u16, i64)]) -> Image {
     Image { values: values.iter().map(|(own, value)| (number(*own), *value)).collect() }
 }
 
-/// Returns a device with drives at these places.
 pub(super) fn image(places: &[u8]) -> Image {
     let mut image = image_of(&[(24, 0), (26, 7)]);
     for place in places {

@@ -1,7 +1,7 @@
-//! The text of a HIPERDRIVE profile, written for people and edited by them. An error names its entry.
+//! The text format of a HIPERDRIVE profile, which people read and edit. Errors name the entry.
 //!
-//! A drive's parameters have the numbers of drive 1. A profile without a hub may list them beside those of the device,
-//! which are below 100; there, the number of another drive means that drive.
+//! The parameters of a drive have the numbers of drive 1. A profile without a hub may list them together with those of
+//! the device, which are below 100; there, the number of another drive refers to that drive.
 
 use super::{EntryError, HiperdriveProfile, Image, Item, MountingMark, ProfileDrive, ProfileIdentity, UnknownEntries};
 use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, UPPER};

@@ -1,4 +1,4 @@
-//! The warnings of a plan before it is carried out.
+//! Warnings about a plan before its execution.
 
 use super::network::SWITCH;
 use super::{HiperdrivePlan, Image, Item, written};
@@ -10,23 +10,23 @@ use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, Parameter
 /// A consequence of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
-    /// With another scale the same limits mean other positions (reference 3, *Scaling moves soft limits*): in turns, before
-    /// and after.
+    /// Under a different scale the same limits mean different positions (reference 3, *Scaling moves soft limits*),
+    /// given in turns before and after.
     LimitsMove {
-        /// The drive of the limits.
+        /// Number of the drive.
         drive: DriveNumber,
-        /// The lower and the upper one now.
+        /// Present lower and upper limit.
         now: (f64, f64),
-        /// Once the plan is carried out.
+        /// Lower and upper limit after the plan.
         then: (f64, f64),
     },
-    /// It takes effect at the next reset (47 = −4, or the supply).
+    /// The change takes effect at the next reset (47 = −4, or the supply).
     AfterReset(Item),
-    /// The time-out is off (186 = 255): this program moves nothing.
+    /// The time-out is disabled (186 = 255), so this program does not move the drive.
     NoTimeout(DriveNumber),
-    /// The drive is no longer requested (152 = 0): it cannot be moved from the bus.
+    /// The drive is no longer requested (152 = 0) and cannot be moved over the bus.
     NotRequested(DriveNumber),
-    /// The address switch decides, not the setting.
+    /// The address switch takes precedence over the setting.
     SwitchDecides(AddressSwitch),
 }
 

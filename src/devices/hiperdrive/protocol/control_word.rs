@@ -47,7 +47,7 @@ pub enum Direction {
 pub enum RunEnd {
     /// The run ends at the end of the range.
     RangeEnd,
-    /// The run ignores the limits and never ends by itself. For experts, and only with factory limits and scaling.
+    /// The run ignores the limits and only ends when stopped. For experts, with factory limits and scaling.
     Endless,
 }
 
@@ -64,7 +64,7 @@ pub enum MotionStart {
     JogTwo,
 }
 
-/// Error for a word with reserved bits. It must not be sent.
+/// A word with reserved bits, which must not be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("control word {word:04X} has reserved bits set ({}), which must be 0", bits(*word & RESERVED))]
 pub struct Refused {
@@ -100,7 +100,7 @@ impl ControlBit {
         self as u8
     }
 
-    /// Returns the meaning of the set bit. Bits 4 to 6 have another meaning in speed mode.
+    /// Returns the meaning of the bit when set. Bits 4 to 6 have a different meaning in speed mode.
     pub const fn name(self, speed_mode: bool) -> &'static str {
         match (self, speed_mode) {
             (ControlBit::On, _) => "on",
@@ -204,7 +204,7 @@ impl ControlWord {
         self.0 & bit.mask() != 0
     }
 
-    /// Returns the set bits with their numbers and meanings, lowest first.
+    /// Returns the numbers and meanings of the set bits, lowest first.
     pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
         let speed_mode = self.has(ControlBit::SpeedMode);
         let set = ControlBit::ALL.into_iter().filter(move |bit| self.has(*bit));

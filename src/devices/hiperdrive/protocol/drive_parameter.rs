@@ -1,10 +1,11 @@
-//! Numbers of those parameters that are used by name: of drive 1, and the one of the device that saves and resets.
+//! Numbers of the parameters that the code refers to by name: those of drive 1, and the device parameter that saves and
+//! resets.
 
 use std::ops::RangeInclusive;
 
-/// Saves, recalls, resets: a parameter of the device.
+/// Saving, recalling and resetting: a parameter of the device.
 pub const SERVICE: u16 = 47;
-/// Control word; it and the three behind it move a drive.
+/// Control word; this and the following three parameters move a drive.
 pub const CONTROL: u16 = 101;
 /// Speed, in percent of the maximum speed.
 pub const SPEED_SHARE: u16 = 102;
@@ -20,9 +21,9 @@ pub const SPEED: u16 = 106;
 pub const POSITION: u16 = 107;
 /// The latest of the eight errors that a drive keeps.
 pub const NEWEST_ERROR: u16 = 108;
-/// The earliest of them.
+/// Earliest stored error.
 pub const OLDEST_ERROR: u16 = 115;
-/// Variant of the drive; 0 where there is none.
+/// Variant of the drive; 0 if no drive is connected.
 pub const VARIANT: u16 = 120;
 /// Drive is requested by the bus.
 pub const REQUESTED: u16 = 152;
@@ -40,13 +41,13 @@ pub const SPEED_NUMERATOR: u16 = 162;
 pub const SPEED_DENOMINATOR: u16 = 164;
 /// Maximum speed.
 pub const MAXIMUM_SPEED: u16 = 166;
-/// Allowed values of the maximum speed, in tenths of rpm.
+/// Valid maximum speeds, in tenths of rpm.
 pub const MAXIMUM_SPEEDS: RangeInclusive<u16> = 5..=350;
-/// Wait before the hand drive, never saved.
+/// Waiting time before hand operation; never saved.
 pub const HAND_DRIVE_WAIT: u16 = 182;
 /// RS-485 time-out.
 pub const TIMEOUT: u16 = 186;
-/// The time-out of a drive that continues without commands.
+/// Value of the time-out for a drive that continues without commands.
 pub const NO_TIMEOUT: i64 = 255;
 /// RS-485 address.
 pub const RS485_ADDRESS: u16 = 188;
@@ -54,9 +55,9 @@ pub const RS485_ADDRESS: u16 = 188;
 pub const RS485_BAUD: u16 = 190;
 /// RS-485 complete time.
 pub const RS485_COMPLETE: u16 = 192;
-/// Faults since the acknowledgement; 0 acknowledges.
+/// Number of faults since the last acknowledgement; writing 0 acknowledges.
 pub const ACKNOWLEDGE: u16 = 197;
-/// Position assigned to the place where the drive stands.
+/// Position assigned to the present location of the drive.
 pub const REFERENCE: u16 = 198;
 /// Resets the drive.
 pub const RESET: u16 = 199;

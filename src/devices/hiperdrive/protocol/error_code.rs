@@ -16,7 +16,7 @@ pub struct ErrorCodeRow {
     pub name: &'static str,
     /// Cause of the error.
     pub cause: &'static str,
-    /// Remedy before the error is acknowledged.
+    /// Remedy, to be applied before acknowledging the error.
     pub remedy: &'static str,
 }
 

@@ -19,7 +19,7 @@ pub enum DriveLight {
     Alternating,
 }
 
-/// Drive or drives that an RS485 LED stands for.
+/// The drive or drives to which an RS485 LED refers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LedSubject {
     /// The drive of a bus adapter, which has no switch S3.

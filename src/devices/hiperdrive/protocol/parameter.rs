@@ -30,21 +30,21 @@ pub struct ParameterRow {
     pub kind: Kind,
     /// Allowed access.
     pub access: Access,
-    /// If set, the value survives a power cycle; a written value must be saved first.
+    /// Whether the value survives a power cycle after it has been saved.
     pub saved: bool,
     /// If set, the adapter or hub stores it, not a drive.
     pub(super) kept_by_device: bool,
     /// Allowed values.
     pub range: Range,
-    /// Limit from 0 in turns of the drive, in addition to the range; `None` if turns do not limit it.
+    /// Range in turns of the drive around 0, in addition to `range`; `None` if turns do not limit the value.
     pub reach: Option<Reach>,
     /// Factory value.
     pub factory: Factory,
-    /// Values that take the device long to set; a reply to any other takes as long as to a read.
+    /// Values that take the device long to apply; the reply to any other takes as long as to a read.
     pub slow: &'static [SlowSet],
 }
 
-/// Value whose reply arrives only when the device has applied it, with the maximum time.
+/// A value whose reply is sent only after the device has applied it, with the maximum time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SlowSet {
     /// Written value.
@@ -82,24 +82,24 @@ pub enum Range {
 /// Factory value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Factory {
-    /// None: it is measured or identifies the device.
+    /// No factory value: the parameter is measured or identifies the device.
     None,
-    /// A number.
+    /// The same number for every topology.
     Number(i64),
-    /// Different numbers for an adapter and for a hub.
+    /// Different numbers for adapters and hubs.
     Topology {
-        /// With a single drive.
+        /// Factory value of an adapter.
         adapter: i64,
-        /// For each drive of a hub.
+        /// Factory value for each drive of a hub.
         hub: i64,
     },
-    /// The drive's number of turns either way, times −1 or 1.
+    /// Number of turns of the drive in either direction, times −1 or 1.
     Turns(i32),
     /// Determined by the drive.
     Automatic,
 }
 
-/// Error for a number outside the allowed values of a parameter.
+/// A number outside the allowed values of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct OutOfRange {
     /// Number of the parameter.
@@ -129,14 +129,14 @@ impl DriveNumber {
         self.0
     }
 
-    /// Returns all drives that a topology has a place for.
+    /// Returns all drives for which a topology has a port.
     pub fn of(topology: Topology) -> impl Iterator<Item = DriveNumber> {
         (1..=topology.drives()).map(DriveNumber)
     }
 }
 
 impl ParameterRow {
-    /// Returns whether the adapter or hub stores it: 47 = −1 and −2 change these parameters and no others (manual, 47).
+    /// Returns whether the adapter or hub stores the parameter: 47 = −1 and −2 change only these (manual, 47).
     pub const fn is_kept_by_device(&self) -> bool {
         self.saved && self.kept_by_device
     }
@@ -151,7 +151,8 @@ impl ParameterNumber {
         if 1 <= number && number <= 899 { Some(ParameterNumber(number)) } else { None }
     }
 
-    /// Converts a number of drive 1 to that of another drive; `None` if it is not a parameter of drive 1.
+    /// Converts a parameter number of drive 1 to that of another drive, or returns `None` if the number does not belong
+    /// to drive 1.
     pub const fn of_drive(number: u16, drive: DriveNumber) -> Option<Self> {
         if 100 <= number && number <= 199 { Some(ParameterNumber(number + 100 * (drive.0 as u16 - 1))) } else { None }
     }
@@ -161,17 +162,17 @@ impl ParameterNumber {
         self.0
     }
 
-    /// Returns the drive it belongs to; `None` for a device parameter.
+    /// Returns the drive to which the parameter belongs, or `None` for a device parameter.
     pub const fn drive(self) -> Option<DriveNumber> {
         DriveNumber::new((self.0 / 100) as u8)
     }
 
-    /// Returns the number of the same parameter of drive 1, or of the device.
+    /// Returns the number of the same parameter for drive 1, or of the device.
     pub const fn base(self) -> u16 {
         if self.0 < 100 { self.0 } else { 100 + self.0 % 100 }
     }
 
-    /// Returns the table row; `None` if the manual has none.
+    /// Returns the table row, or `None` if the manual has none.
     pub fn row(self) -> Option<&'static ParameterRow> {
         super::parameters::PARAMETERS.iter().find(|row| row.number == self.base())
     }
@@ -181,12 +182,12 @@ impl ParameterNumber {
         CLASS + self.0 / 100
     }
 
-    /// Returns its attribute of instance 1 of that class.
+    /// Returns the attribute number within instance 1 of the class.
     pub const fn attribute(self) -> u16 {
         self.base()
     }
 
-    /// Finds a number by class and attribute; `None` if they address no parameter.
+    /// Returns the parameter number for a class and attribute, or `None` if they address no parameter.
     pub fn of_attribute(class: u16, attribute: u16) -> Option<Self> {
         match class.checked_sub(CLASS)? {
             0 if attribute < 100 => ParameterNumber::new(attribute),
@@ -202,8 +203,8 @@ impl fmt::Display for ParameterNumber {
 }
 
 impl ParameterRow {
-    /// Returns the allowed values, with the limits of the type if there are no others, and limited to the drive's turns
-    /// as far as those are known; `None` for texts.
+    /// Returns the allowed values: those of the table, or else of the data type, restricted to the turns of the drive
+    /// as far as these are known. `None` for strings.
     pub fn allowed(&self, travel: Travel) -> Option<Range> {
         let (low, high) = self.kind.limits()?;
         Some(match (self.range, self.reach.and_then(|reach| travel.steps(reach))) {
@@ -213,24 +214,24 @@ impl ParameterRow {
         })
     }
 
-    /// Checks that the parameter may have this number. The drive itself checks what depends on other parameters: 160 is
-    /// above 158; position, target and 198 lie between them.
+    /// Checks a value against the range of a parameter. Dependencies between parameters are checked by the drive: 160
+    /// is above 158; position, target and 198 lie between them.
     ///
     /// # Errors
-    /// Returns [`OutOfRange`] with the allowed values. A text accepts no number.
+    /// Returns [`OutOfRange`] with the allowed values. Strings accept no number.
     pub fn check(&self, number: ParameterNumber, value: i64, travel: Travel) -> Result<i64, OutOfRange> {
         let range = self.allowed(travel).unwrap_or(Range::OneOf(&[]));
         if range.holds(value) { Ok(value) } else { Err(OutOfRange { number, name: self.name, value, range }) }
     }
 
-    /// Returns how long the device may take to answer when this value is set; `None` if no longer than for any other
-    /// reply. If the topology is unknown, the time of a hub applies.
+    /// Returns how long the device may take to reply when this value is written, or `None` if no longer than for other
+    /// replies. For an unknown topology, the time of a hub applies.
     pub fn takes(&self, value: i64, topology: Option<Topology>) -> Option<Duration> {
         let slow = self.slow.iter().find(|slow| slow.value == value)?;
         Some(if topology == Some(Topology::Adapter) { slow.adapter } else { slow.hub })
     }
 
-    /// Returns the factory value with factory scaling; `None` if the manual gives none or the drive determines it.
+    /// Returns the factory value with factory scaling, or `None` if the manual gives none or the drive determines it.
     pub fn factory_value(&self, topology: Topology, family: Family) -> Option<i64> {
         match self.factory {
             Factory::None | Factory::Automatic => None,

@@ -43,24 +43,21 @@ impl ParameterRow {
         ParameterRow { kept_by_device: true, ..self }
     }
 
-    /// Makes it writable; a save stores the value.
     const fn kept(self, range: Range, factory: Factory) -> Self {
         ParameterRow { saved: true, ..self.written(range, factory) }
     }
 
-    /// Limits it to the turns of the drive.
     const fn reaching(self, reach: Reach) -> Self {
         ParameterRow { reach: Some(reach), ..self }
     }
 
-    /// Adds values that take long to set.
     const fn slow(self, slow: &'static [SlowSet]) -> Self {
         ParameterRow { slow, ..self }
     }
 }
 
-/// Maximum time of a store in the EEPROM (manual 6.2, parameter 47), also of the TCP/IP object, which is stored with
-/// each change (5).
+/// Maximum time for storing to EEPROM (manual 6.2, parameter 47); also applies to the TCP/IP object, which is stored
+/// with each change (5).
 pub const STORES: Duration = Duration::from_millis(200);
 /// Maximum time to reset one drive: as −4 of an adapter, which has one.
 const DRIVE_RESETS: Duration = Duration::from_secs(2);
@@ -71,12 +68,10 @@ const fn stores(value: i64) -> SlowSet {
     SlowSet { value, adapter: STORES, hub: STORES }
 }
 
-/// Builds a value that affects all drives.
 const fn all_drives(value: i64) -> SlowSet {
     SlowSet { value, adapter: DRIVE_RESETS, hub: HUB_RESETS }
 }
 
-/// Builds a value that resets one drive.
 const fn one_drive(value: i64) -> SlowSet {
     SlowSet { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
 }
@@ -113,7 +108,7 @@ const fn within(range: RangeInclusive<u16>) -> Range {
     Within(*range.start() as i64, *range.end() as i64)
 }
 
-/// All parameters, by number. That 11 and 119 are signed is assumed (`U`): the manual gives only their number of bits.
+/// All parameters by number. Parameters 11 and 119 are assumed to be signed (`U`): the manual only gives their width.
 pub const PARAMETERS: &[ParameterRow] = &[
     read(9, "control supply", U16, "0.1 V"),
     read(11, "device temperature", I16, "°C"),

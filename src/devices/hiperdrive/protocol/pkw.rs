@@ -15,7 +15,7 @@ pub struct Pkw {
     pub pwe: u32,
 }
 
-/// Task of a request: bits 15 to 12 of PKE.
+/// Task of a request, bits 15 to 12 of PKE.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Task {
@@ -27,7 +27,7 @@ pub enum Task {
     WriteWord = 2,
     /// Writes a double word.
     WriteDouble = 3,
-    /// Reads an element of an array: four characters of a text.
+    /// Reads an element of an array: four characters of a string.
     ReadElement = 6,
     /// Writes a word of an array.
     WriteElementWord = 7,
@@ -37,7 +37,7 @@ pub enum Task {
     Count = 9,
 }
 
-/// Answer in a reply. The manual's text gives the numbers of requests for it (reference 8.4).
+/// Answer of a reply. The text of the manual repeats the numbers of the requests here (reference 8.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Answer {
     /// 0: there was no request.
@@ -132,7 +132,7 @@ impl Pkw {
         self.pke & NUMBER
     }
 
-    /// Returns the task of a request; `None` for an undefined number.
+    /// Returns the task of a request, or `None` for an undefined number.
     pub fn task(self) -> Option<Task> {
         Task::ALL.into_iter().find(|task| task.number() == self.code())
     }
@@ -149,8 +149,8 @@ impl Pkw {
         }
     }
 
-    /// Returns the answer if this reply belongs to that request. Until then the request is repeated; before the same
-    /// request is sent again, [`Task::None`] must be sent and answered.
+    /// Returns the answer if this reply belongs to `request`. Until then the request is repeated; before sending the
+    /// same request again, [`Task::None`] must be sent and answered.
     pub fn answer_to(self, request: Pkw) -> Option<Answer> {
         let task = request.task()?;
         let same = task == Task::None || self.number() == request.number();
@@ -173,7 +173,7 @@ impl PkwError {
     pub const NO_ELEMENT: PkwError = PkwError(3);
     /// 4: parameter without elements.
     pub const NO_ARRAY: PkwError = PkwError(4);
-    /// 5: word instead of a double word or vice versa; a text.
+    /// 5: word instead of double word or vice versa, or a string.
     pub const TYPE: PkwError = PkwError(5);
     /// 17: not possible in this state.
     pub const STATE: PkwError = PkwError(17);

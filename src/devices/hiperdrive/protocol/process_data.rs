@@ -21,7 +21,7 @@ impl ByteOrder {
     pub const WORDS: Words<ByteOrder> = Words(&[("little", ByteOrder::Little), ("big", ByteOrder::Big)]);
 }
 
-/// Device at an IP address and the number of its drives.
+/// The device at an IP address and the number of its drive ports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Topology {
     /// Adapter with one drive.
@@ -35,9 +35,9 @@ pub enum Topology {
 /// Layout of the process data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Layout {
-    /// Topology, which gives the number of drive places.
+    /// Topology, which determines the number of drive ports.
     pub topology: Topology,
-    /// If set, eight bytes of parameter words follow the drives.
+    /// Whether eight bytes of parameter words follow the drives.
     pub pkw: bool,
     /// Byte order of every number.
     pub order: ByteOrder,
@@ -60,7 +60,7 @@ pub struct Setpoint {
     pub target: i32,
 }
 
-/// Output data of a drive: a setpoint or any other bytes.
+/// Output data of a drive: a setpoint or arbitrary bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutData {
     /// Control word (STW).
@@ -87,7 +87,7 @@ pub struct Actual {
 /// Output image for all drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutImage {
-    /// Drives, as many as the layout has.
+    /// Output data of each drive in the layout.
     pub drives: Vec<OutData>,
     /// Parameter words, if the layout has them.
     pub pkw: Option<Pkw>,
@@ -96,19 +96,19 @@ pub struct OutImage {
 /// Input image of all drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InImage {
-    /// Drives, as many as the layout has.
+    /// Input data of each drive in the layout.
     pub drives: Vec<Actual>,
     /// Parameter words, if the layout has them.
     pub pkw: Option<Pkw>,
 }
 
-/// Error for bytes that do not fit a layout.
+/// The length of an image does not match the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{got} bytes of process data where {expected} were expected")]
 pub struct ImageError {
-    /// Length of the layout.
+    /// Length required by the layout, in bytes.
     pub expected: usize,
-    /// Actual length.
+    /// Actual length in bytes.
     pub got: usize,
 }
 
@@ -149,7 +149,7 @@ impl Topology {
     /// All topologies.
     pub const ALL: [Topology; 3] = [Topology::Adapter, Topology::Hub4, Topology::Hub8];
 
-    /// Returns the number of drive places.
+    /// Returns the number of drive ports.
     pub const fn drives(self) -> u8 {
         match self {
             Topology::Adapter => 1,
@@ -167,19 +167,19 @@ impl Topology {
         }
     }
 
-    /// Finds a topology by the value of parameter 13.
+    /// Returns the topology for a value of parameter 13.
     pub fn of_category(category: &str) -> Option<Self> {
         Topology::ALL.into_iter().find(|topology| topology.category() == category.trim())
     }
 }
 
 impl Layout {
-    /// Returns the bytes in each direction: 8 per drive, 8 of parameter words.
+    /// Returns the number of bytes in each direction: 8 per drive and 8 of parameter words.
     pub const fn length(self) -> usize {
         PLACE * (self.topology.drives() as usize + self.pkw as usize)
     }
 
-    /// Returns every layout of that length, in the order in which they are assumed.
+    /// Returns all layouts with the given length, most likely first.
     pub fn of_length(length: usize) -> impl Iterator<Item = Layout> {
         let all = Topology::ALL
             .into_iter()
@@ -290,7 +290,7 @@ impl OutImage {
         Ok(OutImage { drives, pkw })
     }
 
-    /// Returns the bytes. Missing drives are zero, which does not control them; drives without a place are dropped.
+    /// Returns the image as bytes. Missing drives are zero, which does not control them; surplus drives are dropped.
     pub fn emit(&self, layout: Layout) -> Vec<u8> {
         layout.image(self.drives.iter().map(|drive| drive.emit(layout.order)), self.pkw)
     }
@@ -307,7 +307,7 @@ impl InImage {
         Ok(InImage { drives, pkw })
     }
 
-    /// Returns the bytes. Missing drives are zero; drives without a place are dropped.
+    /// Returns the image as bytes. Missing drives are zero; surplus drives are dropped.
     pub fn emit(&self, layout: Layout) -> Vec<u8> {
         layout.image(self.drives.iter().map(|drive| drive.emit(layout.order)), self.pkw)
     }

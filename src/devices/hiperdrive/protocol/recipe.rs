@@ -3,7 +3,7 @@
 use super::control_word::ControlWord;
 use super::status_word::{StatusBit, StatusWord};
 
-/// Control word and the status required before the next one.
+/// A control word, and the status required before the next one.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     /// Word to send.

@@ -1,7 +1,7 @@
 //! Conversion between steps, turns, millimetres and rpm by parameters 154 to 164 (reference 5).
 
-/// Conversion between transmitted steps and turns: 256 · numerator / denominator steps per turn (the manual's formula
-/// 8.4 is garbled).
+/// Conversion between transmitted steps and turns: 256 · numerator / denominator steps per turn (the formula in section
+/// 8.4 of the manual is garbled).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PositionScale {
     numerator: u16,
@@ -22,18 +22,18 @@ pub struct Length {
     pub nanometres: u64,
 }
 
-/// Drive family, which determines the turns either way.
+/// Drive family, which determines the number of turns in either direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Family {
     /// HDA30, HDA45; HRA (`U`).
     Short,
     /// HDA70.
     Long,
-    /// PSE441, for comparison.
+    /// PSE441, included for comparison.
     Pse441,
 }
 
-/// Reason why a scale is impossible.
+/// The reason why a scale is impossible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScaleError {
     /// A numerator or denominator is 0.
@@ -42,7 +42,7 @@ pub enum ScaleError {
     /// The pitch or the step is 0.
     #[error("a spindle has a pitch and a step above 0")]
     NoLength,
-    /// Numerator or denominator would be too large.
+    /// The numerator or denominator would exceed 16 bits.
     #[error(
         "the pitch is {steps} steps, which needs {numerator}/{denominator}; both may be up to 65535: choose another step"
     )]
@@ -74,11 +74,11 @@ impl PositionScale {
         }
     }
 
-    /// Returns the scale that gives a step this length on a spindle of this pitch. If a turn has whole steps, the
-    /// numerator is their number and the denominator 256, where possible.
+    /// Returns the scale in which a step has the given length on a spindle of the given pitch. If a turn has whole
+    /// steps, the numerator is their number and the denominator 256, where possible.
     ///
     /// # Errors
-    /// Returns [`ScaleError`] if either length is 0, or no scale gives exactly this step.
+    /// Returns [`ScaleError`] if either length is 0, or no scale yields exactly this step.
     pub fn for_spindle(pitch: Length, step: Length) -> Result<Self, ScaleError> {
         let (pitch, step) = (pitch.nanometres, step.nanometres);
         if pitch == 0 || step == 0 {
@@ -105,7 +105,7 @@ impl PositionScale {
         self.denominator
     }
 
-    /// Returns the steps per turn; not always a whole number.
+    /// Returns the number of steps per turn, which may be fractional.
     pub fn steps_per_turn(self) -> f64 {
         256.0 * f64::from(self.numerator) / f64::from(self.denominator)
     }
@@ -116,7 +116,7 @@ impl PositionScale {
         (self.steps_per_turn() * degrees / 360.0).ceil().max(1.0) as u32
     }
 
-    /// Converts turns to steps, rounded towards 0; `None` if they do not fit into 32 bits.
+    /// Converts turns to steps, rounded towards 0, or returns `None` if the result exceeds 32 bits.
     pub fn steps_of_turns(self, turns: i32) -> Option<i32> {
         i32::try_from(self.whole_steps(turns)).ok()
     }
@@ -131,7 +131,7 @@ impl PositionScale {
         f64::from(steps) / self.steps_per_turn()
     }
 
-    /// Converts steps to millimetres on a spindle of this pitch.
+    /// Converts steps to millimetres for a spindle of the given pitch.
     pub fn millimetres(self, steps: i32, pitch: Length) -> f64 {
         self.turns(steps) * pitch.nanometres as f64 / 1e6
     }
@@ -157,7 +157,7 @@ impl SpeedScale {
         f64::from(speed) * f64::from(self.denominator) / f64::from(self.numerator)
     }
 
-    /// Converts rpm to the transmitted speed: the nearest number that fits into 16 bits.
+    /// Converts rpm to the nearest transmitted speed that fits into 16 bits.
     pub fn speed(self, rpm: f64) -> i16 {
         // The float cast saturates.
         (rpm * f64::from(self.numerator) / f64::from(self.denominator)).round() as i16
@@ -165,7 +165,7 @@ impl SpeedScale {
 }
 
 impl Family {
-    /// Returns the maximum turns either way.
+    /// Returns the maximum number of turns in either direction.
     pub const fn most_turns(self) -> i32 {
         match self {
             Family::Short => 512,
@@ -174,7 +174,7 @@ impl Family {
         }
     }
 
-    /// Returns the turns either way that parameters 158 and 160 have as factory values.
+    /// Returns the number of turns in either direction that parameters 158 and 160 have as factory values.
     pub const fn factory_turns(self) -> i32 {
         match self {
             Family::Short => 511,
@@ -189,7 +189,7 @@ pub const fn turns(position: i32) -> (i16, u16) {
     ((position >> 16) as i16, position as u16)
 }
 
-/// Rounds to the value that parameter 198 takes: the nearest multiple of 64, away from 0 in a tie (`U`); `None` beyond
+/// Rounds to a value that parameter 198 accepts: the nearest multiple of 64, away from 0 in a tie (`U`). `None` beyond
 /// 32 bits.
 pub fn nearest_reference(position: i32) -> Option<i32> {
     const GRAIN: i64 = 64;

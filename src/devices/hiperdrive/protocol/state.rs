@@ -8,36 +8,36 @@ use super::control_word::{ControlBit, ControlWord};
 /// State according to the status word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum State {
-    /// Control of the drive is not requested.
+    /// Control of the drive has not been requested.
     NotReady,
-    /// Control is requested.
+    /// Control has been requested.
     Ready,
-    /// The drive is on.
+    /// The drive is switched on.
     Operational,
     /// The drive may move.
     Enabled,
-    /// The drive moves.
+    /// The drive is moving.
     Moving,
-    /// A fault occurred.
+    /// A fault has occurred.
     Fault,
-    /// A fault was acknowledged.
+    /// A fault has been acknowledged.
     Locked,
 }
 
-/// Event that causes a transition.
+/// An event that causes a transition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Trigger {
     /// A bit of the control word is set.
     Set(ControlBit),
     /// A bit of the control word is clear.
     Clear(ControlBit),
-    /// A bit falls while another one is set, or clear.
+    /// A bit falls while another bit, if any, has the given level.
     Falls(ControlBit, Option<(ControlBit, bool)>),
     /// A job or a run starts.
     Starts,
     /// The motion has ended.
     Ends,
-    /// A fault occurred, or a connection was lost.
+    /// A fault has occurred, or a connection was lost.
     Fails,
 }
 
@@ -52,7 +52,7 @@ pub struct Transition {
     pub to: State,
     /// The control word that causes the transition, if a single word does.
     pub word: Option<ControlWord>,
-    /// If set, the manual does not define it.
+    /// Whether the transition is assumed because the manual does not define it.
     pub assumed: bool,
 }
 
@@ -67,7 +67,7 @@ const fn assumed(from: &'static [State], trigger: Trigger, to: State, word: Cont
     Transition { from, trigger, to, word: Some(word), assumed: true }
 }
 
-/// All transitions. The first one that applies takes effect.
+/// All transitions. The first applicable one takes effect.
 pub const TRANSITIONS: [Transition; 14] = [
     row(&[NotReady], Set(ControlBit::Control), Ready, Some(ControlWord::READY)),
     row(&[Ready, Operational, Enabled, Moving], Clear(ControlBit::Control), NotReady, Some(ControlWord::OFF)),
@@ -107,8 +107,8 @@ impl State {
         TRANSITIONS.iter().filter(move |row| row.from.contains(&self))
     }
 
-    /// Returns the state after the word `now` follows `before`: at most one step. Motion does not depend on the word
-    /// alone.
+    /// Returns the state after the control word changes from `before` to `now`: at most one step. The word alone does
+    /// not determine motion.
     pub fn after(self, before: ControlWord, now: ControlWord) -> State {
         let applies = |trigger: Trigger| match trigger {
             Set(bit) => now.has(bit),
@@ -122,12 +122,12 @@ impl State {
         self.transitions().find(|row| applies(row.trigger)).map_or(self, |row| row.to)
     }
 
-    /// Returns the state after an event that is not a control word.
+    /// Returns the state after an event other than a control word.
     pub fn by(self, trigger: Trigger) -> State {
         self.transitions().find(|row| row.trigger == trigger).map_or(self, |row| row.to)
     }
 
-    /// Returns whether the drive's own keys move it in this state.
+    /// Returns whether the keys on the drive can move it in this state.
     pub const fn obeys_keys(self) -> bool {
         matches!(self, NotReady | Ready | Fault | Locked)
     }

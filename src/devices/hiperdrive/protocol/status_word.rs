@@ -10,13 +10,13 @@ pub struct StatusWord(u16);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum StatusBit {
-    /// Control of the drive is requested.
+    /// Control of the drive has been requested.
     Ready = 0,
-    /// The drive is on.
+    /// The drive is switched on.
     Operational = 1,
     /// The drive may move.
     OperationEnabled = 2,
-    /// A fault occurred since the drive was operational.
+    /// A fault has occurred since the drive was operational.
     Fault = 3,
     /// The drive was detected or requested.
     NoOff2 = 4,
@@ -24,7 +24,7 @@ pub enum StatusBit {
     NoOff3 = 5,
     /// Locked after a fault or a falling edge of control bit 0.
     SwitchOnLock = 6,
-    /// Fault in any state.
+    /// A fault is present in any state.
     Warning = 7,
     /// The manual states both that a following error sets it and that one clears it (reference 8.1): use error 8203 and
     /// bit 3 instead.
@@ -37,7 +37,7 @@ pub enum StatusBit {
     ReferenceSet = 11,
     /// Control bit 6 of the last job.
     SetpointAcknowledged = 12,
-    /// The drive stands still.
+    /// The drive is at standstill.
     StandingStill = 13,
     /// The current was too high.
     OverCurrent = 14,
@@ -95,7 +95,7 @@ impl StatusBit {
 }
 
 impl StatusWord {
-    /// 0A30h: a drive that was detected and does not stand still.
+    /// 0A30h: a detected drive that is not at standstill.
     pub const FOUND: StatusWord = StatusWord(0x0A30);
 
     /// Creates a status word from a received value.
@@ -129,7 +129,7 @@ impl StatusWord {
         self.has(StatusBit::NoOff2)
     }
 
-    /// Returns whether the word can come from a drive: bits 4, 5, 9 and 11 rise and fall together.
+    /// Returns whether a drive can send this word: bits 4, 5, 9 and 11 rise and fall together.
     pub const fn is_plausible(self) -> bool {
         let found = self.0 & StatusWord::FOUND.0;
         found == 0 || found == StatusWord::FOUND.0

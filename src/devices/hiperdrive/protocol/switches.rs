@@ -1,5 +1,5 @@
-//! The address switches S1 and S2, read when the device is switched on (reference 1). S3 selects the drive that the
-//! RS485 LED stands for.
+//! Address switches S1 and S2, read when the device is switched on (reference 1). S3 selects the drive to which the
+//! RS485 LED refers.
 
 use core::net::Ipv4Addr;
 
@@ -12,14 +12,14 @@ pub enum AddressSwitch {
     Fixed(Ipv4Addr),
     /// 97: the stored address. Turned to 97 at runtime, the device also stores its present address.
     Stored,
-    /// 98.
+    /// 98: BOOTP.
     Bootp,
-    /// 99.
+    /// 99: DHCP.
     Dhcp,
 }
 
 impl AddressSwitch {
-    /// Parses the two digits; `None` above 99.
+    /// Parses the two digits, or returns `None` above 99.
     pub const fn parse(number: u8) -> Option<Self> {
         let source = match number {
             0 => AddressSwitch::Object,

@@ -3,7 +3,7 @@
 
 use super::scaling::{Family, PositionScale};
 
-/// Turns of a drive and the scale of its steps. An unknown value sets no limit.
+/// Turns of a drive and the scale of its steps. Unknown values impose no limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Travel {
     /// Family, which determines the turns.
@@ -12,10 +12,10 @@ pub struct Travel {
     pub scale: Option<PositionScale>,
 }
 
-/// Limit of a number of steps from 0.
+/// Limit of a number of steps, relative to 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
-    /// Position: as many turns as the drive has either way (158, 160, 198).
+    /// Position: the number of turns of the drive in either direction (158, 160, 198).
     Position,
     /// Step: no longer than from one end of the turns to the other (170, 176; `D`: the manual gives only 32 bits, and a
     /// longer step ends outside from any start).
@@ -26,7 +26,7 @@ impl Travel {
     /// Travel of an unknown drive.
     pub const UNKNOWN: Travel = Travel { family: None, scale: None };
 
-    /// Returns the maximum whole steps either way; `None` if turns or scale are not known.
+    /// Returns the maximum whole steps in either direction, or `None` if turns or scale are unknown.
     pub fn steps(self, reach: Reach) -> Option<i64> {
         let turns = self.family?.most_turns();
         Some(self.scale?.whole_steps(match reach {

@@ -1,4 +1,4 @@
-//! Parameter values in CIP: numbers of their type's length, and texts (reference 7).
+//! Parameter values in CIP: numbers of the length of their type, and strings (reference 7).
 
 /// Type of a parameter value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,50 +15,50 @@ pub enum Kind {
     U32,
     /// Signed, 32 bits.
     I32,
-    /// ASCII text.
+    /// ASCII string.
     Text,
 }
 
-/// Parameter value.
+/// A parameter value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
-    /// Number of any numeric kind.
+    /// A number of any numeric kind.
     Number(i64),
-    /// Value of [`Kind::Text`].
+    /// A string.
     Text(String),
 }
 
-/// Reason why data or a value do not match a kind.
+/// The reason why data or a value do not match a kind.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ValueError {
-    /// The length is not that of the kind.
+    /// The length does not match the kind.
     #[error("a value of {got} bytes instead of {expected}")]
     Length {
-        /// Length of the kind.
+        /// Required length in bytes.
         expected: usize,
-        /// Actual length.
+        /// Actual length in bytes.
         got: usize,
     },
-    /// The kind cannot represent the number.
+    /// The number exceeds the range of the kind.
     #[error("{number} is not within {low} to {high}")]
     Number {
         /// Rejected number.
         number: i64,
-        /// Minimum.
+        /// Minimum value.
         low: i64,
-        /// Maximum.
+        /// Maximum value.
         high: i64,
     },
-    /// A number for a parameter that is a text.
+    /// A number was given for a string parameter.
     #[error("a text is expected, not a number")]
     NumberForText,
-    /// A text for a parameter that is a number.
+    /// A string was given for a numeric parameter.
     #[error("a number is expected, not a text")]
     TextForNumber,
 }
 
 impl Kind {
-    /// Returns the bytes of a number; `None` for texts.
+    /// Returns the length of a number in bytes, or `None` for strings.
     pub const fn length(self) -> Option<usize> {
         match self {
             Kind::U8 | Kind::I8 => Some(1),
@@ -68,7 +68,7 @@ impl Kind {
         }
     }
 
-    /// Returns the minimum and maximum; `None` for texts.
+    /// Returns the minimum and maximum value, or `None` for strings.
     pub fn limits(self) -> Option<(i64, i64)> {
         let limits = match self {
             Kind::U8 => (0, u8::MAX.into()),
@@ -82,8 +82,8 @@ impl Kind {
         Some(limits)
     }
 
-    /// Parses a value. A text may be characters only or preceded by its length (`U`); trailing zeros and blanks are
-    /// removed, and a non-ASCII byte becomes a question mark.
+    /// Parses a value. A string may consist of characters only or be preceded by its length (`U`); trailing zeros and
+    /// blanks are removed, and non-ASCII bytes become question marks.
     ///
     /// # Errors
     /// Returns [`ValueError::Length`] if a number has the wrong length.
@@ -121,8 +121,8 @@ impl Kind {
     }
 }
 
-/// Parses a nominal value (parameters 126 to 129): a number and its decimals, one if it is preceded by an `A`, since it is
-/// in tenths then (manual 6.2).
+/// Parses a nominal value (parameters 126 to 129) and its number of decimals: one if preceded by an `A`, because the
+/// value is then in tenths (manual 6.2).
 pub fn nominal(text: &str) -> Option<(f64, usize)> {
     let (digits, by, decimals) = text.strip_prefix('A').map_or((text, 1.0, 0), |tenths| (tenths, 10.0, 1));
     digits.parse::<u32>().ok().map(|number| (f64::from(number) / by, decimals))

@@ -41,7 +41,7 @@ pub const VARIANTS: [VariantRow; 13] = [
 impl Variant {
     /// 0: no drive.
     pub const NONE: Variant = Variant(0);
-    /// FFFFh: a variant that is in no table.
+    /// FFFFh: a variant not listed in the manual.
     pub const OTHER: Variant = Variant(0xFFFF);
 
     /// Creates a variant from any number.
@@ -54,7 +54,7 @@ impl Variant {
         self.0
     }
 
-    /// Returns the table row; `None` for no drive and for an unknown variant.
+    /// Returns the table row, or `None` if no drive is connected or the variant is unknown.
     pub fn row(self) -> Option<&'static VariantRow> {
         VARIANTS.iter().find(|row| row.variant == self)
     }

@@ -1,4 +1,5 @@
-//! The spindle: it accelerates, brakes, and hits obstacles. Units are steps, of which a turn has 65536, and milliseconds.
+//! The spindle: it accelerates, brakes, and hits obstacles. Units are milliseconds and steps, of which a turn has
+//! 65536.
 
 use std::time::Duration;
 
@@ -12,11 +13,9 @@ pub struct SpindleLoad {
     pub wall_above: Option<f64>,
     /// Degrees Celsius around the drive.
     pub ambient: f64,
-    /// Defect of the drive itself.
     pub defect: Option<Defect>,
 }
 
-/// Defect of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Defect {
     /// It does not stop at its target or at its limits.
@@ -67,12 +66,12 @@ impl AxisDemand {
 /// The outcome of a millisecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TickOutcome {
-    /// Moving.
     OnTheWay,
     /// At its target, or at rest as requested.
     There,
-    /// Blocked by an obstacle, below or above.
-    Held { above: bool },
+    Held {
+        above: bool,
+    },
 }
 
 /// Steps of a turn.
@@ -83,7 +82,6 @@ const TICK_S: f64 = 1e-3;
 const ACCELERATION: f64 = 350.0 / 60.0 * TURN;
 
 impl Axis {
-    /// Creates an axis at rest at this position.
     pub(super) const fn at(place: f64) -> Self {
         Axis { place, speed: 0.0 }
     }

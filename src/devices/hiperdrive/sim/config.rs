@@ -1,4 +1,4 @@
-//! The settings of virtual drives and their adapter or hub, as in the query of a `sim:` link:
+//! Settings of virtual drives and their adapter or hub in the query of a `sim:` link, such as
 //! `hub=4&drives=1,0,1&position=65536`. Nothing is opened here.
 
 use std::time::Duration;
@@ -32,7 +32,6 @@ parameters! {
         pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
         /// Load of the spindle: above 100 no drive can move it.
         load: u8 = SpindleLoad::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
-        /// The spindle is blocked where it is.
         blocked: bool = false, "blocked" => SWITCH;
         /// The drives do not stop at a target or a limit, turn the other way, or always set status bit 15.
         defect: Option<Defect> = None, "defect" => Maybe(Words(&[
@@ -79,7 +78,6 @@ impl Config {
         (self.volts * 10.0).round() as u16
     }
 
-    /// Returns the drive plugged into a place.
     pub(super) fn drive(&self, number: DriveNumber) -> Option<(Variant, SpindleLoad)> {
         let place = usize::from(number.get()) - 1;
         let plugged = self.plugged.as_ref().is_none_or(|places| places.get(place) == Some(&true));
@@ -120,7 +118,6 @@ fn name(text: &str) -> Option<String> {
     fits.then(|| text.to_owned())
 }
 
-/// Parses the places with a drive.
 fn places(text: &str, topology: Topology) -> Result<Vec<bool>, Refused> {
     let count = topology.drives();
     let place = |own: &str| match own.trim() {

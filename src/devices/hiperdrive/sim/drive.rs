@@ -1,9 +1,9 @@
-//! A virtual drive: the effects of control words, its motion and its faults (reference 2 to 5).
+//! A virtual drive: effects of control words, motion and faults (reference 2 to 5).
 //!
-//! Chosen here (`U`): words with reserved bits are ignored; with 0 % of speed or torque nothing starts, without an error;
-//! a drive that is not requested (152 = 0), or that S3 is set to, never leaves "not ready"; a target beyond the limits is
-//! fault 8503; a blocked drive fails after 200 ms (8300, 8301), one that is too weak after 500 ms (8203), one hotter than
-//! 80 °C at once (8202); a lost master is fault 8601; a moving drive that loses operation brakes as for a stop.
+//! Assumptions (`U`): words with reserved bits are ignored; at 0 % speed or torque nothing starts, without an error; a
+//! drive that is not requested (152 = 0), or that S3 is set to, never leaves "not ready"; a target beyond the limits is
+//! fault 8503; a blocked drive fails after 200 ms (8300, 8301), one that is too weak after 500 ms (8203), one hotter
+//! than 80 °C at once (8202); a lost master is fault 8601; a moving drive that loses operation brakes as for a stop.
 
 use std::collections::VecDeque;
 
@@ -18,7 +18,6 @@ use crate::devices::hiperdrive::protocol::{
 };
 use crate::units::Moment;
 
-/// A virtual drive.
 #[derive(Clone, Debug)]
 pub struct Drive {
     pub(super) variant: Variant,
@@ -106,13 +105,11 @@ impl Drive {
         }
     }
 
-    /// Returns the process data at a moment.
     pub fn actual(&mut self, now: Moment) -> Actual {
         self.advance(now);
         Actual { status: self.status(), speed: self.speed_scale().speed(self.axis.rpm()), position: self.position() }
     }
 
-    /// Changes the load.
     pub fn set_load(&mut self, now: Moment, load: SpindleLoad) {
         self.advance(now);
         self.load = load;
@@ -130,7 +127,6 @@ impl Drive {
         self.fails(code);
     }
 
-    /// Takes a control word with its setpoints.
     pub fn command(&mut self, now: Moment, out: OutData) {
         self.advance(now);
         let Ok(control) = out.control() else { return };
@@ -150,7 +146,6 @@ impl Drive {
         self.allowed = allowed;
     }
 
-    /// Restarts with its present parameters.
     pub(super) fn reset(&mut self, now: Moment) {
         self.advance(now);
         self.axis.halt();
@@ -224,7 +219,6 @@ impl Drive {
         }
     }
 
-    /// Acknowledges faults.
     pub(super) const fn forgive(&mut self) {
         self.faults = 0;
         self.over_current = false;
@@ -242,7 +236,6 @@ impl Drive {
         self.memory.get(number).and_then(|value| u16::try_from(value).ok()).unwrap_or_default()
     }
 
-    /// Returns the axis' place of a position.
     fn place_of(&self, position: i32) -> f64 {
         f64::from(position) / self.scale().steps_per_turn() * TURN - self.offset
     }
@@ -313,7 +306,6 @@ impl Drive {
         wanted.with(self.load.defect, self.axis.place())
     }
 
-    /// Returns the percentages of speed and torque.
     const fn percents(&self) -> (u8, u8) {
         match self.motion {
             Motion::Job { jog: Some(Jog { speed, torque }), .. } => (speed, torque),

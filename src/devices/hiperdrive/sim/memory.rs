@@ -1,4 +1,4 @@
-//! Writable parameters: their present values, and those stored without supply.
+//! Writable parameters: present values and those that survive a power cycle.
 
 use std::collections::BTreeMap;
 
@@ -39,7 +39,6 @@ impl Memory {
         }
     }
 
-    /// Sets and saves a value.
     pub(super) fn preset(&mut self, number: u16, value: i64) {
         self.set(number, value);
         self.save();

@@ -1,17 +1,18 @@
-//! Virtual drives behind an adapter or a hub (reference of HIPERDRIVE): the effects of process data and parameters, and the
-//! EtherNet/IP target in front of them, in virtual time. What the manual leaves open (`U`) follows one documented choice.
+//! Virtual drives behind an adapter or a hub (HIPERDRIVE reference): effects of process data and parameters, and the
+//! EtherNet/IP target in front of them, in virtual time. Where the manual is silent (`U`), the assumption made is
+//! documented.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
-//! | `axis` | the spindle: speed and place, millisecond by millisecond, with what holds it |
-//! | `memory` | parameters that can be written, and what of them survives the supply |
-//! | `drive` | a drive: its state, its motion, its faults |
-//! | `parameters` | what reading and writing a drive's parameters does |
-//! | `write_fault` | writes that are refused, or cut off in the middle |
-//! | `station` | the drives together: process data, save and reset, the lost master |
+//! | `axis` | the spindle: speed and position in steps of one millisecond, and obstacles |
+//! | `memory` | writable parameters, and which of them survive a power cycle |
+//! | `drive` | a drive: its state, motion and faults |
+//! | `parameters` | reading and writing the parameters of a drive |
+//! | `write_fault` | writes that are refused or interrupted |
+//! | `station` | the drives together: process data, save and reset, loss of the master |
 //! | `words` | answers to parameter words |
 //! | `config` | the settings of a `sim:` link |
-//! | `target` | frames and packets of EtherNet/IP in front of a station |
+//! | `target` | EtherNet/IP frames and packets in front of a station |
 
 mod axis;
 mod config;

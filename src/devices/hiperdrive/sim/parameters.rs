@@ -1,7 +1,7 @@
-//! Reading and writing of a drive's parameters.
+//! Reading and writing of the parameters of a drive.
 //!
-//! Chosen here (`U`): a refused value is stored as error 8501, as in the manual, and is a fault if the drive is
-//! operational; 198 is accepted only while the drive stands still.
+//! Assumptions (`U`): a refused value is stored as error 8501, as in the manual, and is a fault if the drive is
+//! operational; 198 is accepted only at standstill.
 
 use super::axis::TURN;
 use super::drive::Drive;
@@ -20,13 +20,11 @@ pub enum Refused {
     Unknown,
     /// Read-only parameter.
     ReadOnly,
-    /// Value out of range.
     Value,
     State,
 }
 
 impl Refused {
-    /// Returns the status of CIP.
     pub const fn status(self) -> GeneralStatus {
         match self {
             Refused::Unknown => GeneralStatus::NO_ATTRIBUTE,

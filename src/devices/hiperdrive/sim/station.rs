@@ -1,9 +1,9 @@
-//! All drives of an adapter or a hub: process data, parameters, saving, the lost master.
+//! All drives of an adapter or a hub: process data, parameters, saving, loss of the master.
 //!
-//! Chosen here (`U`): a connection that ends, for whatever reason, is a lost master; a packet with an idle header stops as
-//! control words of 0 do; during a save or a reset, 47 is 1 and nothing is written; a reset drive has its saved parameters;
-//! of an empty place only 120 and 152 can be read, both 0; a text is read in elements of four characters, the first one
-//! lowest.
+//! Assumptions (`U`): a connection that ends for any reason is a lost master; a packet with an idle header stops like
+//! control words of 0; during a save or a reset, 47 is 1 and nothing is written; a reset drive has its saved
+//! parameters; in an empty port only 120 and 152 can be read, both 0; a string is read in elements of four characters,
+//! the first one lowest.
 
 use std::time::Duration;
 
@@ -23,7 +23,6 @@ use crate::units::Moment;
 /// The parts of a station.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
-    /// Places for drives.
     pub topology: Topology,
     /// The drives, from the first place on.
     pub drives: Vec<Option<(Variant, SpindleLoad)>>,
@@ -63,11 +62,9 @@ struct NamePlate {
 /// The possible ends of a save.
 #[derive(Clone, Copy, Debug, Default)]
 struct Store {
-    /// Number of saves.
     count: u32,
     /// Number of the save in which the supply is lost, counted from 1.
     dies_in: Option<u32>,
-    /// Then.
     dies_at: Option<Moment>,
     /// The supply was lost.
     dead: bool,
@@ -167,7 +164,6 @@ impl Station {
         self.hindered.is_cut_off()
     }
 
-    /// Returns a drive that is plugged in.
     pub fn drive(&mut self, number: DriveNumber) -> Option<&mut Drive> {
         self.drives.get_mut(usize::from(number.get()) - 1)?.as_mut()
     }
@@ -178,7 +174,6 @@ impl Station {
         self.master = Some(Master { timeout, heard: now });
     }
 
-    /// The connection ends.
     pub fn close(&mut self, now: Moment) {
         self.advance(now);
         if self.master.take().is_some() {
@@ -186,7 +181,6 @@ impl Station {
         }
     }
 
-    /// Returns whether a master has the cyclic connection.
     pub fn is_open(&mut self, now: Moment) -> bool {
         self.advance(now);
         self.master.is_some()
@@ -229,7 +223,6 @@ impl Station {
         self.present().for_each(|drive| drive.allow(position == 0));
     }
 
-    /// Switches the supply off and on.
     pub fn power_cycle(&mut self, now: Moment) {
         self.advance(now);
         self.memory.restart();

@@ -6,7 +6,6 @@ use crate::devices::hiperdrive::protocol::{Kind, ParameterNumber, Pkw, PkwError,
 use crate::units::Moment;
 
 impl Station {
-    /// Returns the answer to a parameter word.
     pub(super) fn answer(&mut self, now: Moment, request: Pkw) -> Pkw {
         let reply = |code: u16, value: u32| Pkw { pke: code << 12 | request.number(), ind: request.ind, pwe: value };
         let refused = |error: PkwError| reply(7, error.code());

@@ -27,7 +27,6 @@ impl ActiveWriteFault {
         self.is_cut_off
     }
 
-    /// A parameter is about to be written.
     pub(super) fn write(&mut self, number: ParameterNumber) -> Result<(), Refused> {
         match self.fault.filter(|(own, _)| *own == number) {
             Some((_, WriteFault::Refused)) => return Err(Refused::State),

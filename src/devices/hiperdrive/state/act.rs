@@ -1,5 +1,5 @@
-//! The user's actions on a device and its drives: edits and motion take effect at once, everything else is a job of the
-//! session or a task.
+//! Actions of the user on a device and its drives: edits and motion take effect at once, everything else is a job of
+//! the session or a task.
 
 use std::time::Duration;
 

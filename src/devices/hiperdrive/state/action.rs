@@ -15,38 +15,30 @@ use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Length, RunEn
 pub enum HiperdriveAction {
     /// Read states and errors.
     ReadStatus,
-    /// The device check.
     Check,
-    /// Show another drive.
     SelectDrive(DriveNumber),
     /// Record a temperature beside the position, or stop recording it.
     Watch(Temperature, bool),
-    /// Show positions in this.
     SetMeasure(Measure),
     /// The drive turns a spindle of this pitch, or none.
     SetPitch(DriveNumber, Option<Length>),
     /// Change something that is not written yet.
     Edit(Box<Edit>),
-    /// Show the effect of a change.
     Plan(Box<Change>),
     /// Open the cyclic connection. This moves nothing.
     Take,
-    /// Stop all drives and close it.
     Give,
     /// Move the drive that is shown, or lead it to another state.
     Drive(Motor),
     /// Set up the axis of the drive that is shown.
     Axis(axis::AxisAction),
-    /// Save the profile.
     Save(PathBuf),
 }
 
 /// A motion request of the user for the drive that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motor {
-    /// Another state.
     Lead(Goal),
-    /// Acknowledge the fault of a drive.
     Acknowledge,
     JogPress {
         direction: Direction,
@@ -69,19 +61,16 @@ pub enum Motor {
         /// In scaled steps.
         by: i32,
     },
-    /// Move to a position.
     Move {
         /// In scaled steps.
         target: i32,
     },
-    /// Turning in speed mode.
     Run {
         direction: Direction,
         end: RunEnd,
     },
     /// The job waits.
     Pause,
-    /// Resume the job.
     Resume,
     Stop,
     /// Jog like this.

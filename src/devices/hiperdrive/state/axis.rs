@@ -1,13 +1,13 @@
-//! The set-up of an axis as one run: from an unknown drive to limits in millimetres that have survived a loss of the
-//! supply. A state machine over what is read ([`DriveFacts`]) and what is to be done ([`DriveRequest`]); it does nothing itself, and
-//! no step continues before the drive confirms it.
+//! Axis set-up as one run: from an unknown drive to limits in millimetres that have survived a power cycle. A state
+//! machine between the facts that were read ([`DriveFacts`]) and the requests to the drive ([`DriveRequest`]); it
+//! performs no I/O, and no step continues before the drive confirms it.
 //!
-//! The results of the steps form a chain: each depends on facts of the drive (its scale, the pitch, the reference, the
-//! limits), and becomes void with them, together with all later results, whoever changed them. The step shown is
+//! The results of the steps form a chain: each depends on facts of the drive (scale, pitch, reference, limits) and
+//! becomes void when they change, together with all later results, whoever changed them. The displayed step is
 //! independent of that: it changes only when the user presses a button.
 //!
-//! Parameters are tried: they are written and read back, but not saved. Saving is a step of its own, the last but one. The
-//! manual does not guarantee that unsaved values are lost without supply, so the previous ones are written back.
+//! Parameters are tried first: they are written and read back, but not saved. Saving is a separate step, the last but
+//! one. The manual does not guarantee that unsaved values are lost at power-off, so the previous ones are written back.
 
 mod act;
 mod differences;
@@ -51,7 +51,6 @@ pub enum AxisStep {
     Jog,
     /// The present position gets its number: parameter 198.
     Reference,
-    /// The lower limit is taught.
     Lower,
     /// The upper limit is taught, and both are written: parameters 158 and 160.
     Upper,
@@ -59,7 +58,6 @@ pub enum AxisStep {
     Test,
     /// Everything is saved: 47 = 1.
     Save,
-    /// The supply is switched off and on.
     PowerCycle,
 }
 
@@ -82,7 +80,6 @@ pub enum Reached {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     Done,
-    /// Cancelled by the user.
     Cancelled,
 }
 
@@ -91,7 +88,6 @@ pub enum End {
 pub enum AxisChange {
     /// A parameter, by the number of drive 1.
     Parameter(u16, i64),
-    /// The position of a place.
     Position(i32),
 }
 
@@ -108,7 +104,6 @@ pub struct RunSummary {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Confirmed {
     scale: Option<PositionScale>,
-    /// The limits that were shown.
     seen: (i32, i32),
     /// The same, or the ones taught and written since by a reviewed plan.
     agreed: (i32, i32),
@@ -122,15 +117,12 @@ pub struct Axis {
     drive: DriveNumber,
     /// The step that is shown.
     step: AxisStep,
-    /// The entered text.
     entries: Entries,
-    /// The confirmed results.
     chain: StepOutcomes,
     confirmed: Option<Confirmed>,
     travel: Travel,
     /// The position that was set, and the origin of positions since then.
     reference: Option<(i32, Origin)>,
-    /// One that is written, and to be read.
     sets: Option<i32>,
     standstill: Standstill,
     /// Number of jumps of the position at a standstill.
@@ -145,9 +137,7 @@ pub struct Axis {
     changes: Vec<AxisChange>,
     /// Set if only some of the changes may have been made.
     partly: bool,
-    /// The values written back.
     returned: Vec<(u16, i64)>,
-    /// The pending write.
     asked: Option<DriveRequest>,
     over: Option<RunSummary>,
 }
@@ -219,7 +209,6 @@ impl Axis {
         }
     }
 
-    /// Returns the drive that it sets up.
     pub const fn drive(&self) -> DriveNumber {
         self.drive
     }
@@ -229,7 +218,6 @@ impl Axis {
         self.step
     }
 
-    /// Returns the entered text.
     pub const fn entries(&self) -> &Entries {
         &self.entries
     }
@@ -239,7 +227,6 @@ impl Axis {
         self.over.as_ref().map(|over| over.end)
     }
 
-    /// Returns the end, with its time.
     pub const fn over(&self) -> Option<&RunSummary> {
         self.over.as_ref()
     }
@@ -259,12 +246,10 @@ impl Axis {
         self.partly
     }
 
-    /// Returns whether all changes are saved.
     pub const fn is_saved(&self) -> bool {
         self.saved
     }
 
-    /// Returns whether a write for it is running.
     pub const fn is_writing(&self) -> bool {
         self.asked.is_some()
     }
@@ -274,22 +259,18 @@ impl Axis {
         self.travel
     }
 
-    /// Returns the position that was set.
     pub fn reference(&self) -> Option<i32> {
         self.reference.map(|(position, _)| position)
     }
 
-    /// Returns the outcome of a test move.
     pub fn outcome(&self, place: TestTarget) -> Option<Outcome> {
         self.outcomes.get(place as usize).copied().flatten()
     }
 
-    /// Returns the running test move.
     pub fn going(&self) -> Option<TestTarget> {
         self.going.map(|(place, ..)| place)
     }
 
-    /// Returns the outcome of the supply test.
     pub const fn power(&self) -> Option<Power> {
         self.power
     }

@@ -1,4 +1,4 @@
-//! The drives of a session among those that stop when the program ends.
+//! Stops the drives of a session when the program ends.
 
 use crate::app::Brake;
 use crate::devices::hiperdrive::jobs::Motion;

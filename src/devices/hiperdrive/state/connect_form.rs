@@ -1,4 +1,4 @@
-//! The connection form of a HIPERDRIVE, and its link. Nothing is opened here.
+//! Connection form of a HIPERDRIVE and its link. Nothing is opened here.
 
 use super::discovery::DiscoveryFinder;
 use crate::app::Text;
@@ -14,24 +14,18 @@ use crate::parameter::{Entry, Parameters as _};
 /// Kind of connection to the drives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HiperdriveLinkKind {
-    /// Virtual drives in this program.
     #[default]
     Virtual,
-    /// Over the network.
     Network,
-    /// A recorded trace.
     Replay,
 }
 
 /// The topology of the virtual device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VirtualHub {
-    /// An adapter with its drive.
     #[default]
     Adapter,
-    /// A hub with four places.
     Four,
-    /// A hub with eight places.
     Eight,
 }
 
@@ -41,11 +35,9 @@ pub enum VirtualHub {
 pub struct HiperdriveForm {
     pub kind: HiperdriveLinkKind,
     pub hub: VirtualHub,
-    /// Name or address of the device.
     pub host: String,
     /// TCP port; empty: 44818.
     pub tcp_port: String,
-    /// The recording.
     pub file: String,
     /// Process data have the high byte first.
     pub big_endian: bool,
@@ -61,7 +53,6 @@ const BIG_ENDIAN: (&str, &str) = ("order", "big");
 const PORT: &str = "44818";
 
 impl VirtualHub {
-    /// Returns the word in a link.
     const fn word(self) -> Option<&'static str> {
         match self {
             VirtualHub::Adapter => None,

@@ -1,4 +1,4 @@
-//! Discovery in this network: a broadcast request, with replies within a second, while the window keeps running.
+//! Discovery in the network: a broadcast request, with replies within a second while the window keeps running.
 
 use std::fmt;
 use std::net::Ipv4Addr;
@@ -25,15 +25,11 @@ pub struct Discovery {
     pub found: Option<Result<Vec<FoundDevice>, Text>>,
 }
 
-/// Device that has replied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FoundDevice {
-    /// Address of the reply.
     pub address: Ipv4Addr,
-    /// Port of explicit messages.
     pub port: u16,
     pub name: String,
-    /// Serial number from the identity object.
     pub serial_number: u32,
     /// Set if its vendor is the maker of HIPERDRIVE.
     pub is_hiperdrive: bool,
@@ -58,7 +54,6 @@ impl Discovery {
         self.found.is_none()
     }
 
-    /// Returns the devices that have answered.
     pub fn devices(&self) -> &[FoundDevice] {
         match &self.found {
             Some(Ok(found)) => found,
@@ -96,12 +91,10 @@ fn ask_all() -> Result<Vec<DiscoveredDevice>, Error> {
 /// Discovers devices on this network.
 #[derive(Default)]
 pub struct DiscoveryFinder {
-    /// The request, and its replies.
     pub discovery: Option<Discovery>,
 }
 
 pub enum DiscoveryAction {
-    /// Broadcast a discovery request.
     Discover,
     /// Fill in a device that replied; the Connect button connects it.
     Choose(usize),

@@ -1,4 +1,4 @@
-//! Edits of a device's parameters, kept over a crash.
+//! Parameter edits that survive a crash.
 
 use super::staged::SavedEdit;
 use super::unit::Unit;
@@ -10,7 +10,6 @@ use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Document;
 use crate::store::DeviceKey;
 
-/// The edits by number.
 pub(crate) type Edits = Vec<SavedEdit>;
 
 impl HasSession for Unit {

@@ -1,4 +1,4 @@
-//! Events of the line to a device: results of jobs, positions of drives, and loss.
+//! Events from the line: results of jobs, positions of drives, and loss of the connection.
 
 use std::time::Duration;
 
@@ -37,9 +37,7 @@ const fn has_failed(state: State) -> bool {
 
 /// The part of a session outside its thread.
 pub struct DriveHandle {
-    /// Handle that moves its drives.
     pub(super) motion: Motion,
-    /// The virtual device.
     pub(super) target: Option<Target>,
 }
 
@@ -102,7 +100,6 @@ impl Unit {
         }
     }
 
-    /// Polls the drive that is shown.
     pub(super) fn watch(&mut self, services: &mut Services) {
         if self.watched != self.drive()
             && self.session.is_ready()

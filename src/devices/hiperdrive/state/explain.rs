@@ -1,4 +1,4 @@
-//! Texts of HIPERDRIVE: errors of jobs, names of states, bits, errors and parameters, and how a motion ended.
+//! Texts for HIPERDRIVE: job errors, names of states, bits, errors and parameters, and outcomes of motion.
 
 mod check;
 mod entry;

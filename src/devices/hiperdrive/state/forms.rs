@@ -1,4 +1,4 @@
-//! Numbers entered for a drive, and the values or edits that they mean.
+//! Parsing of numbers entered for a drive into values or edits.
 
 use super::rows::Row;
 use super::ruler::{Measure, PositionRangeError};

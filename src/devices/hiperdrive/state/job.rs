@@ -1,11 +1,10 @@
-//! Texts of jobs.
+//! Job names for display.
 
 use crate::app::Text;
 use crate::devices::hiperdrive::jobs::HiperdriveJob;
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// Returns its name in the list of jobs.
 pub(super) fn words(job: &HiperdriveJob) -> Text {
     match job {
         HiperdriveJob::Hello | HiperdriveJob::Identify => TEXTS.text("hd_job.identify"),

@@ -1,4 +1,4 @@
-//! The kind HIPERDRIVE for the studio, before there is a device.
+//! HIPERDRIVE as a kind of device for the studio, before a device is open.
 
 use super::staged::Staged;
 use super::{HiperdriveForm, Unit};

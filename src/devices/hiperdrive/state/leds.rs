@@ -1,4 +1,4 @@
-//! The meaning of the LEDs: the user selects the visible states, and sees their meaning and the remedy. Requires no device.
+//! Meaning of the LEDs: the user selects the visible states and sees their meaning and remedy. Requires no device.
 
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, LedSubject, PortLight, Topology};
@@ -15,7 +15,6 @@ pub struct Leds {
     pub drives: DriveLight,
     /// MS.
     pub module: BusLight,
-    /// NS.
     pub network: BusLight,
     pub port: PortLight,
 }
@@ -56,7 +55,6 @@ impl Led {
     /// All LEDs in drawing order.
     pub const ALL: [Led; 4] = [Led::Drives, Led::Bus(BusLamp::Module), Led::Bus(BusLamp::Network), Led::Port];
 
-    /// Returns the label printed beside the LED.
     pub const fn name(self) -> &'static str {
         match self {
             Led::Drives => "RS485",
@@ -89,7 +87,6 @@ impl Leds {
         }
     }
 
-    /// Changes an LED to its next possible state.
     pub fn click(&mut self, lamp: Led) {
         match lamp {
             Led::Drives => {

@@ -1,5 +1,5 @@
-//! The HIPERDRIVE tab: the known data of an adapter or a hub and its drives, the user's edits, and the motion of the
-//! drives. Complete without a window.
+//! State of the HIPERDRIVE tab: data known about an adapter or a hub and its drives, edits, and motion of the drives.
+//! Complete without a window.
 
 mod act;
 mod action;

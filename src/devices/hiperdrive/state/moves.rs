@@ -1,8 +1,9 @@
-//! The motion of the drives from the window: the held button, the running act, how the last act ended. The dead-man behind
-//! [`Motion`] alone decides what a drive is sent; this module sends its refreshes, and ends them at once when required.
+//! Motion of the drives requested in the window: the held button, the running act, and the outcome of the last one. The
+//! dead-man behind [`Motion`] alone decides what is sent to a drive; this module sends its refreshes and ends them at
+//! once when required.
 //!
-//! A jog is refreshed by the button that holds it, in every frame; a move, a step and a run by the frames themselves. A
-//! window that hangs refreshes nothing, and the drives stop 250 ms later.
+//! A jog is refreshed by its held button in every frame; a move, a step and a run by the frames themselves. A window
+//! that hangs refreshes nothing, and the drives stop 250 ms later.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -46,18 +47,15 @@ struct Act {
     kind: Kind,
     /// The drive moves by it, or has a job that waits.
     moves: bool,
-    /// Its end has been reported.
     is_reported: bool,
 }
 
 /// Kind of an act, which determines how it is refreshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// A button or a key that is held.
     Held,
     /// By every frame; it does not end by itself.
     Run,
-    /// Every picture.
     Other,
 }
 
@@ -97,7 +95,6 @@ impl Moves {
         self.motion = Some(motion);
     }
 
-    /// Ends the session with all motion.
     pub(super) fn end(&mut self) {
         self.stop();
         self.look();
@@ -128,7 +125,6 @@ impl Moves {
         self.look();
     }
 
-    /// Takes the drives' state, and their limits.
     pub(super) fn look(&mut self) {
         let Some(motion) = &self.motion else { return };
         let DrivesSnapshot { at, view, limits } = motion.glance();
@@ -218,7 +214,6 @@ impl Moves {
         self.act = Some(Act { kind: Kind::Other, ..act });
     }
 
-    /// Enables the way further out for one press.
     pub(super) fn free(&mut self, drive: DriveNumber, direction: Direction) {
         self.freed = Some((drive, direction));
     }
@@ -236,7 +231,6 @@ impl Moves {
         self.intend(drive, request, kind)
     }
 
-    /// Stops all drives, whatever moves them.
     pub(crate) fn stop(&mut self) {
         self.freed = None;
         if let Some(motion) = &self.motion {
@@ -323,7 +317,6 @@ impl Moves {
         }
     }
 
-    /// Returns the phase of a drive's motion.
     pub fn phase(&self, drive: DriveNumber) -> Option<Phase> {
         self.drive(drive).map(|own| own.phase)
     }
@@ -408,7 +401,6 @@ impl Moves {
         asked.or_else(|| busy.map(|own| own.number))
     }
 
-    /// Returns speed and torque of a jog.
     pub fn jog_effort(&self, drive: DriveNumber) -> Effort {
         self.jogs.get(&drive).copied().unwrap_or(Effort::JOG)
     }

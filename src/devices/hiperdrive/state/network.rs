@@ -1,5 +1,5 @@
-//! The network settings of a device: its TCP/IP object and the edited values, the effect of the switches S1 and S2, and the
-//! result at the next power-up (reference 1). Nothing is requested of the device here.
+//! Network settings of a device: its TCP/IP object, the edited values, the effect of switches S1 and S2, and the result
+//! at the next power-up (reference 1). Nothing is requested from the device here.
 
 use core::net::Ipv4Addr;
 
@@ -14,31 +14,24 @@ use crate::devices::hiperdrive::state::TEXTS;
 pub struct Form {
     /// Attribute 3.
     pub source: AddressSource,
-    /// The device's own.
     pub address: String,
-    /// Of its network.
     pub mask: String,
     /// To other networks; empty for none.
     pub gateway: String,
     /// Empty for none.
     pub name_servers: [String; 2],
-    /// The domain's name.
     pub domain: String,
 }
 
 /// Source of the address after the next power-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerUp {
-    /// Set by the switches.
     Fixed(Ipv4Addr),
     Stored(Ipv4Addr),
     /// A stored address is selected, but none is stored.
     NothingStored,
-    /// Assigned by a BOOTP server.
     Bootp,
-    /// Assigned by a DHCP server.
     Dhcp,
-    /// The device knows.
     Unknown(u8),
 }
 
@@ -48,12 +41,10 @@ pub struct Position {
     /// Digits of the switches: `0`, `1…96`.
     pub digits: &'static str,
     pub meaning: Text,
-    /// The present setting.
     pub is_now: bool,
 }
 
 impl Form {
-    /// Creates the form from the device's settings.
     pub fn of(settings: &NetworkSettings) -> Self {
         let own = &settings.interface;
         let text = |address: Ipv4Addr| if address.is_unspecified() { String::new() } else { address.to_string() };

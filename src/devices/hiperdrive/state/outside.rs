@@ -1,5 +1,5 @@
-//! A drive outside its limits: how far out, the direction back in, and the way further out that the user can enable for one
-//! press, because with a wrong reference it can be the only way.
+//! A drive outside its limits: how far outside, the direction back in, and the direction further out, which the user
+//! can enable for one press because a wrong reference may leave no other way.
 
 use super::unit::Unit;
 use crate::app::services::Services;
@@ -64,7 +64,6 @@ impl Unit {
         self.may_move(drive).is_ok() && self.is_blocked(drive, direction)
     }
 
-    /// Enables a blocked direction for one press.
     pub(super) fn free_outward(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
         if self.can_free(drive, direction) {
             return self.moves.free(drive, direction);

@@ -1,4 +1,4 @@
-//! The recording of the selected drive: its position, its measured speed, its target.
+//! Recording of the selected drive: position, measured speed and target.
 
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -31,7 +31,6 @@ pub struct Record {
 }
 
 impl Record {
-    /// Begins a session; earlier recordings stay.
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.last = None;
         self.track.begin(began);

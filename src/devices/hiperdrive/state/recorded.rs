@@ -1,4 +1,4 @@
-//! The draft as stored in users' files: it is read, and written unchanged.
+//! Drafts stored in users' files are read and written unchanged.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::hiperdrive::jobs::Hiperdrive;

@@ -1,4 +1,4 @@
-//! The exchange between a device's session and the settings about its drives.
+//! Exchange of stored data about drives between a session and the settings.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,6 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 /// The values last exchanged between a device's session and the settings.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Exchanged {
-    /// The values of the settings.
     kept: RememberedDrives,
     pitches: BTreeMap<u8, u64>,
     measure: Measure,

@@ -1,4 +1,4 @@
-//! The requests that a drive accepts at the moment, why not, and the state of the last one, as text.
+//! Requests that a drive accepts at present, the reasons against others, and the state of the last one.
 
 use super::action::Motor;
 use super::ruler::Measure;
@@ -102,7 +102,6 @@ impl Unit {
         Ok(())
     }
 
-    /// Checks whether a drive accepts this request now.
     pub(super) fn may(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
         let asks_target = match request {
             MotionRequest::Move { target, .. } => Some(target),
@@ -156,7 +155,6 @@ impl Unit {
         self.drives().into_iter().filter(moves).collect()
     }
 
-    /// Returns a position in the user's unit.
     pub fn place(&self, drive: DriveNumber, steps: i32) -> Text {
         let (value, decimals, unit) = self.measured(drive, steps);
         TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)

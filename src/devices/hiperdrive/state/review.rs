@@ -1,4 +1,4 @@
-//! The review of a write to a HIPERDRIVE: the permissions, warnings and costs of its plan.
+//! Review of a write to a HIPERDRIVE: permits, warnings and cost of its plan.
 
 use super::axis::words::millimetres;
 use super::network::PowerUp;
@@ -17,7 +17,6 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::profile::Plan;
 
-/// Review of a write.
 pub type Review = review::Review<Hiperdrive>;
 pub type ReviewState = review::ReviewState<Hiperdrive>;
 

@@ -1,4 +1,4 @@
-//! The parameters as rows of a table: value, allowed range, factory setting and edit of each.
+//! Parameters as table rows: value, allowed range, factory setting and edit of each.
 
 use super::ruler::Measure;
 use super::staged::is_editable;
@@ -40,7 +40,6 @@ pub struct Row {
     pub factory: String,
     /// The edited value; `None` if it cannot be edited, or is not.
     pub staged: Option<i64>,
-    /// The edited value differs from the present one.
     pub is_edited: bool,
     /// The value of the previous reading, if it differed.
     pub changed_from: Option<i64>,

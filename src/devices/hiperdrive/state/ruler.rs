@@ -17,12 +17,7 @@ pub struct Ruler {
 pub enum PositionRangeError {
     /// Does not fit into 32 bits: the minimum and maximum that do.
     #[error("a position is between {least} and {most}")]
-    Bits {
-        /// In the unit.
-        least: f64,
-        /// In the unit.
-        most: f64,
-    },
+    Bits { least: f64, most: f64 },
     /// Millimetres without a pitch.
     #[error("the spindle's pitch is not known")]
     NoPitch,

@@ -1,4 +1,4 @@
-//! The set-up of axes and the network of a device: the facts known for them, and the requests they make.
+//! Facts and requests of the axis set-up and the network settings of a device.
 
 use core::net::Ipv4Addr;
 use std::path::PathBuf;

@@ -1,9 +1,9 @@
-//! The values of an adapter or a hub (or a profile of one), and the edited ones beside them. Nothing is written to a device
-//! here; a plan is made from the difference.
+//! Values of an adapter or a hub (or a profile of one), and the edited ones. Nothing is written to a device here; a
+//! plan is made from the difference.
 //!
-//! Every edit creates a complete new state, to which an undo returns. Edits survive a new reading: changed values stay as
-//! edited, and all others follow the device, in earlier states as well. Values that were not read cannot be edited; earlier
-//! edits of them wait until they are read. A profile can gain values that it does not have.
+//! Every edit creates a complete new state, to which undo can return. Edits survive a new reading: edited values stay,
+//! and all others follow the device, in earlier states as well. Values that were not read cannot be edited; earlier
+//! edits of them wait until they are read. A profile can gain values that it did not have.
 
 mod edit;
 mod mark;
@@ -39,7 +39,6 @@ pub struct Staged {
     /// The values of the device or the profile; both or none.
     base: Option<Image>,
     wanted: Option<Image>,
-    /// The values of the previous reading.
     earlier: Option<Image>,
     history: History<Image>,
     /// Earlier edits of parameters that were not read yet.
@@ -55,7 +54,6 @@ pub(super) type Families = BTreeMap<DriveNumber, Family>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SavedEdit(pub u16, pub Option<i64>);
 
-/// Edited value that differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
     pub number: ParameterNumber,
@@ -152,7 +150,6 @@ impl Staged {
         (from != to).then_some(Differs { number, from, to })
     }
 
-    /// Returns all edited values that differ, by number.
     pub fn differences(&self) -> Vec<Differs> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let numbers: std::collections::BTreeSet<_> = base.values.keys().chain(wanted.values.keys()).copied().collect();

@@ -1,4 +1,5 @@
-//! The survey of a device: how it is taken over, updated by the drives' data, and compared with changes by other masters.
+//! The reading of a device: adopting it, updating it from the data of the drives, and detecting changes by other
+//! masters.
 
 use super::staged::is_editable;
 use super::unit::Unit;
@@ -133,7 +134,6 @@ impl Unit {
         counts.is_ok()
     }
 
-    /// Takes the position of a drive.
     pub(super) fn take_reading(&mut self, reading: DriveReading) {
         let before = self.actual(reading.drive).map(|own| own.status.state());
         self.readings.insert(reading.drive, reading);
@@ -172,7 +172,6 @@ impl Unit {
     }
 }
 
-/// Returns the editable part of a survey.
 fn image(survey: &Survey) -> Image {
     let editable = |(number, value): (&ParameterNumber, &Value)| match value {
         Value::Number(value) if number.row().is_some_and(is_editable) => Some((*number, *value)),

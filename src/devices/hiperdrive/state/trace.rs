@@ -1,4 +1,4 @@
-//! The meaning of the frames in the trace: which parameter is read or written, and why a device refuses.
+//! Meaning of frames in the trace: which parameter is read or written, and why a device refuses.
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
@@ -11,7 +11,6 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::link::{Direction, TraceEntry};
 
-/// Returns the meaning of a frame.
 pub(super) fn meaning(entry: &TraceEntry) -> Explained {
     let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
     let broken = |error| Explained::broken(explained::damage(&Damage::Packet(error)));

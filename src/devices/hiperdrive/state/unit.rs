@@ -1,5 +1,5 @@
-//! An open adapter or hub with its drives, or a profile of one: its known data, the user's edits, the running jobs, and the
-//! motion of the drives.
+//! An open adapter or hub with its drives, or a profile of one: known data, edits, running jobs, and motion of the
+//! drives.
 
 use std::collections::BTreeMap;
 
@@ -33,35 +33,27 @@ use crate::units::Moment;
 /// Adapter or hub with its drives, or a profile of one.
 pub struct Unit {
     pub session: Session<Hiperdrive>,
-    /// Everything that was read.
     pub survey: Option<Survey>,
     /// States and errors, as they were read last.
     pub status: Option<Status>,
     /// The last device check.
     pub check: Option<Vec<CheckLine>>,
-    /// The parameters and their edits.
     pub staged: Staged,
-    /// The recording of the drive that is shown.
     pub record: Record,
-    /// The recordings of the others.
     pub(super) records: BTreeMap<DriveNumber, Record>,
     /// Start of the session, to which the times of recordings refer.
     pub(super) began: Option<Zoned>,
     /// The drives as they are moved.
     pub moves: Moves,
-    /// Unit of the positions.
     pub measure: Measure,
     /// Why the last edit was refused.
     pub refusal: Option<Text>,
-    /// The virtual device of the session.
     pub target: Option<Target>,
     /// The temperatures of the device and of the shown drive are recorded beside its position.
     pub(super) watches_device: bool,
     pub(super) watches_drive: bool,
-    /// The drive that is shown.
     pub(super) drive: DriveNumber,
     pub(super) pitches: BTreeMap<DriveNumber, Length>,
-    /// Set-ups of axes that have begun.
     pub(super) axes: BTreeMap<DriveNumber, Axis>,
     /// The virtual device was switched off and on since it was read.
     pub(super) switched: bool,
@@ -143,7 +135,6 @@ impl Unit {
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
     }
 
-    /// Returns the IP address and its source.
     pub fn network(&self) -> Option<&Network> {
         self.survey.as_ref().map(|survey| &survey.network)
     }
@@ -156,7 +147,6 @@ impl Unit {
         }
     }
 
-    /// Returns the drive that is shown.
     pub fn drive(&self) -> DriveNumber {
         self.drive
     }
@@ -261,7 +251,6 @@ impl Unit {
         self.pitches.get(&drive).copied()
     }
 
-    /// Returns the scale of a drive's speed.
     pub fn speed_scale(&self, drive: DriveNumber) -> SpeedScale {
         let part = |number| self.number(drive, number).and_then(|value| u16::try_from(value).ok());
         let scale = part(SPEED_NUMERATOR)
@@ -295,7 +284,6 @@ impl Unit {
         self.limits(drive).filter(|_| self.moves.unconfirmed().contains(&drive))
     }
 
-    /// Returns the problems of the edited values.
     pub fn marks(&self) -> Vec<Mark> {
         self.staged.marks(|drive| self.actual(drive).map(|own| i64::from(own.position)))
     }

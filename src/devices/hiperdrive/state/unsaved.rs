@@ -1,5 +1,5 @@
-//! Values written to a device and not saved since: the previous value of each parameter. A device does not show its saved
-//! values, and an interrupted run may be from the previous day.
+//! Values written to a device and not saved since, with the previous value of each parameter. A device does not reveal
+//! its saved values, and an interrupted run may date from the previous day.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,6 @@ pub(super) struct Unsaved {
     before: BTreeMap<u16, i64>,
     /// Number of times the position of a drive was set by this program.
     set: BTreeMap<DriveNumber, u32>,
-    /// Drives whose position is being set.
     sets: Vec<DriveNumber>,
 }
 
@@ -67,7 +66,6 @@ impl Unsaved {
         &self.before
     }
 
-    /// Adds values remembered from an earlier start.
     pub(super) fn extend(&mut self, earlier: &BTreeMap<u16, i64>) {
         for (number, before) in earlier {
             self.before.entry(*number).or_insert(*before);

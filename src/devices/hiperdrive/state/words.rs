@@ -1,4 +1,4 @@
-//! Parameters in a table: values, units, the meaning of a number; and why an edit was refused.
+//! Parameter texts for the table: values, units, the meaning of a number, and why an edit was refused.
 
 use super::staged::{EditError, Mark};
 use crate::app::Text;
@@ -70,7 +70,6 @@ pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
     })
 }
 
-/// Returns why an edit was refused.
 pub fn refused(error: &EditError) -> Text {
     match error {
         EditError::NothingRead => TEXTS.text("hd_entry.nothing_read"),
@@ -82,7 +81,6 @@ pub fn refused(error: &EditError) -> Text {
     }
 }
 
-/// Returns the text of a problem.
 pub fn mark(mark: &Mark) -> Text {
     match mark {
         Mark::OutOfRange(error) => words::out_of_range(error),

@@ -1,4 +1,4 @@
-//! Writing to a device: the edits or a profile as a request, and its jobs.
+//! Writing to a device: edits or a profile as a request, and its jobs.
 
 use super::record::Record;
 use super::review::{Review, op_words};
@@ -61,7 +61,6 @@ impl WithMemory for Unit {
         }
     }
 
-    /// Lets go of everything that is held.
     fn before_review(&mut self) {
         self.moves.let_go();
     }

@@ -1,8 +1,8 @@
-//! The set-up of an axis as one run: the steps on the left, the selected step on the right, with its task, the position of
-//! the axis, and the findings.
+//! Axis set-up as one run: the steps on the left, and on the right the selected step with its task, the axis position
+//! and the findings.
 //!
-//! No clickable widget moves while a step is shown, whatever the drive reports: changing messages are below all of them.
-//! Only a press of the user changes the step.
+//! No clickable widget moves while a step is shown, whatever the drive reports: changing messages are below all of
+//! them. Only the user changes the step.
 
 mod content;
 
@@ -333,13 +333,11 @@ fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, end: End, actions
     });
 }
 
-/// Draws writing back the previous values.
 fn recall(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let word = say(theme, "hd_axis.recall");
     shown.button(ui, theme, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
 }
 
-/// Draws further notes.
 fn notes(ui: &mut Ui, theme: &Theme) {
     card(ui, theme, TEXTS.text("hd_axis.notes"), |ui| {
         for id in [

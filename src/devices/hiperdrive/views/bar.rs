@@ -1,4 +1,4 @@
-//! The bar above every page: the drives of a hub, the control, STOP and the note that it is no emergency stop.
+//! The bar above every page: drive selection of a hub, control, STOP, and the note that it is not an emergency stop.
 
 use egui::{RichText, Stroke, Ui, vec2};
 

@@ -1,4 +1,4 @@
-//! The connection form of HIPERDRIVE drives: virtual, or over the network, with discovery.
+//! Connection form for HIPERDRIVE drives: virtual, or over the network with discovery.
 
 use egui::Ui;
 

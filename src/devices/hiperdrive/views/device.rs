@@ -73,7 +73,6 @@ fn identity(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
     });
 }
 
-/// Draws the drives, place by place.
 fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_drives.title"), |ui| {
         let Some(identity) = unit.identity() else {

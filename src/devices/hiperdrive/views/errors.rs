@@ -1,4 +1,4 @@
-//! The diagnosis page: error buffer with causes and remedies, words of the drive, and the cyclic connection.
+//! The diagnosis page: error buffer with causes and remedies, control and status words, and the cyclic connection.
 
 use egui::{RichText, Ui};
 

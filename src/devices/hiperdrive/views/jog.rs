@@ -92,7 +92,6 @@ fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<&Text>) {
     });
 }
 
-/// Draws the two buttons that are held.
 pub(super) fn pads_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, enabled: bool, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     ui.horizontal(|ui| {

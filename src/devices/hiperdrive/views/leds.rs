@@ -1,4 +1,4 @@
-//! The meaning of the LEDs: drawn as they look, and clicked until they match the real ones.
+//! LED states, drawn as they look; clicking an LED cycles through its states until it matches the real one.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, RichText, Shape, Stroke, Ui, pos2, vec2};
 
@@ -9,7 +9,6 @@ use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{entry, folding_card, name, options, paragraph, severity};
 
-/// The picked LEDs.
 #[derive(Default)]
 pub(super) struct LedsUiState(Leds);
 
@@ -53,7 +52,6 @@ fn device(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
     }
 }
 
-/// Draws an LED with its meaning.
 fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     ui.horizontal_top(|ui| {
         lamp_ui(ui, theme, leds, lamp);

@@ -1,4 +1,4 @@
-//! The large display of a drive: its position, state, speed and target.
+//! The large display of a drive: position, state, speed and target.
 
 use egui::{RichText, TextStyle, TextWrapMode, Ui, WidgetText};
 

@@ -1,4 +1,4 @@
-//! The HIPERDRIVE tab: its pages, one per task, and above them the bar that is always visible.
+//! The HIPERDRIVE tab: one page per task, and above them the bar that is always visible.
 
 mod axis;
 mod bar;
@@ -32,18 +32,13 @@ use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// The drive's states, and its motion.
     #[default]
     Motion,
-    /// Every parameter.
     Parameters,
-    /// From a new drive to a saved axis.
     Axis,
     /// Errors, LEDs, the cyclic connection.
     Diagnosis,
-    /// Identity, and network.
     Device,
-    /// Profiles, backups and the logbook.
     Backups,
 }
 

@@ -1,4 +1,4 @@
-//! The states of the drive and its motion: by jogging, to a position, at a speed.
+//! The motion page: the states of the drive, jogging, moves to a position, and runs at a speed.
 
 use egui::{Id, RichText, Ui, UiBuilder, vec2};
 
@@ -20,7 +20,6 @@ use crate::ui::{Theme, icons};
 /// Percentage as it is typed, and the one that counted when it was drawn last.
 pub(super) type Draft = Option<(String, Percent)>;
 
-/// The entered text.
 #[derive(Default)]
 pub(super) struct MotionUiState {
     pub(super) jog_effort: [Draft; 2],
@@ -28,7 +27,6 @@ pub(super) struct MotionUiState {
     pub(super) step_problem: Option<Text>,
     pub(super) outside: outside::Draft,
     move_effort: [Draft; 2],
-    /// The position entered for the next move.
     pub(super) target: String,
     target_problem: Option<Text>,
 }

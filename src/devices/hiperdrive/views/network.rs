@@ -1,4 +1,4 @@
-//! The network page: the TCP/IP object and its edited values, the result at the next power-up, and the meaning of the
+//! Network settings: the TCP/IP object and its edited values, the result at the next power-up, and the meaning of the
 //! address switches.
 
 use egui::{RichText, Ui};
@@ -132,7 +132,6 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
     }
 }
 
-/// Draws the result at the next power-up.
 fn outlook(ui: &mut Ui, theme: &Theme, unit: &Unit, now: &NetworkSettings, wanted: &Result<NetworkSettings, Text>) {
     ui.label(theme.label(say(theme, "hd_net.at_power_up")));
     match wanted {

@@ -1,4 +1,5 @@
-//! The warning of a drive outside its limits: what is blocked, the way in, and what to do if the reference is wrong.
+//! Warning about a drive outside its limits: blocked directions, the way back in, and what to do if the reference is
+//! wrong.
 
 use egui::{RichText, Ui};
 
@@ -11,7 +12,6 @@ use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{allowed_button, card, paragraph, problem_below};
 use crate::ui::{Theme, icons};
 
-/// The entered text.
 #[derive(Default)]
 pub(super) struct Draft {
     /// The position that the place here is to get.

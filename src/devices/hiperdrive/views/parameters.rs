@@ -1,4 +1,4 @@
-//! The table of parameters: value, edit, range, factory setting, and whether each is saved.
+//! The parameter table: value, edit, range, factory setting, and whether each parameter is saved.
 
 use std::collections::BTreeMap;
 use std::iter::once;
@@ -122,7 +122,6 @@ impl DriveParametersUiState {
         self.shown == ParameterFilter::Scale && (self.table.typed().is_none() || self.table.is_refused())
     }
 
-    /// Returns the parameter being edited, or refused.
     fn typed(&self) -> Option<ParameterNumber> {
         let place = self.table.typed()?;
         self.lines.get(place.group)?.get(place.row).copied()

@@ -1,4 +1,4 @@
-//! The scale page: the pitch of the spindle and the desired resolution become parameters 154 and 156.
+//! The scaling page, which derives parameters 154 and 156 from the spindle pitch and the desired resolution.
 
 use egui::Ui;
 
@@ -12,7 +12,6 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// The entered text.
 #[derive(Default)]
 pub(super) struct ScaleUiState {
     pitch: Option<(String, Option<Text>)>,

@@ -1,11 +1,11 @@
-//! The seven states of a drive and their transitions (reference of HIPERDRIVE, 3).
+//! The seven states of a drive and their transitions (HIPERDRIVE reference, 3).
 //!
-//! * **Size**: the available width, five states in a row, fault and lock below them.
-//! * **Keyboard**: Tab goes through the reachable states, Space or Enter requests one.
-//! * **Pointer**: a click on a reachable state.
-//! * **Accessible**: one button per state, by its name; the present one is selected, unreachable ones are disabled.
-//! * **Painting**: the present state filled: accent, moving in the good colour, fault and lock as error and warning;
-//!   reachable states outlined in the accent; arrows as in the manual's figure.
+//! * **Size**: the available width; five states in a row, fault and lock below them.
+//! * **Keyboard**: Tab moves through the reachable states, Space or Enter requests one.
+//! * **Pointer**: a click on a reachable state requests it.
+//! * **Accessible**: one button per state, with its name; the present state is selected, unreachable ones are disabled.
+//! * **Painting**: the present state is filled: accent in general, good while moving, error and warning for fault and
+//!   lock; reachable states are outlined in the accent; arrows as in the figure of the manual.
 
 use egui::accesskit::Role;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
@@ -35,7 +35,6 @@ const MOST: f32 = 128.0;
 /// Places of the arrows' heads, and half of how wide one is.
 const HEAD: f32 = 6.0;
 
-/// Returns the columns and row of a state.
 const fn place(state: State) -> (f32, f32) {
     match state {
         State::NotReady => (0.0, 0.0),
@@ -71,7 +70,6 @@ impl Plan {
     }
 }
 
-/// Draws the diagram; returns the requested state.
 pub(crate) fn state_machine(ui: &mut Ui, theme: &Theme, machine: &StateMachine<'_>) -> Option<State> {
     let size = vec2(ui.available_width().max(240.0), 2.0 * BOX + BETWEEN);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
@@ -181,7 +179,6 @@ fn arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>)
     line(painter, &side, ink(&[State::Locked]));
 }
 
-/// Draws a line with an arrow head.
 fn line(painter: &Painter, points: &[Pos2], stroke: Stroke) {
     for (from, to) in points.iter().zip(points.iter().skip(1)) {
         painter.line_segment([*from, *to], stroke);

@@ -1,10 +1,10 @@
-//! The travel of a drive as a bar: its limits, its position and its target.
+//! The travel of a drive as a bar: limits, position and target.
 //!
-//! * **Size**: as wide as there is room, always as high: nothing below it moves when the drive leaves its limits.
-//! * **Keyboard, pointer**: none. It moves nothing.
-//! * **Accessible**: an image; its value names position, limits and target.
+//! * **Size**: the available width and constant height, so nothing below it moves when the drive leaves its limits.
+//! * **Keyboard, pointer**: none; the bar moves nothing.
+//! * **Accessible**: an image whose value names position, limits and target.
 //! * **Painting**: the range in the accent colour, the position as a bar across it, the target as an outlined diamond.
-//!   Outside the limits the position is red, an arrow leads back to the limit, and a line above names the way back.
+//!   Outside the limits the position is red, an arrow points back to the limit, and a line above names the way back.
 
 use egui::accesskit::Role;
 use egui::{

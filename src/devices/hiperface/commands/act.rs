@@ -1,4 +1,4 @@
-//! `do`: actions other than writing a value.
+//! `do`: actions other than writing values.
 
 use serde_json::json;
 

@@ -1,4 +1,4 @@
-//! Actions and options that only HIPERFACE encoders have.
+//! Actions and options specific to HIPERFACE encoders.
 
 use clap::{Args, ValueEnum};
 

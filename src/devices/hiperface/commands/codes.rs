@@ -1,5 +1,5 @@
-//! Access codes on the command line: `--code` of every command and of the window, and the environment before it. No message
-//! repeats what may be a code.
+//! Access codes on the command line: `--code` of every command and of the window, preceded by the environment. Messages
+//! never repeat what may be a code.
 
 use std::str::FromStr;
 

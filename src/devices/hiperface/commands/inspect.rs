@@ -1,4 +1,4 @@
-//! Commands that only read: `find`, `identify`, `status`, `position`, `read`.
+//! Read-only commands: `find`, `identify`, `status`, `position` and `read`.
 
 use std::time::Duration;
 

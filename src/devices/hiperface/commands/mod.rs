@@ -1,4 +1,4 @@
-//! The commands for HIPERFACE encoders.
+//! Commands for HIPERFACE encoders.
 
 mod act;
 mod args;
@@ -124,7 +124,6 @@ impl Simulated for Bus {
     }
 }
 
-/// Returns the item that a user names.
 fn item(text: &str) -> Result<Item> {
     text.parse().map_err(|error: crate::devices::hiperface::profile::ItemError| Failure::Usage(error.to_string()))
 }

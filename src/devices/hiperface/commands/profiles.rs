@@ -1,4 +1,4 @@
-//! The commands for profiles of a HIPERFACE encoder: `save`, `restore`, and reading it for a comparison.
+//! Profile commands for HIPERFACE encoders: `save`, `restore`, and reading for a comparison.
 
 use std::collections::BTreeMap;
 
@@ -66,7 +66,6 @@ impl ProfileCommands for HiperfaceCommands {
         write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
     }
 
-    /// Reads the encoder for a comparison.
     fn present(&self, common: &Common, output: &Output, _profile: Option<&Body>) -> Result<Body> {
         let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
         name_locked(output, &saved, "compared without its bytes");

@@ -1,4 +1,5 @@
-//! Running jobs on a HIPERFACE encoder: the access codes of the command line, and the codes that the encoder announces.
+//! Running jobs on a HIPERFACE encoder, with the access codes of the command line and the status codes that the encoder
+//! announces.
 
 use super::HiperfaceCommands;
 use crate::app::Given;

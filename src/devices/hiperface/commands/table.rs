@@ -1,4 +1,5 @@
-//! Positions as a table (CSV): commas and points, in any language, so that scripts can read it. Prints nothing itself.
+//! Positions as CSV, with commas as separators and decimal points in any language, so that scripts can read them.
+//! Prints nothing itself.
 
 use crate::devices::hiperface::procedures::PositionReading;
 use crate::devices::hiperface::protocol::{Geometry, StatusCode};

@@ -1,4 +1,4 @@
-//! `write`, and the common parts of writing commands: the plan as text, consent, carrying it out.
+//! `write`, and the parts shared by all writing commands: plan output, consent and execution.
 
 use serde_json::{Value as Json, json};
 

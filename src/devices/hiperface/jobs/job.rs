@@ -1,4 +1,4 @@
-//! The jobs of a HIPERFACE encoder, and their results.
+//! Jobs of a HIPERFACE encoder and their results.
 
 use std::fmt;
 
@@ -29,9 +29,7 @@ pub enum HiperfaceJob {
     Position(Option<Geometry>),
     /// Reads the shaft at rest: position, and sine and cosine if the encoder provides them.
     Rest,
-    /// One value.
     Read(Item),
-    /// Everything that can be restored.
     Save(SaveOptions),
     /// Carries out the start-up sequence with one verdict per item; with a restart first if requested.
     Check {
@@ -40,7 +38,6 @@ pub enum HiperfaceJob {
     },
     /// Sends 53h and waits for the restart.
     Reset,
-    /// Searches all speeds, parities and addresses.
     Find(FindOptions),
     /// 67h, and our side after it.
     ConfigureForNow(LineSettings),
@@ -59,7 +56,6 @@ pub enum HiperfaceJob {
 /// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Restores a profile.
     Restore {
         profile: Box<HiperfaceProfile>,
         options: RestoreOptions,
@@ -73,13 +69,10 @@ pub enum Change {
     /// Changes the status of a field: protection, access code, or, for the last one, size.
     Redefine {
         number: u8,
-        /// Its new status; the field exists.
         status: DataFieldStatus,
     },
-    /// Write-protect a field, or make it writable.
     LockField {
         number: u8,
-        /// Protect it.
         lock: bool,
     },
     /// Give the last field another size.
@@ -94,12 +87,9 @@ pub enum Change {
     /// Changes an access code; its present value is the session's.
     ChangeCode {
         number: CodeNumber,
-        /// Its new value.
         new: AccessCode,
     },
-    /// Sets the position, at standstill.
     SetPosition {
-        /// The requested position.
         wanted: u32,
         /// Exactly this value, even if it breaks the phase to the sine; otherwise the nearest that keeps it.
         exact: bool,
@@ -114,7 +104,6 @@ pub enum Change {
         /// Number of steps.
         steps: i64,
     },
-    /// Give the encoder another address.
     SetAddress(DeviceAddress),
     /// Store other interface settings.
     Configure(LineSettings),
@@ -127,7 +116,6 @@ pub enum Change {
 /// Kind of change, by how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// Restore of a profile: repeating it completes it.
     Restore,
     /// Edited bytes: those not yet written remain edits.
     Bytes,
@@ -145,12 +133,10 @@ impl Change {
     }
 }
 
-/// Plan, ready for review.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: HiperfacePlan,
-    /// The encoder that it is for.
     pub identity: Identity,
     /// Number of persistent writes of the encoder recorded on this computer; `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
@@ -167,7 +153,6 @@ pub struct Prepared {
     /// Data fields created by the write that this one undoes, and left in place: they have changed since, or are not the
     /// last.
     pub created_left: Vec<u8>,
-    /// The profile is of another type of encoder.
     pub other_type: Option<OtherType>,
     /// The requested position, if the plan sets another one that keeps the phase.
     pub wanted_position: Option<u32>,
@@ -177,7 +162,6 @@ pub struct Prepared {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OtherType {
     pub profile: u8,
-    /// Type of the encoder.
     pub device: u8,
 }
 
@@ -212,7 +196,6 @@ pub enum Value {
 /// A profile as it was read.
 #[derive(Clone, Debug)]
 pub struct SavedProfile {
-    /// The profile that was read.
     pub profile: HiperfaceProfile,
     /// Fields that could not be read, with the number of the code that guards them.
     pub locked: Vec<(u8, CodeNumber)>,
@@ -221,7 +204,6 @@ pub struct SavedProfile {
 /// A message of a HIPERFACE encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
-    /// Status codes that replies announced.
     Codes(Vec<StatusCode>),
     /// Number of status codes that may have been lost: 50h removes them from the encoder, and its reply was lost or
     /// damaged.
@@ -235,11 +217,9 @@ pub enum DeviceMessage {
 /// Step of a running HIPERFACE job. Its text is that of the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
-    /// The data field of that number is read.
     Field(u64),
     /// An operation of a plan is carried out.
     Operation(Op),
-    /// An encoder is searched.
     Attempt(Attempt),
 }
 

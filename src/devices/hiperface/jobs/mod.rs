@@ -1,4 +1,4 @@
-//! A HIPERFACE encoder as seen by a session, and its jobs.
+//! The HIPERFACE encoder as a device of a session, and its jobs.
 
 mod commit;
 mod job;
@@ -52,7 +52,6 @@ impl fmt::Debug for Hiperface {
 }
 
 impl Hiperface {
-    /// Returns the host's side of the line.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
@@ -105,12 +104,10 @@ impl Session<Hiperface> {
         Session::with(device, clock, store, is_virtual)
     }
 
-    /// Returns the access codes that the user knows.
     pub fn codes_mut(&mut self) -> &mut Codes {
         &mut self.device.station.codes
     }
 
-    /// Returns the state of the line.
     pub fn station(&self) -> &Station {
         &self.device.station
     }

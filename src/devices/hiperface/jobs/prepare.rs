@@ -1,4 +1,4 @@
-//! Makes a plan from a change. Reads; writes nothing.
+//! Preparation of a plan from a change. Only reads.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,5 @@
-//! Status codes in the logbook, before they are shown: 50h removes them from the encoder, so a code that was read and not
-//! stored is lost.
+//! Logging of status codes before they are displayed: 50h removes them from the encoder, so a code that was read and
+//! not stored would be lost.
 
 use std::time::Duration;
 

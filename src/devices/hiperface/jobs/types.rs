@@ -1,4 +1,4 @@
-//! The table of encoder types: the user's own rows, then the built-in ones.
+//! The table of encoder types: user-defined rows first, then the built-in ones.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,6 @@ use crate::store::{FileError, FileProblem, Store, StoreError, read_text};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}, {cause}", path.display())]
 pub struct BrokenTypes {
-    /// The file.
     pub path: PathBuf,
     /// The cause, with line and column or with the row's type byte.
     pub cause: TypeTableError,

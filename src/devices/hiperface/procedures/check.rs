@@ -1,4 +1,4 @@
-//! The device check: the start-up sequence of the manual (figures 8 and 9) with one verdict per item.
+//! Device check: the start-up sequence of the manual (figures 8 and 9) with a verdict for each item.
 
 use super::fields::tolerated;
 use super::{
@@ -37,17 +37,13 @@ pub enum CheckFinding {
     Position(Position),
     /// The position word, if periods and turns are not known.
     RawPosition(u32),
-    /// The encoder's name.
     Name(String),
     SerialNumber(String),
-    /// Analogue value and its limit.
     Limit {
         channel: u8,
         value: i16,
-        /// The limit of the extended label.
         limit: i16,
     },
-    /// A data field that can be read.
     Field {
         number: u8,
         status: DataFieldStatus,
@@ -57,7 +53,6 @@ pub enum CheckFinding {
         number: u8,
         status: DataFieldStatus,
     },
-    /// A data field that the encoder refuses.
     FieldRefused {
         number: u8,
         codes: Vec<StatusCode>,

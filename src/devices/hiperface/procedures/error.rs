@@ -1,4 +1,4 @@
-//! Errors of an encoder, with the facts that a user needs.
+//! Errors of an encoder, with the facts that a message requires.
 
 use crate::devices::hiperface::profile::PlanItem;
 use crate::devices::hiperface::protocol::{CodeNumber, Command, LineSettings, Reply, ReplyError, StatusCode};
@@ -9,24 +9,19 @@ use crate::profile::DeviceError;
 /// A procedure that ended early.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// The wire.
     #[error(transparent)]
     Link(#[from] LinkError),
     #[error("no reply from address {address:02X}h to {} (attempts: {tries})", command.row().name)]
     NoReply {
-        /// Address of the request.
         address: u8,
         command: Command,
-        /// Number of attempts.
         tries: u32,
         /// The sent bytes came back: the adapter echoes, so the line itself works.
         echo_heard: bool,
     },
-    /// A reply came and was damaged every time.
     #[error("damaged reply to {} (attempts: {tries}): {cause}", command.row().name)]
     Damaged {
         command: Command,
-        /// Number of attempts.
         tries: u32,
         /// Damage of the last reply.
         cause: Damage,
@@ -34,18 +29,15 @@ pub enum Error {
     /// Bytes keep arriving during the required silence.
     #[error("the line is never silent")]
     NeverSilent,
-    /// The encoder refused.
     #[error("{} was refused: {}", command.row().name, list(codes))]
     Rejected { command: Command, codes: Vec<StatusCode> },
     /// It is not known whether a change was carried out: the encoder can no longer be reached.
     #[error("whether {} was carried out is not known: {cause}", command.row().name)]
     Unclear {
-        /// The command sent.
         command: Command,
         /// Why it cannot be read back.
         cause: Box<Error>,
     },
-    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// The shaft turns but must stand still.
@@ -56,17 +48,12 @@ pub enum Error {
     },
     /// 63h is for encoders without bearing.
     #[error("{encoder} is not a kit encoder")]
-    NotAKit {
-        /// Name of the encoder.
-        encoder: String,
-    },
-    /// Another encoder answers at the new address.
+    NotAKit { encoder: String },
     #[error("address {address:02X}h belongs to another encoder")]
     AddressTaken { address: u8 },
     /// The position asked for is beyond the measuring range.
     #[error("position {wanted} is outside 0…{last}")]
     PositionRange {
-        /// The requested position.
         wanted: u64,
         /// The greatest position.
         last: u64,
@@ -84,23 +71,12 @@ pub enum Error {
     },
     /// A field cannot be read because its access code is not the known one.
     #[error("the access code {number} is not known")]
-    CodeUnknown {
-        field: u8,
-        /// The access code that guards it.
-        number: CodeNumber,
-    },
-    /// Values changed between the plan and its execution.
+    CodeUnknown { field: u8, number: CodeNumber },
     #[error("{item} has changed since the plan was made")]
     Changed { item: PlanItem },
     /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
-    NotVerified {
-        item: PlanItem,
-        /// Expected value.
-        expected: String,
-        got: ReadBack,
-    },
-    /// The reply belongs to another kind of request.
+    NotVerified { item: PlanItem, expected: String, got: ReadBack },
     #[error("the reply to {} is of another kind: {reply}", command.row().name)]
     OtherReply { command: Command, reply: String },
     /// The position already had the value that was written, so reading it back proves nothing.
@@ -108,10 +84,7 @@ pub enum Error {
     PositionUnchanged,
     /// No data field requires this access code, so it cannot be tried.
     #[error("no data field requires access code {number}, so it cannot be tested")]
-    CodeGuardsNothing {
-        /// The access code.
-        number: CodeNumber,
-    },
+    CodeGuardsNothing { number: CodeNumber },
     /// The settings byte names a character format that the description reserves.
     #[error("the interface settings 0x{:02X} have a reserved format", settings.byte())]
     ReservedFormat {
@@ -152,10 +125,8 @@ pub enum Damage {
     /// It began too late.
     #[error("the reply came too late")]
     Late,
-    /// The echo was changed.
     #[error("the echo differs from what was sent")]
     Echo,
-    /// The encoder received a damaged request.
     #[error("the encoder reports: {0}")]
     AtEncoder(StatusCode),
     /// Two readings in a row of the same thing differ.
@@ -190,7 +161,6 @@ impl Error {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.spoils_position()))
     }
 
-    /// Returns whether the encoder refused with this code.
     pub fn is_rejection(&self, code: StatusCode) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.contains(&code))
     }

@@ -1,4 +1,4 @@
-//! Reading data fields (4Ch, 4Ah). Long transfers are halved when the line damages them.
+//! Reading of data fields (4Ch, 4Ah). Long transfers are halved if the line damages them.
 
 use super::error::Damage;
 use super::identify::read_type_label;

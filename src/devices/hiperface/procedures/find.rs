@@ -1,8 +1,9 @@
-//! The search for encoders with unknown settings.
+//! Search for encoders with unknown settings.
 //!
-//! The search listens for a second before its first byte: foreign traffic means a running machine, and then nothing is
-//! sent. It probes with 52h, never with 50h, which would remove codes from an encoder's queue. Broadcast comes last and
-//! only if the user states that one encoder is connected, because several would reply at once.
+//! The search listens for a second before sending its first byte: foreign traffic indicates a running machine, and
+//! nothing is sent then. It probes with 52h, never with 50h, which would remove codes from the queue of an encoder.
+//! Broadcast comes last, and only if the user states that a single encoder is connected, because several would reply at
+//! once.
 
 use std::fmt;
 use std::time::Duration;
@@ -15,7 +16,6 @@ use crate::units::{Baud, CharacterFormat, Parity};
 /// How long to listen for a running machine.
 pub const LISTEN: Duration = Duration::from_secs(1);
 
-/// The settings to try.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FindOptions {
     /// The user states that exactly one encoder is connected: broadcast may be used if no address replies.
@@ -24,29 +24,19 @@ pub struct FindOptions {
     pub power_cycle: Option<Duration>,
 }
 
-/// An encoder that answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FoundEncoder {
     pub address: u8,
-    /// The format that was used.
     pub format: CharacterFormat,
-    /// Its type label, with its stored settings.
     pub label: TypeLabel,
 }
 
 /// One attempt, for progress reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Attempt {
-    /// Listening for foreign traffic.
     Listening,
-    /// Waiting for the supply to come back.
     DefaultWindow,
-    /// Asking an address, or FFh.
-    Probing {
-        /// Address being probed.
-        address: u8,
-        format: CharacterFormat,
-    },
+    Probing { address: u8, format: CharacterFormat },
 }
 
 impl fmt::Display for Attempt {
@@ -62,11 +52,8 @@ impl fmt::Display for Attempt {
 /// A report of a running search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SearchProgress<'a> {
-    /// The next try.
     Trying {
-        /// Tries done.
         done: u64,
-        /// Tries in all.
         total: u64,
         attempt: &'a Attempt,
     },
@@ -82,7 +69,6 @@ pub enum Findings {
         /// Bytes received while listening.
         bytes: usize,
     },
-    /// The line was searched.
     Searched {
         /// All encoders that replied, in this order; may be empty.
         found: Vec<FoundEncoder>,

@@ -1,4 +1,4 @@
-//! Identifies the encoder.
+//! Identification of the encoder.
 
 use super::{Error, Master, read_range};
 use crate::devices::hiperface::profile::HiperfaceProfile;
@@ -10,7 +10,6 @@ use crate::devices::hiperface::protocol::{
 /// An encoder as it presents itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
-    /// The address it answers with.
     pub address: u8,
     /// Reply to 52h.
     pub label: TypeLabel,
@@ -18,7 +17,6 @@ pub struct Identity {
     pub serial: SerialLabel,
     /// Reply to 4Eh; `None` if the encoder does not have the command.
     pub memory: Option<FreeMemory>,
-    /// Family, or the designation of the extended label.
     pub name: String,
     /// Periods and turns: as given by the user, from the extended label, or from the table of types.
     pub geometry: Option<Geometry>,

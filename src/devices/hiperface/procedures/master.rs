@@ -1,7 +1,8 @@
-//! The host's side of the line: repeating requests, reading back, and collecting announced codes. A single exchange is in
-//! [`exchange`].
+//! Host side of the line: repeated requests, reading back, and collecting announced status codes. Single exchanges are
+//! implemented in [`exchange`].
 //!
-//! A read is repeated, at most five times and for at most eight seconds; a write is never repeated blindly.
+//! A read is repeated at most five times within at most eight seconds; a write is never repeated without checking its
+//! effect.
 
 mod codes;
 mod exchange;
@@ -27,7 +28,6 @@ pub(super) struct Timed {
     pub(super) reply: Reply,
     /// The falling edge of the start bit of the reply's address.
     pub(super) at: Moment,
-    /// Address of the sender.
     pub(super) sender: u8,
 }
 
@@ -38,7 +38,6 @@ impl<'a> Master<'a> {
         Master { line: SerialLine::new(ctx), station }
     }
 
-    /// Returns the state of the line.
     pub fn station(&mut self) -> &mut Station {
         self.station
     }

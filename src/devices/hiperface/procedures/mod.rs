@@ -1,7 +1,7 @@
-//! The procedures of a HIPERFACE encoder. Each takes a [`Master`], which sends requests, repeats what may be repeated
-//! and keeps the protocol's times; the manual is SICK 8010701.
+//! Procedures of a HIPERFACE encoder. Each uses a [`Master`], which sends requests, repeats those that may be repeated,
+//! and observes the timing of the protocol. "Manual" refers to SICK 8010701.
 //!
-//! Every change of an encoder's memory goes through [`mod@write`] with a plan and a consent to it.
+//! Every change to the memory of an encoder goes through [`mod@write`] with a plan and consent.
 
 pub mod check;
 mod error;

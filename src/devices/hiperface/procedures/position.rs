@@ -1,4 +1,4 @@
-//! Position, analogue values and the counter, also as samples; and the check for standstill.
+//! Position, analogue values and counter, also as samples, and the standstill check.
 
 use std::time::Duration;
 
@@ -39,13 +39,11 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
     Ok(PositionReading { at: timed.at, raw, position, valid, codes })
 }
 
-/// A polled sample.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     Position(PositionReading),
     /// The encoder is there and has no position to give at the moment.
     NoPosition {
-        /// Time of the refusal.
         at: Moment,
         /// The status codes, the reason first.
         codes: Vec<StatusCode>,
@@ -76,9 +74,7 @@ pub struct WatchedReading {
     /// When the encoder sampled an analogue value: the falling edge of the start bit of the reply's address. For a counter
     /// and a refusal, when the reply was parsed.
     pub at: Moment,
-    /// The watched value.
     pub watch: Watch,
-    /// The value, or the encoder's refusal.
     pub value: Result<i64, Error>,
     pub codes: Vec<StatusCode>,
 }

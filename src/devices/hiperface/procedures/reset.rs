@@ -1,4 +1,5 @@
-//! Restarting an encoder (53h) and changing the interface for now (67h), with the waits of the manual's figure 38.
+//! Restarting an encoder (53h) and changing the interface temporarily (67h), with the waiting times of the manual's
+//! figure 38.
 
 use std::time::Duration;
 

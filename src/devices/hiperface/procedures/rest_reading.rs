@@ -1,5 +1,5 @@
-//! The shaft at rest from both channels of an encoder: the absolute position, and sine and cosine if analogue channels
-//! provide them. For the highest accuracy: commutation, synchronising.
+//! Reading of the shaft at rest through both channels of an encoder: the absolute position, and sine and cosine if
+//! analogue channels provide them. Offers the highest accuracy, for commutation and synchronising.
 
 use super::{Error, Master, ensure_standstill, read_analogue, read_position};
 use crate::devices::hiperface::protocol::Geometry;
@@ -7,7 +7,6 @@ use crate::devices::hiperface::protocol::Geometry;
 /// Reading of a shaft at standstill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
-    /// The position word.
     pub raw: u32,
     /// The position is within the measuring range and no code makes it invalid.
     pub valid: bool,

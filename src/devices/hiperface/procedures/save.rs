@@ -1,4 +1,4 @@
-//! Reading everything that can be restored, and what identifies the encoder.
+//! Reading everything that can be restored, and the identity of the encoder.
 
 use super::{Error, Identity, Master, Reading, Sample, Survey, look_around};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, Recorded};

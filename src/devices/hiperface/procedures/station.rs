@@ -16,13 +16,11 @@ use crate::units::{Baud, CharacterFormat, Parity};
 parameters! {
     /// Parameters of the line and the encoder in a link. The default is the factory setting.
     pub struct LinkParameters: UrlError {
-        /// Speed.
         pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => Bauds;
         pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::WORDS;
         /// Destination of requests: 40h…5Fh or broadcast.
         pub address: u8 = DeviceAddress::FACTORY.byte(),
             "address" => Checked(Expected::AddressOrOnlyOne, read_address);
-        /// Whether the adapter echoes.
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
         /// If set, the encoder's time-out is 44 bits, else 11.
         pub long_timeout: bool = true, "timeout" => Checked(Expected::TimeoutBits, read_timeout);
@@ -48,7 +46,6 @@ impl Codes {
         self.0.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
     }
 
-    /// Learns a code.
     pub fn set(&mut self, number: CodeNumber, code: AccessCode) {
         if let Some(own) = self.0.get_mut(usize::from(number.get())) {
             *own = code;
@@ -61,7 +58,6 @@ impl Codes {
 pub struct AccessCodes(Vec<(CodeNumber, AccessCode)>);
 
 impl AccessCodes {
-    /// Puts them into the codes of a session.
     pub fn set_in(&self, codes: &mut Codes) {
         for (number, code) in &self.0 {
             codes.set(*number, *code);
@@ -80,13 +76,10 @@ impl FromIterator<(CodeNumber, AccessCode)> for AccessCodes {
 pub struct Station {
     /// Destination of requests: 40h…5Fh or broadcast.
     pub address: u8,
-    /// Speed and parity of the port.
     pub format: CharacterFormat,
     /// If set, the encoder's time-out is 44 bits, else 11.
     pub long_timeout: bool,
-    /// Silence, echo and damage on the line.
     pub line: LineState,
-    /// Access codes.
     pub codes: Codes,
     /// Periods and turns as the user gives them, for an encoder type that is not in the table.
     pub geometry: Option<Geometry>,
@@ -103,7 +96,6 @@ pub struct Station {
 }
 
 impl Station {
-    /// Creates a line with factory settings.
     pub fn new(margin: Duration) -> Self {
         Station {
             address: DeviceAddress::FACTORY.byte(),

@@ -1,4 +1,4 @@
-//! Everything that there is to see of an encoder, in one go.
+//! Reading everything that the pages of an encoder display in one job.
 
 use super::fields::tolerated;
 use super::{
@@ -50,7 +50,6 @@ pub fn survey(
 /// How to treat a data field that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
-    /// Reads the others regardless.
     AsFarAsPossible,
     /// It ends the reading: data stored for years must be complete.
     Whole,

@@ -1,4 +1,4 @@
-//! Writes a plan to an encoder: reads its base again, carries out each operation, and finally reads all of them back.
+//! Execution of a plan: reads its base again, carries out each operation, and finally reads all of them back.
 
 pub use crate::profile::Written;
 
@@ -67,7 +67,6 @@ impl Write for EncoderWrite<'_, '_> {
         plan.base.scalars.iter().try_for_each(|scalar| confirm_scalar(master, *scalar, identity.geometry))
     }
 
-    /// Cancellation is checked between two operations.
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
         let sent = perform(&mut self.master, op, confirmed, range_of(self.identity.geometry));
         // A change that was not sent, or was refused, was not carried out; any other may have been.

@@ -1,42 +1,42 @@
-//! A commutation offset as stored by this program in a data field. The manual leaves the format open (SICK 8010701,
-//! commutation; section 5 of the project's sine/cosine reference): sixteen bytes, so that it fills a block of the EEPROM
-//! and is recognised in a backup as a value of the mounting.
+//! The commutation offset in the format in which this program stores it in a data field. The manual leaves the format
+//! open (SICK 8010701, commutation; section 5 of the project's sine/cosine reference): sixteen bytes fill a block of
+//! the EEPROM and are recognised in a backup as a value of the mounting.
 
 use super::HiperfaceProfile;
 use crate::analysis::commutation::ElectricalAngle;
 
-/// The stored data of one motor.
+/// The stored commutation data of a motor.
 ///
-/// | bytes | what |
+/// | bytes | content |
 /// |---|---|
 /// | 0…2 | `CO1` |
-/// | 3 | flags; bit 0: a second vector has confirmed it |
-/// | 4…7 | offset in units of 2⁻³² electrical turns, high byte first |
+/// | 3 | flags; bit 0: confirmed by a second vector |
+/// | 4…7 | offset in units of 2⁻³² electrical turns, big-endian |
 /// | 8 | pole pairs |
 /// | 9 | direction: 0 with the electrical angle, 1 against it |
 /// | 10…13 | 0 |
-/// | 14…15 | CRC of bytes 0…13: polynomial 1021h, start FFFFh, high byte first |
+/// | 14…15 | CRC of bytes 0…13: polynomial 1021h, initial value FFFFh, big-endian |
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CommutationRecord {
-    /// The offset: electrical angle = pole pairs × shaft − offset.
+    /// Offset: electrical angle = pole pairs × shaft − offset.
     pub offset: ElectricalAngle,
-    /// Pole pairs of the motor.
+    /// Number of pole pairs of the motor.
     pub pole_pairs: u8,
-    /// The position falls while the electrical angle rises.
+    /// Whether the position falls while the electrical angle rises.
     pub reversed: bool,
-    /// A second vector has confirmed pole pairs and order of the phases.
+    /// Whether a second vector has confirmed the pole pairs and the phase order.
     pub confirmed: bool,
 }
 
-/// Bytes that begin as a record and are none.
+/// The bytes start like a record, but are not a valid one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Damaged;
 
 impl CommutationRecord {
-    /// Its length in bytes.
+    /// Length in bytes.
     pub const BYTES: usize = HiperfaceProfile::COMMUTATION_BYTES;
 
-    /// Returns the bytes to be stored.
+    /// Returns the bytes to store.
     pub fn emit(&self) -> [u8; Self::BYTES] {
         let [o3, o2, o1, o0] = self.offset.bits().to_be_bytes();
         let flags = u8::from(self.confirmed);
@@ -48,7 +48,7 @@ impl CommutationRecord {
         bytes
     }
 
-    /// Parses the record at the beginning of `bytes`; `None` if there is none.
+    /// Parses the record at the beginning of `bytes`, or returns `None` if there is none.
     pub fn parse(bytes: &[u8]) -> Option<Result<Self, Damaged>> {
         if !bytes.starts_with(HiperfaceProfile::COMMUTATION_MAGIC) {
             return None;

@@ -1,4 +1,4 @@
-//! The differences between two encoders, or between an encoder and a profile: one item for each run of differing bytes.
+//! Differences between two encoders, or between an encoder and a profile: one item for each run of differing bytes.
 
 use super::{FieldImage, FieldRange, Item};
 use crate::bits::hex_compact;

@@ -1,13 +1,13 @@
-//! Plans for single changes, each with the encoder's own rules checked before anything is sent.
+//! Planning of single changes. Each is checked against the rules of the encoder before anything is sent.
 
 use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, Scalar};
 use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize, FreeMemory};
 
-/// Plans to write exactly these bytes; adjoining or overlapping edits become one operation, and of two edits of the same
-/// byte the later counts. Operations without a change are left out. `fields` are the edited ones, once each.
+/// Plans to write exactly these bytes. Adjoining or overlapping edits become one operation; the last edit of a byte
+/// takes precedence. Operations without a change are left out. `fields` contains each edited field once.
 ///
 /// # Errors
-/// A field is missing, protected or unreadable, or the bytes do not fit into it or into their range.
+/// A field is missing, protected or unreadable, or the bytes do not fit into the field or into their range.
 pub fn plan_store(
     field_count: u8,
     fields: &[FieldImage],
@@ -67,10 +67,10 @@ fn stores<'e>(
     Ok(ops)
 }
 
-/// Creates the next field.
+/// Plans to create the next field.
 ///
 /// # Errors
-/// Another number is next, or there is no space.
+/// Another number is next, or the memory is too small.
 pub fn plan_create(memory: FreeMemory, number: u8, status: DataFieldStatus) -> Result<HiperfacePlan, PlanError> {
     if number != memory.fields {
         return Err(PlanError::NotNext { field: number, next: memory.fields });
@@ -81,10 +81,10 @@ pub fn plan_create(memory: FreeMemory, number: u8, status: DataFieldStatus) -> R
     Ok(plan(memory.fields, Vec::new(), vec![Op::Define { field: number, from: None, to: status }]))
 }
 
-/// Changes protection, access code or, for the last field, the size of a field.
+/// Plans to change protection, access code or, for the last field, the size of a field.
 ///
 /// # Errors
-/// Another size for a field that is not the last, or no space for it.
+/// The size of a field other than the last would change, or the memory is too small.
 pub fn plan_redefine(memory: FreeMemory, field: &FieldImage, to: DataFieldStatus) -> Result<HiperfacePlan, PlanError> {
     let from = field.status;
     if to.size() != from.size() {
@@ -99,17 +99,17 @@ pub fn plan_redefine(memory: FreeMemory, field: &FieldImage, to: DataFieldStatus
     Ok(plan(memory.fields, vec![field.clone()], ops))
 }
 
-/// Deletes the last field.
+/// Plans to delete the last field.
 ///
 /// # Errors
-/// It is not the last.
+/// The field is not the last.
 pub fn plan_delete(memory: FreeMemory, field: &FieldImage) -> Result<HiperfacePlan, PlanError> {
     check_last(memory, field.number)?;
     let op = Op::Define { field: field.number, from: Some(field.status), to: field.status.deleted() };
     Ok(plan(memory.fields, vec![field.clone()], vec![op]))
 }
 
-/// Changes single values.
+/// Plans to change a single value.
 pub fn plan_scalar(fields: u8, now: Scalar, op: Option<Op>) -> HiperfacePlan {
     let mut plan = plan(fields, Vec::new(), op.into_iter().collect());
     plan.base.scalars.push(now);

@@ -1,21 +1,21 @@
-//! Why a HIPERFACE profile is refused.
+//! Reasons why a HIPERFACE profile is refused.
 
-/// Why an entry of a profile is refused.
+/// The reason why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
-    /// A data field that is already in the list.
+    /// The data field occurs twice.
     #[error("field {0} appears twice")]
     Twice(u8),
-    /// A status byte without a field.
+    /// The status byte denotes a missing field.
     #[error("{0:02X}h is not the status of an existing field")]
     Status(u8),
-    /// Bytes of a field that could not be read.
+    /// A field that could not be read has bytes.
     #[error("a locked field has no bytes")]
     Locked,
-    /// Not the bytes of a readable field.
+    /// A readable field has no bytes.
     #[error("missing; a field without bytes has locked: true")]
     NotLocked,
-    /// Another number of bytes than the field has.
+    /// The number of bytes differs from the size of the field.
     #[error("{got} bytes, but the status gives {expected}")]
     Size {
         /// Number of bytes in the profile.

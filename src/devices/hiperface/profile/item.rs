@@ -1,59 +1,59 @@
-//! The names of items in an encoder: `field:1@3+2`, `status:1`, `analogue:0x48`, `counter`, `address`, `settings`.
+//! Names of items in an encoder: `field:1@3+2`, `status:1`, `analogue:0x48`, `counter`, `address`, `settings`.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::devices::hiperface::protocol::CodeNumber;
 
-/// Something that can be read.
+/// An item that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Item {
-    /// Data field or a part of it.
+    /// A data field, or a part of one.
     Field(FieldRange),
-    /// The status byte of a data field.
+    /// Status byte of a data field.
     Status(u8),
-    /// An analogue channel.
+    /// Analogue channel.
     Analogue(u8),
-    /// The counter.
+    /// Counter.
     Counter,
-    /// The encoder's address.
+    /// Address of the encoder.
     Address,
-    /// The stored interface settings.
+    /// Stored interface settings.
     Settings,
 }
 
-/// Data field or a part of it.
+/// A data field, or a part of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FieldRange {
-    /// The field's number, FFh for the extended label.
+    /// Field number, FFh for the extended label.
     pub field: u8,
-    /// First byte.
+    /// Index of the first byte.
     pub start: usize,
-    /// Number of bytes; `None`: to the end of the field.
+    /// Number of bytes, or `None` up to the end of the field.
     pub count: Option<usize>,
 }
 
-/// An item that a write confirms, changes and reads back.
+/// An item that a plan confirms, changes and reads back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanItem {
-    /// Readable item.
+    /// A readable item.
     #[error("{0}")]
     Item(Item),
-    /// The identity of the encoder.
+    /// Identity of the encoder.
     #[error("the encoder itself")]
     Encoder,
-    /// The number of data fields.
+    /// Number of data fields.
     #[error("number of data fields")]
     FieldCount,
-    /// The position.
+    /// Position.
     #[error("position")]
     Position,
-    /// An access code.
+    /// Access code.
     #[error("code {0}")]
     Code(CodeNumber),
 }
 
-/// Why a text does not name an item.
+/// The string does not name an item.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{0:?} is not an item; items are field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings"
@@ -92,17 +92,17 @@ impl fmt::Display for Item {
 }
 
 impl FieldRange {
-    /// Creates a whole field.
+    /// Creates the range of a whole field.
     pub fn of(field: u8) -> Self {
         FieldRange { field, start: 0, count: None }
     }
 
-    /// Creates a part of a field.
+    /// Creates the range of a part of a field.
     pub fn new(field: u8, start: usize, count: usize) -> Self {
         FieldRange { field, start, count: Some(count) }
     }
 
-    /// Returns whether a byte of a field with this number is in this range.
+    /// Returns whether the range includes a byte of the given field.
     pub fn contains(&self, field: u8, address: usize) -> bool {
         self.field == field
             && address >= self.start

@@ -1,4 +1,4 @@
-//! The operations that change an encoder's memory, and their base.
+//! Operations that change the memory of an encoder, and the values on which they are based.
 
 use super::item::PlanItem;
 use super::{FieldImage, FieldRange, Item};
@@ -8,14 +8,14 @@ use crate::profile::{Operation, Plan};
 /// A planned write to a HIPERFACE encoder.
 pub type HiperfacePlan = Plan<Base, Op>;
 
-/// The values that a plan is based on.
+/// The values on which a plan is based.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Number of data fields.
     pub field_count: u8,
-    /// The fields that the plan touches.
+    /// The affected fields.
     pub fields: Vec<FieldImage>,
-    /// The single values that the plan touches.
+    /// The affected single values.
     pub scalars: Vec<Scalar>,
 }
 
@@ -24,79 +24,79 @@ pub struct Base {
 pub enum Scalar {
     /// Position in steps, with the shaft at rest.
     Position(u32),
-    /// The counter.
+    /// Counter.
     Counter(u32),
-    /// The address.
+    /// Address.
     Address(u8),
     /// Stored interface settings.
     Settings(LineSettings),
 }
 
-/// One persistent write.
+/// A single persistent write.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// 4Dh: creates a field (no status before), changes one, or deletes one (E = 0 after).
+    /// 4Dh: creates a field (no status before), changes it, or deletes it (E = 0 after).
     Define {
-        /// The field.
+        /// Field number.
         field: u8,
-        /// Present status; `None` if the field does not exist yet.
+        /// Present status, or `None` if the field does not exist yet.
         from: Option<DataFieldStatus>,
         /// New status.
         to: DataFieldStatus,
     },
     /// 4Bh: writes bytes.
     Store {
-        /// The field.
+        /// Field number.
         field: u8,
-        /// First byte.
+        /// Index of the first byte.
         address: u8,
-        /// Status of the field at that time: it contains the number of the access code.
+        /// Status of the field at that time, which contains the number of the access code.
         status: DataFieldStatus,
-        /// The old bytes; `None` if not known, in a field that is yet to be created.
+        /// Old bytes, or `None` if unknown or if the field has yet to be created.
         old: Option<Vec<u8>>,
-        /// The new bytes, 1…128.
+        /// New bytes, 1…128.
         new: Vec<u8>,
     },
     /// 4Fh: changes an access code.
     ChangeCode {
-        /// The access code.
+        /// Number of the access code.
         number: CodeNumber,
-        /// Present value.
+        /// Present code.
         old: AccessCode,
-        /// New value.
+        /// New code.
         new: AccessCode,
     },
-    /// 43h, or 63h with `synchronise`.
+    /// 43h, or 63h with `synchronise`: sets the position.
     SetPosition {
-        /// The position at the shaft's present place.
+        /// Position at the present shaft angle.
         from: u32,
-        /// The new value.
+        /// New position.
         to: u32,
-        /// Align the code tracks as well.
+        /// Whether to align the code tracks as well.
         synchronise: bool,
     },
-    /// 55h.
+    /// 55h: sets the address.
     SetAddress {
-        /// Now.
+        /// Present address.
         from: u8,
         /// New address.
         to: DeviceAddress,
     },
-    /// 57h.
+    /// 57h: configures the interface.
     Configure {
-        /// Stored now.
+        /// Stored settings.
         from: LineSettings,
-        /// New settings, used after the next restart.
+        /// New settings, which apply after the next restart.
         to: LineSettings,
     },
-    /// 49h.
+    /// 49h: clears the counter.
     ClearCounter {
-        /// The counter now.
+        /// Present count.
         from: u32,
     },
-    /// 47h.
+    /// 47h: increments the counter.
     IncrementCounter {
-        /// The counter now.
+        /// Present count.
         from: u32,
     },
 }
@@ -108,7 +108,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the name of the changed item, as `read` takes it if it can be read.
+    /// Returns the name of the changed item, as accepted by `read` if the item is readable.
     pub fn item(&self) -> PlanItem {
         PlanItem::Item(match self {
             Op::Define { field, .. } => Item::Status(*field),
@@ -123,7 +123,7 @@ impl Op {
         })
     }
 
-    /// Returns the number of changes as a comparison counts them: bytes of a field, or one.
+    /// Returns the number of changes, counted as in a comparison: the bytes of a field, or one.
     pub fn weight(&self) -> u64 {
         match self {
             Op::Store { new, .. } => new.len() as u64,
@@ -131,19 +131,19 @@ impl Op {
         }
     }
 
-    /// Returns whether it leaves a field writable that was not: an operation that protects it again must then be carried
-    /// out whatever happens in between.
+    /// Returns whether the operation makes a protected field writable. The operation that protects the field again must
+    /// then be carried out whatever happens in between.
     pub fn unlocks(&self) -> bool {
         matches!(self, Op::Define { from, to, .. }
             if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))
     }
 
-    /// Returns whether it protects this field.
+    /// Returns whether the operation protects the given field.
     pub fn locks(&self, number: u8) -> bool {
         matches!(self, Op::Define { field, to, .. } if *field == number && to.exists() && !to.is_writable())
     }
 
-    /// Returns the field it touches.
+    /// Returns the affected field.
     pub fn field(&self) -> Option<u8> {
         match self {
             Op::Define { field, .. } | Op::Store { field, .. } => Some(*field),

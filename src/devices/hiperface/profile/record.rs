@@ -1,4 +1,4 @@
-//! The saved content of a HIPERFACE encoder. An access code is never part of it.
+//! Saved content of a HIPERFACE encoder. Access codes are never included.
 
 use super::{EntryError, FieldRange, Item};
 use crate::devices::hiperface::protocol::{self, DataFieldStatus, LineSettings};
@@ -7,91 +7,91 @@ use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Unknown, Writer};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-/// Profile of a HIPERFACE encoder.
+/// A profile of a HIPERFACE encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HiperfaceProfile {
-    /// The identity.
+    /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// Address and interface settings: recorded, neither compared nor restored.
+    /// Address and interface settings: recorded, but neither compared nor restored.
     pub interface: Interface,
-    /// Values that change by themselves: recorded, neither compared nor restored.
+    /// Values that change on their own: recorded, but neither compared nor restored.
     pub recorded: Recorded,
-    /// Values that belong to the mounting and are never written to another encoder unasked.
+    /// Values that belong to the mounting and are never written to another encoder without asking.
     pub mounting: Vec<MountingMark>,
     /// Data fields in ascending order.
     pub fields: Vec<FieldImage>,
-    /// In a before-image: fields created by the write, as written. Restoring the before-image deletes them again.
+    /// In a backup: the fields that the write created, with their content. Restoring the backup deletes them again.
     pub created: Vec<FieldImage>,
-    /// Unknown entries of the fields, by field number.
+    /// Unknown entries by field number.
     pub unknown_in_fields: Vec<(u8, Unknown)>,
 }
 
-/// The identity of an encoder.
+/// Identity of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileIdentity {
     /// Serial number; empty if the encoder has none.
     pub serial_number: String,
-    /// Type byte.
+    /// Type code.
     pub encoder_type: u8,
-    /// Family or designation.
+    /// Family or type designation.
     pub encoder_name: String,
     /// Firmware version.
     pub firmware_version: String,
-    /// Firmware date, `DD.MM.YY`.
+    /// Firmware date in the format `DD.MM.YY`.
     pub firmware_date: String,
-    /// EEPROM size.
+    /// EEPROM size in bytes.
     pub eeprom_bytes: u32,
     /// Options byte of the type label.
     pub options: u8,
     /// Content of data field FFh.
     pub extended_label: Option<Vec<u8>>,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
 /// Address and interface settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
-    /// 40h…5Fh.
+    /// Address, 40h…5Fh.
     pub address: u8,
-    /// Stored settings.
+    /// Stored interface settings.
     pub settings: LineSettings,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// Values that change by themselves.
+/// Values that change on their own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recorded {
     /// Position in steps.
     pub position: Option<u32>,
     /// Counter.
     pub counter: Option<u32>,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// Part of a data field that holds a value of the mounting.
+/// A mark on a part of a data field that holds a value of the mounting.
 pub type MountingMark = crate::profile::MountingMark<FieldRange>;
 
 /// A data field.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct FieldImage {
-    /// Number of the field.
+    /// Field number.
     pub number: u8,
-    /// Its status byte.
+    /// Status byte.
     pub status: DataFieldStatus,
-    /// Its bytes, as many as the status gives; `None` if the access code is not known.
+    /// Content, as long as the status states; `None` if the access code is unknown.
     pub bytes: Option<Vec<u8>>,
 }
 
 impl HiperfaceProfile {
-    /// The first bytes of a commutation offset as this program stores it.
+    /// Prefix of a commutation offset stored by this program.
     pub const COMMUTATION_MAGIC: &'static [u8] = b"CO1";
-    /// Bytes of a commutation offset as this program stores it.
+    /// Length of a commutation offset stored by this program, in bytes.
     pub const COMMUTATION_BYTES: usize = 16;
 
-    /// Marks items that are recognised as values of the mounting and are not marked yet.
+    /// Marks all unmarked items that are recognised as values of the mounting.
     pub fn mark_mounting(&mut self) {
         for field in &self.fields {
             let Some(bytes) = &field.bytes else { continue };

@@ -1,4 +1,5 @@
-//! Planning a restore: only differences, in the fewest writes, and nothing that belongs to another encoder's mounting.
+//! Planning of a restore: differences only, in as few writes as possible, without values that belong to the mounting of
+//! another encoder.
 
 mod device;
 mod error;
@@ -21,29 +22,29 @@ use unknown::unknown_fields;
 use super::{FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile};
 use crate::devices::hiperface::protocol::FreeMemory;
 
-/// The options of a restore.
+/// Options of a restore.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RestoreOptions {
-    /// The profile may go onto an encoder with another serial number.
+    /// Whether the profile may be written to an encoder with another serial number.
     pub allow_other_device: bool,
-    /// The profile may go onto an encoder of another type.
+    /// Whether the profile may be written to an encoder of another type.
     pub allow_other_type: bool,
-    /// Values of the mounting may go onto another encoder.
+    /// Whether mounting values may be written to another encoder.
     pub with_mounting: bool,
-    /// If set, a field that has another size and is not the last may be deleted and created again, with all fields after
-    /// it.
+    /// Whether a field that has another size and is not the last may be deleted and created again, together with all
+    /// fields after it.
     pub recreate: bool,
-    /// Answers about data fields whose bytes have no known meaning and would be written to another encoder: copied, or left
-    /// out. A field without an answer is left out.
+    /// Decisions about data fields with bytes of unknown meaning that would be written to another encoder: copied or
+    /// left out. Without a decision a field is left out.
     pub copy: BTreeMap<u8, bool>,
 }
 
-/// Present state of an encoder's memory.
+/// Present state of the memory of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeviceState {
     /// Serial number; empty if the encoder has none.
     pub serial_number: String,
-    /// Type byte.
+    /// Type code.
     pub encoder_type: u8,
     /// Free memory and number of fields.
     pub memory: FreeMemory,
@@ -51,22 +52,22 @@ pub struct DeviceState {
     pub fields: Vec<FieldImage>,
 }
 
-/// The outcome of planning a restore.
+/// Result of planning a restore.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Restore {
-    /// The part that is common to all kinds of device.
+    /// The part common to all kinds of device.
     pub common: crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange>,
-    /// Data fields with bytes of unknown meaning that differ from another encoder's.
+    /// Data fields with bytes of unknown meaning that differ from those of another encoder.
     pub unknown_fields: Vec<UnknownField>,
-    /// Data fields created by the write that this restore undoes, and left in place: they have changed since, or are not
-    /// the last.
+    /// Data fields that the write created and that the restore leaves in place because they have changed since, or are
+    /// not the last.
     pub created_left: Vec<u8>,
 }
 
-/// Value that must be set up again after a restore from another encoder.
+/// A value that must be set up again after restoring the profile of another encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Redo {
-    /// The offset between encoder and motor.
+    /// Offset between encoder and motor.
     Commutation,
     /// A value of the mounting.
     Value(FieldRange),

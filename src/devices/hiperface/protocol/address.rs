@@ -1,9 +1,9 @@
-//! The address of a frame (manual, "ADDRESS-Format").
+//! Address byte of a frame (manual, "ADDRESS-Format").
 
 use std::fmt;
 
-/// The address that every encoder on the line obeys; each answers with its own address. Allowed only with one encoder
-/// connected, unless the command has no reply.
+/// The broadcast address, to which every encoder on the line responds with its own address. Allowed only if one encoder
+/// is connected, unless the command has no reply.
 pub const BROADCAST: u8 = 0xFF;
 
 /// The address byte of one encoder: device number 0…31 plus 40h, so 40h…5Fh.
@@ -14,13 +14,13 @@ impl DeviceAddress {
     /// 40h, the factory setting.
     pub const FACTORY: DeviceAddress = DeviceAddress(0x40);
 
-    /// 40h, the lowest.
+    /// Lowest address, 40h.
     pub const FIRST: DeviceAddress = DeviceAddress(0x40);
 
-    /// 5Fh, the highest.
+    /// Highest address, 5Fh.
     pub const LAST: DeviceAddress = DeviceAddress(0x5F);
 
-    /// Creates an address from the byte 40h…5Fh; `None` for any other.
+    /// Creates an address from a byte 40h…5Fh, or returns `None` for any other.
     pub const fn new(byte: u8) -> Option<Self> {
         if byte & 0xE0 == 0x40 { Some(DeviceAddress(byte)) } else { None }
     }
@@ -30,7 +30,7 @@ impl DeviceAddress {
         (Self::FIRST.0..=Self::LAST.0).map(DeviceAddress)
     }
 
-    /// Returns the byte on the line.
+    /// Returns the address byte.
     pub const fn byte(self) -> u8 {
         self.0
     }

@@ -1,4 +1,4 @@
-//! The twenty commands (manual, "Übersicht der Commands").
+//! The twenty HIPERFACE commands (manual, "Übersicht der Commands").
 
 use std::time::Duration;
 
@@ -29,20 +29,21 @@ pub enum Command {
     ConfigureLineTemporarily = 0x67,
 }
 
-/// One line of the manual's table.
+/// A row of the manual's command table.
 #[derive(Clone, Copy, Debug)]
 pub struct CommandRow {
     /// The command.
     pub command: Command,
-    /// The name in the manual.
+    /// Name in the manual.
     pub name: &'static str,
-    /// Whether "Code 0" is required.
+    /// Whether access code 0 is required.
     pub code0: bool,
-    /// Longest processing time of the command, excluding the transfer and the protocol's time-out; zero if it has no reply.
+    /// Maximum processing time, excluding the transfer and the time-out of the protocol; zero if the command has no
+    /// reply.
     pub max_time: Duration,
-    /// Bytes between command and checksum of the request; for 4Bh the least number.
+    /// Number of bytes between command and checksum of the request; for 4Bh the minimum.
     pub request_payload: usize,
-    /// Whether it changes persistent content of the encoder.
+    /// Whether the command changes persistent content of the encoder.
     pub persistent: bool,
 }
 
@@ -57,7 +58,7 @@ const fn row(
     CommandRow { command, name, code0, max_time: Duration::from_millis(max_ms), request_payload, persistent }
 }
 
-/// Every command in the manual's order with the manual's columns (times: column "maximale Antwortzeit").
+/// All commands in the order and with the columns of the manual (times from "maximale Antwortzeit").
 #[rustfmt::skip]
 pub const COMMANDS: [CommandRow; 20] = [
     //                                      name                                code0  ms  payload persistent
@@ -84,7 +85,7 @@ pub const COMMANDS: [CommandRow; 20] = [
 ];
 
 impl Command {
-    /// Returns the command of a command byte, ignoring its error bit.
+    /// Returns the command with this code, ignoring the error bit.
     pub fn from_byte(byte: u8) -> Option<Self> {
         COMMANDS.iter().map(|row| row.command).find(|command| command.byte() == byte & 0x7F)
     }
@@ -94,7 +95,7 @@ impl Command {
         self as u8
     }
 
-    /// Returns the command's line of the manual's table.
+    /// Returns the row of the command in the manual's table.
     pub fn row(self) -> &'static CommandRow {
         // The table lists every variant (tested); its first line is a fallback that is never used.
         let [first, ..] = &COMMANDS;

@@ -2,31 +2,31 @@
 
 use std::fmt;
 
-/// The number of the extended type label's field; read only.
+/// Number of the read-only field that contains the extended type label.
 pub const EXTENDED_LABEL_FIELD: u8 = 0xFF;
 
-/// Most data bytes in one 4Ah or 4Bh.
+/// Maximum number of data bytes in a 4Ah or 4Bh command.
 pub const MAX_TRANSFER: usize = 128;
 
-/// The number of one of the encoder's four access codes: 0…3.
+/// Number of one of the four access codes of the encoder, 0…3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CodeNumber(u8);
 
 impl CodeNumber {
-    /// Code 0 also guards the settings of the encoder itself.
+    /// Access code 0, which also protects the settings of the encoder itself.
     pub const ZERO: CodeNumber = CodeNumber(0);
 
-    /// Creates a number 0…3; `None` above.
+    /// Creates a number 0…3, or returns `None` above.
     pub const fn new(number: u8) -> Option<Self> {
         if number < 4 { Some(CodeNumber(number)) } else { None }
     }
 
-    /// Returns all four.
+    /// Returns all four numbers.
     pub fn all() -> impl Iterator<Item = CodeNumber> {
         (0..4).map(CodeNumber)
     }
 
-    /// Returns the number on the line.
+    /// Returns the number.
     pub const fn get(self) -> u8 {
         self.0
     }
@@ -38,7 +38,7 @@ impl fmt::Display for CodeNumber {
     }
 }
 
-/// An access code. It is never shown: not in a log, a trace, an error or a test's output.
+/// An access code. It is never disclosed in a log, a trace, an error or the output of a test.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct AccessCode(u8);
 
@@ -46,7 +46,7 @@ impl AccessCode {
     /// 55h, the factory value of all four codes.
     pub const FACTORY: AccessCode = AccessCode(0x55);
 
-    /// Creates it: any byte is an access code.
+    /// Creates an access code; every byte is valid.
     pub const fn new(byte: u8) -> Self {
         AccessCode(byte)
     }
@@ -63,15 +63,15 @@ impl fmt::Debug for AccessCode {
     }
 }
 
-/// Size of a data field: 16, 32 … 128 bytes.
+/// Size of a data field: 16, 32, … 128 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FieldSize(u8);
 
 impl FieldSize {
-    /// Bytes in a block, the unit in which memory is allocated.
+    /// Size in bytes of a block, the unit in which memory is allocated.
     pub const BLOCK: usize = 16;
 
-    /// Creates a size from bytes; `None` unless it is a multiple of 16 from 16 to 128.
+    /// Creates a size from a number of bytes, or returns `None` unless it is a multiple of 16 from 16 to 128.
     pub fn from_bytes(bytes: usize) -> Option<Self> {
         if !bytes.is_multiple_of(Self::BLOCK) {
             return None;
@@ -79,12 +79,12 @@ impl FieldSize {
         Self::from_blocks(u8::try_from(bytes / Self::BLOCK).ok()?)
     }
 
-    /// Creates a size in blocks of 16 bytes, 1…8.
+    /// Creates a size from a number of blocks, 1…8.
     pub const fn from_blocks(blocks: u8) -> Option<Self> {
         if 0 < blocks && blocks <= 8 { Some(FieldSize(blocks)) } else { None }
     }
 
-    /// Returns every size, smallest first.
+    /// Returns all sizes, smallest first.
     pub fn all() -> impl Iterator<Item = FieldSize> {
         (1..=8).map(FieldSize)
     }
@@ -100,7 +100,7 @@ impl FieldSize {
     }
 }
 
-/// The data field status byte of 4Ch and 4Dh.
+/// The data field status byte of commands 4Ch and 4Dh.
 ///
 /// | bit | 7 | 6 | 5..4 | 3 | 2..0 |
 /// |---|---|---|---|---|---|
@@ -113,12 +113,12 @@ impl DataFieldStatus {
     const WRITE_ENABLE: u8 = 0x40;
     const CODE_REQUIRED: u8 = 0x08;
 
-    /// Creates it: every byte is a status byte.
+    /// Creates a status from its byte; every value is valid.
     pub const fn from_byte(byte: u8) -> Self {
         DataFieldStatus(byte)
     }
 
-    /// Creates an existing, writable field.
+    /// Creates the status of an existing, writable field.
     pub const fn new(size: FieldSize, code: CodeNumber, code_required: bool) -> Self {
         let required = if code_required { Self::CODE_REQUIRED } else { 0 };
         DataFieldStatus(Self::EXISTS | Self::WRITE_ENABLE | code.0 << 4 | required | (size.0 - 1))
@@ -129,51 +129,51 @@ impl DataFieldStatus {
         self.0
     }
 
-    /// Returns E: the field is defined.
+    /// Returns whether the field exists (bit E).
     pub const fn exists(self) -> bool {
         self.0 & Self::EXISTS != 0
     }
 
-    /// Returns WE: the field may be written.
+    /// Returns whether the field may be written (bit WE).
     pub const fn is_writable(self) -> bool {
         self.0 & Self::WRITE_ENABLE != 0
     }
 
-    /// Returns the access code that guards the field.
+    /// Returns the access code that protects the field.
     pub const fn code(self) -> CodeNumber {
         CodeNumber(self.0 >> 4 & 3)
     }
 
-    /// Returns CE: reading and writing need the access code.
+    /// Returns whether reading and writing require the access code (bit CE).
     pub const fn code_required(self) -> bool {
         self.0 & Self::CODE_REQUIRED != 0
     }
 
-    /// Returns (SIZE + 1) · 16 bytes.
+    /// Returns the field size, (SIZE + 1) · 16 bytes.
     pub const fn size(self) -> FieldSize {
         FieldSize((self.0 & 7) + 1)
     }
 
-    /// Returns the same field, writable or not.
+    /// Returns a copy of the status with writing enabled or disabled.
     #[must_use]
     pub const fn with_write_enable(self, writable: bool) -> Self {
         DataFieldStatus(if writable { self.0 | Self::WRITE_ENABLE } else { self.0 & !Self::WRITE_ENABLE })
     }
 
-    /// Returns the same field, guarded by another access code, which reading asks for or not.
+    /// Returns a copy of the status with another access code, required or not.
     #[must_use]
     pub const fn with_code(self, code: CodeNumber, required: bool) -> Self {
         let rest = self.0 & !(Self::CODE_REQUIRED | 0x30);
         DataFieldStatus(rest | code.0 << 4 | if required { Self::CODE_REQUIRED } else { 0 })
     }
 
-    /// Returns the same field with another size.
+    /// Returns a copy of the status with another size.
     #[must_use]
     pub const fn with_size(self, size: FieldSize) -> Self {
         DataFieldStatus(self.0 & !7 | (size.0 - 1))
     }
 
-    /// Returns the status that deletes this field: E is 0.
+    /// Returns the status that deletes the field (E is 0).
     #[must_use]
     pub const fn deleted(self) -> Self {
         DataFieldStatus(self.0 & !Self::EXISTS)
@@ -197,12 +197,12 @@ impl fmt::Display for DataFieldStatus {
     }
 }
 
-/// Reply to 4Eh.
+/// Free memory of the encoder, in reply to 4Eh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FreeMemory {
-    /// Blocks of 16 bytes that no field uses.
+    /// Number of free blocks of 16 bytes.
     pub blocks: u8,
-    /// Number of data fields, the extended label not counted.
+    /// Number of data fields, excluding the extended label.
     pub fields: u8,
 }
 

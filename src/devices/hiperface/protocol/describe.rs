@@ -1,80 +1,81 @@
-//! Describes a captured frame as facts, for `decode` and the trace. Access codes are never included.
+//! Description of a captured frame as facts, for `decode` and the trace. Access codes are never included.
 
 use super::{
     AccessCode, Answer, CodeNumber, Command, DataFieldStatus, DeviceAddress, Frame, FrameError, LineSettings, Reply,
     Request, RequestError, StatusCode,
 };
 
-/// A fact in a frame.
+/// A fact about a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FrameFact {
-    /// Its address and command.
+    /// Address and command of the frame.
     Heading {
-        /// 40h…5Fh, FFh in a broadcast.
+        /// Address, 40h…5Fh, or FFh in a broadcast.
         address: u8,
-        /// The command byte as received, including the error bit.
+        /// Command byte as received, including the error bit.
         command: u8,
     },
-    /// A request.
+    /// The frame is a request.
     Request(Arguments),
-    /// Neither a request nor a reply that can be recognised without its request.
+    /// The frame is neither a request nor a reply that can be recognised without its request.
     NoRequest(RequestError),
-    /// A refusal with this code.
+    /// The encoder has refused the request with this code.
     Refused(StatusCode),
-    /// A code of the encoder's queue.
+    /// A code from the status queue of the encoder.
     Code(StatusCode),
-    /// A reply; one with codes has a fact for each code.
+    /// The frame is a reply; each status code in it is a separate fact.
     Reply(Reply),
 }
 
-/// The arguments of a request, without its access codes.
+/// Arguments of a request, without its access codes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Arguments {
-    /// Nothing but the command.
+    /// The command has no arguments.
     None,
-    /// A position to be set.
+    /// Position to set, in steps.
     Position(u32),
-    /// An analogue channel.
+    /// Analogue channel.
     Channel(u8),
-    /// Bytes of a data field.
+    /// Bytes to read from a data field.
     Read {
         /// Data field number.
         field: u8,
-        /// First byte.
+        /// Index of the first byte.
         address: u8,
         /// Number of bytes.
         count: u8,
     },
-    /// Bytes for a data field.
+    /// Bytes to write to a data field.
     Store {
         /// Data field number.
         field: u8,
-        /// First byte.
+        /// Index of the first byte.
         address: u8,
-        /// The bytes.
+        /// Bytes to write.
         data: Vec<u8>,
     },
-    /// A data field.
+    /// Number of a data field.
     Field(u8),
-    /// Another status for a data field.
+    /// New status for a data field.
     Define {
         /// Data field number.
         field: u8,
-        /// Its new status.
+        /// New status.
         status: DataFieldStatus,
     },
-    /// The access code of that number.
+    /// Number of the access code to change.
     Code(CodeNumber),
-    /// Another address.
+    /// New address.
     Address(DeviceAddress),
-    /// Interface settings.
+    /// New interface settings.
     Settings(LineSettings),
 }
 
-/// Describes a captured frame, the heading first. `request` is the previous request, if the frame may be its reply.
+/// Describes a captured frame, starting with its heading. `request` is the preceding request, if the frame may be its
+/// reply.
 ///
 /// # Errors
-/// Returns an error if the bytes are no frame.
+/// The bytes are not a frame.
 pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameFact>, FrameError> {
     let frame = Frame::parse(bytes)?;
     let mut facts = vec![FrameFact::Heading { address: frame.address, command: frame.command }];

@@ -1,5 +1,5 @@
-//! Encoder types: periods and turns for the type byte of 52h. The table is data
-//! (`assets/devices/hiperface/encoder_types.ron`), so that a user can add an encoder.
+//! Encoder types: periods and turns for the type code in the reply to 52h. The table is data
+//! (`assets/devices/hiperface/encoder_types.ron`), so users can add encoders.
 
 use std::ops::RangeInclusive;
 
@@ -7,49 +7,49 @@ use serde::Deserialize;
 
 use super::Geometry;
 
-/// One row of the table.
+/// A row of the encoder type table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EncoderType {
-    /// The type byte.
+    /// Type code.
     pub code: u8,
-    /// Family name, as on the data sheet.
+    /// Family name on the data sheet.
     pub name: String,
-    /// Periods and turns; `None` if the extended label or the user has to supply them.
+    /// Periods and turns, or `None` if the extended label or the user must supply them.
     pub geometry: Option<Geometry>,
-    /// Whether it has no bearing of its own: its code tracks are aligned with 63h after mounting.
+    /// Whether the encoder has no bearing and its code tracks are aligned with 63h after mounting.
     pub kit: bool,
 }
 
-/// All known encoder types.
+/// The encoder type table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EncoderTypes(Vec<EncoderType>);
 
 /// The reason why a table is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TypeTableError {
-    /// The text is not the RON expected.
+    /// The table is not valid RON.
     #[error("line {line}, column {column}: {problem}")]
     Syntax {
-        /// Line, counted from 1.
+        /// Line number, starting at 1.
         line: usize,
-        /// Column, counted from 1.
+        /// Column number, starting at 1.
         column: usize,
         /// Message of the parser.
         problem: String,
     },
-    /// A number is zero or too large.
+    /// A number is out of range.
     #[error("type {code:02X}h: {entry} must be between {} and {}", range.start(), range.end())]
     Range {
-        /// The row's type byte.
+        /// Type code of the row.
         code: u8,
-        /// The entry with this number.
+        /// The invalid entry.
         entry: ShapeEntry,
-        /// The possible range.
+        /// Valid range.
         range: RangeInclusive<u32>,
     },
 }
 
-/// A number in the shape of an encoder type, by its name in the file.
+/// A number that describes an encoder type, by its name in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ShapeEntry {
     /// Periods per turn.
@@ -89,13 +89,14 @@ enum Shape {
 }
 
 impl EncoderTypes {
-    /// The table that ships with the program.
+    /// The table shipped with the program.
     pub const BUILT_IN: &'static str = include_str!("../../../../assets/devices/hiperface/encoder_types.ron");
 
-    /// Reads a table.
+    /// Parses a table.
     ///
     /// # Errors
-    /// Returns line and column if the text is not RON or has unknown keys; both limits if a number is out of its range.
+    /// Returns line and column if the table is not valid RON or has unknown keys, and both limits if a number is out of
+    /// range.
     pub fn parse(text: &str) -> Result<Self, TypeTableError> {
         let file: File = ron::from_str(text).map_err(|error| TypeTableError::Syntax {
             line: error.span.start.line,
@@ -105,13 +106,13 @@ impl EncoderTypes {
         file.types.into_iter().map(Row::check).collect::<Result<_, _>>().map(EncoderTypes)
     }
 
-    /// Creates the built-in table.
+    /// Returns the built-in table.
     pub fn built_in() -> Self {
         // A test checks that it can be parsed; an empty table would only make every type unknown.
         Self::parse(Self::BUILT_IN).unwrap_or(EncoderTypes(Vec::new()))
     }
 
-    /// Returns this table with the rows of `other`, which take precedence.
+    /// Returns this table combined with the rows of `other`, which take precedence.
     #[must_use]
     pub fn overlaid_with(self, other: EncoderTypes) -> Self {
         let mut rows = other.0;
@@ -119,7 +120,7 @@ impl EncoderTypes {
         EncoderTypes(rows)
     }
 
-    /// Returns the row of a type byte.
+    /// Returns the row for a type code.
     pub fn find(&self, code: u8) -> Option<&EncoderType> {
         self.0.iter().find(|row| row.code == code)
     }

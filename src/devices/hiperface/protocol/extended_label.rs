@@ -3,83 +3,83 @@
 use super::type_label::text;
 use super::{Geometry, checksum};
 
-/// The extended label of an encoder with type FFh.
+/// The extended label of an encoder with type code FFh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExtendedLabel {
-    /// Whether the stored checksum is the XOR of all other bytes. The algorithm is not public (`U`): a difference causes a
-    /// warning, never a refusal.
+    /// Whether the stored checksum is the XOR of all other bytes. The algorithm is not public (`U`): a mismatch causes
+    /// a warning, never a refusal.
     pub checksum_fits: bool,
-    /// Byte 01h: bit 0 linear, bit 1 bipolar counting; shown raw, because another public source has bit 1 reversed.
+    /// Byte 01h: bit 0 linear, bit 1 bipolar counting; displayed raw, because another public source inverts bit 1.
     pub flags: u8,
     /// Periods and turns, or period length and range; `None` if a number is zero or too large.
     pub geometry: Option<Geometry>,
-    /// Designation, 18 characters, blank padded.
+    /// Designation of 18 characters, padded with blanks.
     pub designation: String,
-    /// The limits that are valid, in the order of their numbers.
+    /// The valid limits in the order of their numbers.
     pub parameters: Vec<LabelParameter>,
 }
 
-/// A limit. The encoder's data sheet defines the meaning of each number (`U`); the first word of a quantity that 44h can
-/// read is its analogue channel.
+/// A limit. The data sheet of the encoder defines the meaning of each number (`U`); the first word of a quantity that
+/// 44h can read is its analogue channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LabelParameter {
-    /// 0…14 in the first set, 15…29 in the second, 30…44 in the third.
+    /// Number of the limit: 0…14 in the first set, 15…29 in the second, 30…44 in the third.
     pub number: u8,
-    /// The word, two's complement.
+    /// Value in two's complement.
     pub value: i16,
 }
 
 /// A part of the label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelPart {
-    /// 00h.
+    /// Checksum, 00h.
     Checksum,
-    /// 01h.
+    /// Flags, 01h.
     Flags,
-    /// 02h…05h: periods per revolution, or the length of a period in nanometres.
+    /// 02h…05h: periods per revolution, or period length in nanometres.
     Resolution(u32),
-    /// 06h…09h: revolutions, or the coded range in periods.
+    /// 06h…09h: number of revolutions, or coded range in periods.
     Range(u32),
-    /// 0Ah…1Bh.
+    /// Designation, 0Ah…1Bh.
     Designation,
-    /// The valid limits of a set: bits 0 to 14, and bit 15 if another set follows.
+    /// Selector of a set: bits 0 to 14 mark valid limits, bit 15 another set.
     Selector(u16),
-    /// A limit; one that its selector omits is not used.
+    /// A limit, unused if its selector omits it.
     Limit {
         /// Number of the limit.
         number: u8,
-        /// The word.
+        /// Value in two's complement.
         value: i16,
         /// Whether the selector bit of this entry is set.
         valid: bool,
     },
 }
 
-/// The reason why a data field is not an extended label.
+/// The reason why a data field does not contain an extended label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LabelError {
-    /// Too short for the description in bytes 00h…1Bh.
+    /// The content is too short for the description in bytes 00h…1Bh.
     #[error("{got} bytes are too few for an extended type label of at least {}", ExtendedLabel::MIN_BYTES)]
     Short {
-        /// Bytes there were.
+        /// Length of the content in bytes.
         got: usize,
     },
 }
 
 impl ExtendedLabel {
-    /// Bytes 00h…1Bh: the description without limits.
+    /// Length of the description without limits, bytes 00h…1Bh.
     pub const MIN_BYTES: usize = 0x1C;
-    /// Bit 0 of the flags.
+    /// Bit 0 of the flags: linear encoder.
     pub const LINEAR: u8 = 0x01;
-    /// Bit 1 of the flags.
+    /// Bit 1 of the flags: bipolar counting.
     pub const BIPOLAR: u8 = 0x02;
     /// A selector word and fifteen limit words.
     const SET_BYTES: usize = 32;
 
-    /// Reads the content of field FFh.
+    /// Parses the content of field FFh. Limits beyond the end of the field are omitted.
     ///
     /// # Errors
-    /// [`LabelError::Short`] if the description is not complete. Limits beyond the end of the field are left out.
+    /// [`LabelError::Short`] if the description is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, LabelError> {
         let (description, sets) =
             bytes.split_first_chunk::<{ Self::MIN_BYTES }>().ok_or(LabelError::Short { got: bytes.len() })?;
@@ -95,9 +95,9 @@ impl ExtendedLabel {
         })
     }
 
-    /// Returns limits of quantities that 44h can read: the analogue channel and the value that its reading should not
-    /// exceed. Two consecutive parameters are taken for such a pair; the data sheet defines which ones are (`U`), so a pair
-    /// is only used for a remark if its channel answers.
+    /// Returns the limits of quantities that 44h can read: the analogue channel and the value that its reading should
+    /// not exceed. Every two consecutive parameters are assumed to form such a pair; since the data sheet defines the
+    /// actual ones (`U`), a pair is only used for a remark if its channel replies.
     pub fn limits(&self) -> Vec<(u8, i16)> {
         let mut limits = Vec::new();
         let mut rest = self.parameters.as_slice();
@@ -112,10 +112,10 @@ impl ExtendedLabel {
         limits
     }
 
-    /// Returns the parts of the label, byte by byte: address, number of bytes, and meaning.
+    /// Returns the parts of the label: address, length in bytes, and meaning.
     ///
     /// # Errors
-    /// [`LabelError::Short`] when the description is not complete.
+    /// [`LabelError::Short`] if the description is incomplete.
     pub fn parts(bytes: &[u8]) -> Result<Vec<(usize, usize, LabelPart)>, LabelError> {
         let (description, mut sets) =
             bytes.split_first_chunk::<{ Self::MIN_BYTES }>().ok_or(LabelError::Short { got: bytes.len() })?;

@@ -1,6 +1,6 @@
-//! The frame: address, command byte, payload, XOR checksum (manual, "Das Übertragungsprotokoll").
+//! Frames: address, command byte, payload and XOR checksum (manual, "Das Übertragungsprotokoll").
 
-/// Returns the XOR of all bytes; zero over a complete valid frame.
+/// Returns the XOR of all bytes, which is zero for a complete valid frame.
 pub fn checksum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
@@ -8,41 +8,41 @@ pub fn checksum(bytes: &[u8]) -> u8 {
 /// A frame with a valid checksum. The command defines the meaning of the payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// Address byte as received: 40h…5Fh, FFh in a broadcast.
+    /// Address byte as received: 40h…5Fh, or FFh in a broadcast.
     pub address: u8,
-    /// Command byte as received, error bit included.
+    /// Command byte as received, including the error bit.
     pub command: u8,
-    /// Everything between the command byte and the checksum.
+    /// Bytes between the command byte and the checksum.
     pub payload: &'a [u8],
 }
 
 /// The reason why bytes are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// Fewer than the three bytes that every frame has.
+    /// Fewer than three bytes, the minimum length of a frame.
     #[error("{got} bytes are too few for a frame")]
     Short {
-        /// Bytes received.
+        /// Received length in bytes.
         got: usize,
     },
-    /// The last byte is not the XOR of the others.
+    /// The last byte is not the XOR of all others.
     #[error("checksum {got:02X} where {expected:02X} was expected")]
     Checksum {
-        /// The checksum calculated from the other bytes.
+        /// Checksum calculated over the received bytes.
         expected: u8,
-        /// The checksum received.
+        /// Received checksum.
         got: u8,
     },
 }
 
 impl<'a> Frame<'a> {
-    /// The error bit of a reply's command byte.
+    /// Error bit in the command byte of a reply.
     pub const ERROR_BIT: u8 = 0x80;
 
-    /// Parses a frame, which is the complete slice: silence on the line marks its end.
+    /// Parses a frame that fills the slice; on the line, silence marks its end.
     ///
     /// # Errors
-    /// [`FrameError::Short`] below three bytes, [`FrameError::Checksum`] if the last byte does not fit.
+    /// [`FrameError::Short`] below three bytes, [`FrameError::Checksum`] if the checksum does not match.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, FrameError> {
         let [address, command, payload @ .., got] = bytes else {
             return Err(FrameError::Short { got: bytes.len() });
@@ -54,7 +54,7 @@ impl<'a> Frame<'a> {
         Ok(Frame { address: *address, command: *command, payload })
     }
 
-    /// Returns the bytes on the line, checksum last.
+    /// Returns the frame as bytes, including the checksum.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.payload.len() + 3);
         bytes.extend([self.address, self.command]);

@@ -1,11 +1,11 @@
-//! The settings byte of the serial interface: 52h reads it, 57h and 67h set it (manual, figure 42; the order of bits 7
-//! and 6 is derived from the figure's order).
+//! Settings byte of the serial interface: read with 52h, set with 57h and 67h (manual, figure 42; the order of bits 7
+//! and 6 is derived from the order in the figure).
 
 use std::fmt;
 
 use crate::units::{Baud, CharacterFormat, Parity};
 
-/// Speeds by their three-bit code; 111 is reserved.
+/// Baud rates by their three-bit code; 111 is reserved.
 pub const BAUDS: [Baud; 7] = [baud(600), baud(1200), baud(2400), baud(4800), baud(9600), baud(19200), baud(38400)];
 
 const fn baud(bits_per_second: u32) -> Baud {
@@ -30,17 +30,17 @@ impl LineSettings {
     const STANDARD: u8 = 0x80;
     const LONG_TIMEOUT: u8 = 0x40;
 
-    /// Creates it: every byte is kept, also one with reserved values.
+    /// Creates settings from their byte; reserved values are preserved.
     pub const fn from_byte(byte: u8) -> Self {
         LineSettings(byte)
     }
 
-    /// Returns the byte on the line.
+    /// Returns the settings byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Returns the same interface with another character format; `None` for a speed that the byte cannot express.
+    /// Returns a copy with another character format, or `None` for a baud rate that the byte cannot express.
     pub fn with_format(self, format: CharacterFormat) -> Option<Self> {
         let speed = u8::try_from(BAUDS.iter().position(|baud| *baud == format.baud)?).ok()?;
         let parity = match format.parity {
@@ -51,24 +51,24 @@ impl LineSettings {
         Some(LineSettings(self.0 & 0xC8 | parity << 4 | speed))
     }
 
-    /// Returns the same interface with a time-out of 44/baud, or of 11/baud.
+    /// Returns a copy with a time-out of 44/baud or 11/baud.
     #[must_use]
     pub const fn with_long_timeout(self, long: bool) -> Self {
         LineSettings(if long { self.0 | Self::LONG_TIMEOUT } else { self.0 & !Self::LONG_TIMEOUT })
     }
 
-    /// Returns the same interface for a bus of several encoders, or for one.
+    /// Returns a copy for a bus with several encoders or for a single one.
     #[must_use]
     pub const fn with_bus(self, bus: bool) -> Self {
         LineSettings(if bus { self.0 & !Self::STANDARD } else { self.0 | Self::STANDARD })
     }
 
-    /// Returns the speed; `None` for the reserved code 111.
+    /// Returns the baud rate, or `None` for the reserved code 111.
     pub fn baud(self) -> Option<Baud> {
         BAUDS.get(usize::from(self.0 & 7)).copied()
     }
 
-    /// Returns the parity; `None` for the reserved code 01.
+    /// Returns the parity, or `None` for the reserved code 01.
     pub const fn parity(self) -> Option<Parity> {
         match self.0 >> 4 & 3 {
             0b00 => Some(Parity::None),
@@ -78,22 +78,22 @@ impl LineSettings {
         }
     }
 
-    /// Returns speed and parity; `None` if either is reserved.
+    /// Returns the character format, or `None` if baud rate or parity is reserved.
     pub fn format(self) -> Option<CharacterFormat> {
         Some(CharacterFormat { baud: self.baud()?, parity: self.parity()? })
     }
 
-    /// Returns whether bit 6 is set: the time-out is 44/baud, else 11/baud.
+    /// Returns whether the time-out is 44/baud (bit 6 is set) rather than 11/baud.
     pub const fn long_timeout(self) -> bool {
         self.0 & Self::LONG_TIMEOUT != 0
     }
 
-    /// Returns whether bit 7 is 0: an encoder for a bus of several.
+    /// Returns whether bit 7 is 0: the encoder is configured for a bus.
     pub const fn is_bus(self) -> bool {
         self.0 & Self::STANDARD == 0
     }
 
-    /// Returns whether there is no reserved value, so that it may be sent to an encoder.
+    /// Returns whether the byte contains no reserved values and may be sent to an encoder.
     pub fn is_valid(self) -> bool {
         self.format().is_some() && self.0 & 0x08 == 0
     }

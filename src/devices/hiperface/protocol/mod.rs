@@ -1,12 +1,12 @@
 //! The HIPERFACE parameter channel: frames, commands, status codes, data fields, labels and timing.
 //!
-//! Source: SICK 8010701 *HIPERFACE® – Beschreibung / Description* ("the manual" below). Facts that the manual leaves open
-//! are marked `U` (unknown) and treated tolerantly; facts from other public sources are marked `P`.
+//! Source: SICK 8010701 *HIPERFACE® – Beschreibung / Description* ("the manual"). Facts that the manual leaves open are
+//! marked `U` (unknown) and treated tolerantly; facts from other public sources are marked `P`.
 //!
 //! ```text
 //! request : ADDR CMD [args…] CHK        reply : ADDR CMD [data…] CHK
 //! ```
-//! A frame ends with silence. `CHK` is the XOR of all bytes before it. Bit 7 of a reply's `CMD` is the error bit.
+//! A frame ends with silence. `CHK` is the XOR of all preceding bytes. Bit 7 of `CMD` is the error bit of a reply.
 
 #![warn(missing_docs)]
 

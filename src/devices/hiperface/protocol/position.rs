@@ -1,31 +1,31 @@
-//! The position word: 5 bits per signal period, least significant bit right-aligned (manual, "Position lesen").
+//! The position word: 5 bits per signal period, right-aligned (manual, "Position lesen").
 
 use std::fmt;
 
-/// Steps per signal period: the position always resolves 5 bits of it.
+/// Number of position steps per signal period, always 32.
 pub const STEPS_PER_PERIOD: u32 = 32;
 
-/// The meaning of the steps of an encoder.
+/// Geometry of an encoder, which gives steps their meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Geometry {
-    /// A shaft.
+    /// A rotary encoder.
     Rotary {
-        /// Signal periods in a revolution, at least 1.
+        /// Signal periods per revolution, at least 1.
         periods: u32,
-        /// Revolutions that the encoder distinguishes: 1 for a singleturn.
+        /// Number of revolutions that the encoder distinguishes; 1 for a singleturn encoder.
         turns: u32,
     },
-    /// A scale or a distance.
+    /// A linear encoder.
     Linear {
         /// Length of a signal period in nanometres, at least 1.
         period_nm: u32,
-        /// Coded range in periods; 0 if it is not known.
+        /// Coded range in periods, or 0 if unknown.
         periods: u32,
     },
 }
 
 impl Geometry {
-    /// Returns the steps per revolution; `None` for a linear encoder.
+    /// Returns the number of steps per revolution, or `None` for a linear encoder.
     pub fn steps_per_turn(self) -> Option<u64> {
         match self {
             Geometry::Rotary { periods, .. } => Some(u64::from(periods.max(1)) * u64::from(STEPS_PER_PERIOD)),
@@ -33,7 +33,7 @@ impl Geometry {
         }
     }
 
-    /// Returns the number of different positions, which run from 0 to one less; `None` if it is not known.
+    /// Returns the number of distinct positions, which start at 0, or `None` if unknown.
     pub fn range(self) -> Option<u64> {
         match self {
             Geometry::Rotary { turns, .. } => Some(self.steps_per_turn()?.saturating_mul(u64::from(turns.max(1)))),
@@ -42,7 +42,7 @@ impl Geometry {
         }
     }
 
-    /// Takes a position word apart.
+    /// Interprets a position word.
     pub fn position(self, raw: u32) -> Position {
         let in_range = self.range().is_none_or(|range| u64::from(raw) < range);
         match self {
@@ -70,12 +70,12 @@ impl fmt::Display for Geometry {
     }
 }
 
-/// A position word with its meaning.
+/// A position word together with its geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// The word as received.
+    /// Position word as received.
     pub raw: u32,
-    /// Whether the word is within the encoder's measuring range.
+    /// Whether the word is within the measuring range of the encoder.
     pub in_range: bool,
     place: Location,
 }
@@ -87,7 +87,7 @@ enum Location {
 }
 
 impl Position {
-    /// Returns whole revolutions; `None` for a linear encoder.
+    /// Returns the whole revolutions, or `None` for a linear encoder.
     pub fn turns(self) -> Option<u64> {
         match self.place {
             Location::Rotary { turns, .. } => Some(turns),
@@ -95,7 +95,7 @@ impl Position {
         }
     }
 
-    /// Returns steps within the revolution; `None` for a linear encoder.
+    /// Returns the steps within the revolution, or `None` for a linear encoder.
     pub fn steps(self) -> Option<u64> {
         match self.place {
             Location::Rotary { steps, .. } => Some(steps),
@@ -103,7 +103,7 @@ impl Position {
         }
     }
 
-    /// Returns degrees within the revolution, 0 up to 360; `None` for a linear encoder.
+    /// Returns the angle in degrees, from 0 up to 360, or `None` for a linear encoder.
     pub fn degrees(self) -> Option<f64> {
         match self.place {
             Location::Rotary { degrees, .. } => Some(degrees),
@@ -111,7 +111,7 @@ impl Position {
         }
     }
 
-    /// Returns millimetres; `None` for a rotary encoder.
+    /// Returns the distance in millimetres, or `None` for a rotary encoder.
     pub fn millimetres(self) -> Option<f64> {
         match self.place {
             Location::Rotary { .. } => None,
@@ -129,9 +129,9 @@ impl fmt::Display for Position {
     }
 }
 
-/// Returns the value nearest to `wanted` that has the five lowest bits of `now`, so that setting it keeps the phase between
-/// the absolute value and the sine signal (manual, "Position setzen": the five lowest bits equal the five highest of the
-/// arctangent). It stays within `range`; of two equally near values the lower is taken.
+/// Returns the value nearest to `wanted` whose five lowest bits equal those of `now`, so that setting it preserves the
+/// phase between the absolute value and the sine signal (manual, "Position setzen": the five lowest bits equal the five
+/// highest of the arctangent). The value lies within `range`; of two equally near values the lower one is returned.
 pub fn nearest_in_phase(now: u32, wanted: u32, range: Option<u64>) -> u32 {
     let phase = u64::from(now % STEPS_PER_PERIOD);
     let wanted = u64::from(wanted);

@@ -1,51 +1,52 @@
-//! The replies of an encoder. Replies repeat address and command, then the requested data (manual, "Fehlerbehandlung").
+//! Replies of an encoder. A reply repeats address and command, followed by the requested data (manual,
+//! "Fehlerbehandlung").
 //!
-//! The layouts of the replies to 55h, 57h and 67h are not printed (`U`): both are accepted, with and without the repeated
-//! argument.
+//! The manual does not print the layouts of the replies to 55h, 57h and 67h (`U`): both forms are accepted, with and
+//! without the repeated argument.
 
 use super::{
     Command, DataFieldStatus, DeviceAddress, Frame, FrameError, FreeMemory, LineSettings, Request, SerialLabel,
     StatusCode, TypeLabel,
 };
 
-/// The data of a reply.
+/// Data of a reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// Carried out, without data.
+    /// The command was executed and returns no data.
     Done,
     /// 42h: position in steps (1/32 period).
     Position(u32),
-    /// 44h: signed value, usually 10 bits for 5 V or the quantity of the data sheet.
+    /// 44h: signed analogue value, usually 10 bits for 5 V or the quantity stated in the data sheet.
     Analogue(i16),
-    /// 46h: 0…FFFFFFh.
+    /// 46h: counter value, 0…FFFFFFh.
     Counter(u32),
     /// 4Ah: the requested bytes.
     Data(Vec<u8>),
-    /// 4Ch: the field's status byte.
+    /// 4Ch: status byte of the field.
     FieldStatus(DataFieldStatus),
-    /// 4Eh.
+    /// 4Eh: free memory.
     FreeMemory(FreeMemory),
-    /// 50h: one code; some encoders send up to four.
+    /// 50h: a status code; some encoders send up to four.
     Status(Vec<StatusCode>),
-    /// 52h.
+    /// 52h: type label.
     TypeLabel(TypeLabel),
-    /// 56h.
+    /// 56h: serial number and firmware.
     Serial(SerialLabel),
 }
 
-/// A reply that belongs to its request.
+/// A reply that matches its request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// The request was carried out.
+    /// The command was executed.
     Reply {
-        /// Error bit: codes wait in the queue, to be read with 50h.
+        /// Whether codes are waiting in the status queue (error bit); read them with 50h.
         pending: bool,
-        /// The data.
+        /// Reply data.
         reply: Reply,
     },
-    /// The request was refused, with at least one code.
+    /// The command was refused with at least one status code.
     Rejected {
-        /// More codes wait in the queue.
+        /// Whether more codes are waiting in the status queue.
         pending: bool,
         /// The status codes.
         codes: Vec<StatusCode>,
@@ -55,50 +56,50 @@ pub enum Answer {
 /// The reason why bytes are not the reply to a request.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
-    /// Not a frame.
+    /// The bytes are not a frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// A reply from another address.
+    /// The reply comes from another address.
     #[error("reply from address {got:02X}h instead of {expected:02X}h")]
     Address {
-        /// The address of the request.
+        /// Address in the request.
         expected: u8,
-        /// The address of the reply.
+        /// Address in the reply.
         got: u8,
     },
-    /// A reply to another command.
+    /// The reply belongs to another command.
     #[error("reply to command {got:02X}h instead of {expected:02X}h")]
     Command {
-        /// The command sent.
+        /// Command in the request.
         expected: u8,
-        /// The command of the reply.
+        /// Command in the reply.
         got: u8,
     },
-    /// Too many or too few data bytes.
+    /// The number of data bytes is wrong.
     #[error("wrong length of the reply to {command:02X}h ({got} data bytes)")]
     Length {
-        /// The command.
+        /// Command byte.
         command: u8,
-        /// Data bytes received.
+        /// Number of data bytes received.
         got: usize,
     },
-    /// The repeated arguments are not those of the request.
+    /// The repeated arguments differ from those of the request.
     #[error("the arguments in the reply differ from those sent")]
     Argument,
 }
 
-/// The possible lengths of a reply in bytes, checksum included.
+/// Possible lengths of a reply in bytes, including the checksum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReplyLength {
-    /// Shortest.
+    /// Minimum length.
     pub min: usize,
-    /// Greatest length: no more bytes follow.
+    /// Maximum length; no more bytes follow.
     pub max: usize,
 }
 
 impl Request {
-    /// Returns the reply's length, as far as it follows from the request and the bytes `received` so far. `None` for a
-    /// request without reply.
+    /// Returns the possible lengths of the reply, as far as the request and the bytes `received` so far determine them.
+    /// `None` for a request without a reply.
     pub fn reply_length(&self, received: &[u8]) -> Option<ReplyLength> {
         let rejected = received.get(1).is_some_and(|command| command & 0x7F == Command::ReadStatus.byte());
         let payload = |min, max| Some(ReplyLength { min: min + 3, max: max + 3 });
@@ -122,11 +123,11 @@ impl Request {
         }
     }
 
-    /// Reads the reply to this request, which was sent to `address` (40h…5Fh or broadcast).
+    /// Parses the reply to this request, which was sent to `address` (40h…5Fh or broadcast).
     ///
     /// # Errors
-    /// A damaged frame, another sender, another command, a wrong length or other arguments: no value of such a reply may be
-    /// shown.
+    /// The frame is damaged, or its sender, command, length or arguments do not match the request. No value of such a
+    /// reply may be displayed.
     pub fn parse_reply(&self, address: u8, bytes: &[u8]) -> Result<Answer, ReplyError> {
         let frame = Frame::parse(bytes)?;
         self.check_sender(address, frame.address)?;

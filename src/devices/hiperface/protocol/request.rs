@@ -1,5 +1,5 @@
-//! The requests of a host: typed arguments ↔ bytes (manual, "Die Befehle"; argument order of 43h, 46h and 56h from
-//! public implementations, `P`).
+//! Requests of the host: typed arguments ↔ bytes (manual, "Die Befehle"; argument order of 43h, 46h and 56h from public
+//! implementations, `P`).
 
 use std::fmt;
 
@@ -8,136 +8,136 @@ use super::{
 };
 use crate::bits::MaskedBytes;
 
-/// A request without its address.
+/// A request without the address of the encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// 42h: the absolute position.
+    /// 42h: reads the absolute position.
     ReadPosition,
-    /// 43h: sets the position of the shaft. Only at standstill.
+    /// 43h: sets the position of the shaft. Allowed at standstill only.
     SetPosition {
         /// New position in steps (1/32 period).
         position: u32,
-        /// Code 0.
+        /// Access code 0.
         code0: AccessCode,
     },
-    /// 44h: an analogue value.
+    /// 44h: reads an analogue value.
     ReadAnalogue {
-        /// Channel number of the data sheet.
+        /// Channel number stated in the data sheet.
         channel: u8,
     },
-    /// 46h: the 24-bit counter.
+    /// 46h: reads the 24-bit counter.
     ReadCounter,
     /// 47h: increments the counter. Wears the EEPROM, which endures about a million writes.
     IncrementCounter,
-    /// 49h: counter to 0.
+    /// 49h: clears the counter.
     ClearCounter {
-        /// Code 0.
+        /// Access code 0.
         code0: AccessCode,
     },
-    /// 4Ah: bytes of a data field.
+    /// 4Ah: reads bytes of a data field.
     ReadData {
         /// Data field number, FFh for the extended label.
         field: u8,
-        /// First byte within the field.
+        /// Index of the first byte within the field.
         address: u8,
         /// Number of bytes, 1…128.
         count: u8,
-        /// The field's access code; ignored by the encoder if CE is 0.
+        /// Access code of the field; ignored by the encoder if CE is 0.
         code: AccessCode,
     },
-    /// 4Bh: write bytes of a data field.
+    /// 4Bh: writes bytes of a data field.
     StoreData {
         /// Data field number.
         field: u8,
-        /// First byte within the field.
+        /// Index of the first byte within the field.
         address: u8,
-        /// The field's access code.
+        /// Access code of the field.
         code: AccessCode,
-        /// 1…128 bytes.
+        /// Bytes to write, 1…128.
         data: Vec<u8>,
     },
-    /// 4Ch: the status byte of a data field.
+    /// 4Ch: reads the status byte of a data field.
     FieldStatus {
         /// Data field number.
         field: u8,
     },
-    /// 4Dh: create, change or delete a data field.
+    /// 4Dh: creates, changes or deletes a data field.
     DefineField {
         /// Data field number.
         field: u8,
-        /// Its new status; E = 0 deletes.
+        /// New status; E = 0 deletes the field.
         status: DataFieldStatus,
         /// Access code of the field.
         code: AccessCode,
     },
-    /// 4Eh: free memory and number of fields.
+    /// 4Eh: reads the free memory and the number of fields.
     FreeMemory,
-    /// 4Fh: change an access code.
+    /// 4Fh: changes an access code.
     ChangeCode {
-        /// The access code.
+        /// Number of the access code.
         number: CodeNumber,
-        /// Its present value.
+        /// Present code.
         old: AccessCode,
-        /// Its new value.
+        /// New code.
         new: AccessCode,
     },
-    /// 50h: removes the oldest code from the encoder's queue.
+    /// 50h: reads and removes the oldest code of the status queue.
     ReadStatus,
-    /// 52h: the type label.
+    /// 52h: reads the type label.
     ReadTypeLabel,
-    /// 53h: restart. There is no reply.
+    /// 53h: restarts the encoder. There is no reply.
     Reset,
-    /// 55h: another address.
+    /// 55h: changes the address.
     SetAddress {
-        /// The address from now on.
+        /// New address, effective immediately.
         new: DeviceAddress,
-        /// Code 0.
+        /// Access code 0.
         code0: AccessCode,
     },
-    /// 56h: serial number and firmware.
+    /// 56h: reads serial number and firmware.
     ReadSerial,
-    /// 57h: interface settings, effective after the next reset.
+    /// 57h: stores interface settings, effective after the next reset.
     ConfigureLine {
         /// New settings.
         settings: LineSettings,
-        /// Code 0.
+        /// Access code 0.
         code0: AccessCode,
     },
-    /// 63h: set position and align the code tracks of a kit encoder. Only at standstill.
+    /// 63h: sets the position and aligns the code tracks of a kit encoder. Allowed at standstill only.
     Synchronise {
         /// New position in steps (1/32 period).
         position: u32,
-        /// Code 0.
+        /// Access code 0.
         code0: AccessCode,
     },
-    /// 67h: interface settings, effective at once and until the next reset.
+    /// 67h: changes interface settings immediately, until the next reset.
     ConfigureLineTemporarily {
         /// New settings.
         settings: LineSettings,
     },
 }
 
-/// The reason why an encoder does not understand a request.
+/// The reason why an encoder rejects a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
-    /// Not one of the twenty commands.
+    /// The command is unknown.
     #[error("{0:02X}h is not a command")]
     Command(u8),
-    /// A command with the wrong number of arguments.
+    /// The number of argument bytes does not match the command.
     #[error("{got} argument bytes instead of {expected}")]
     Length {
-        /// Bytes the command takes.
+        /// Required number of bytes.
         expected: usize,
-        /// Bytes there were.
+        /// Received number of bytes.
         got: usize,
     },
-    /// An argument out of its range.
+    /// An argument is out of range.
     #[error("argument {0} is out of range")]
     Argument(&'static str),
 }
 
 impl RequestError {
-    /// Returns the status code an encoder answers with.
+    /// Returns the status code with which an encoder replies.
     pub fn status(self) -> StatusCode {
         match self {
             RequestError::Command(_) => StatusCode::UNKNOWN_COMMAND,
@@ -174,7 +174,7 @@ impl Request {
         }
     }
 
-    /// Returns the frame for the line. `address` is 40h…5Fh or [`BROADCAST`](super::BROADCAST).
+    /// Returns the frame to send. `address` is 40h…5Fh or [`BROADCAST`](super::BROADCAST).
     pub fn emit(&self, address: u8) -> SecretFrame {
         let (payload, codes) = self.payload();
         let frame = Frame { address, command: self.command().byte(), payload: &payload };
@@ -186,10 +186,11 @@ impl Request {
         SecretFrame { bytes, secret }
     }
 
-    /// Reads the request in a frame.
+    /// Parses a request.
     ///
     /// # Errors
-    /// Errors in the order in which an encoder checks (`U`): the command, the number of arguments, their ranges.
+    /// Errors are found in the order in which an encoder checks (`U`): the command, the number of arguments, their
+    /// ranges.
     pub fn parse(frame: &Frame<'_>) -> Result<Self, RequestError> {
         let command = Command::from_byte(frame.command)
             .filter(|_| frame.command & Frame::ERROR_BIT == 0)
@@ -307,7 +308,7 @@ impl Request {
     }
 }
 
-/// A request's bytes, with the information which of them reveal an access code.
+/// The bytes of a request, and which of them reveal an access code.
 #[derive(Clone, PartialEq, Eq)]
 pub struct SecretFrame {
     bytes: Vec<u8>,
@@ -320,12 +321,12 @@ impl SecretFrame {
         &self.bytes
     }
 
-    /// Returns whether it carries an access code.
+    /// Returns whether the frame contains an access code.
     pub fn is_secret(&self) -> bool {
         !self.secret.is_empty()
     }
 
-    /// Returns the bytes with access codes and the checksum over them masked.
+    /// Returns the bytes with access codes and the affected checksum masked.
     pub fn masked(&self) -> MaskedBytes {
         MaskedBytes::masked(&self.bytes, &self.secret)
     }

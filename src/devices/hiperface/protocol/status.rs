@@ -1,26 +1,26 @@
-//! Status codes: what an encoder reports in reply to 50h (`P`: SEK34/SEL34 and DME data sheets, B&R error 7013; the
+//! Status codes, which an encoder reports in reply to 50h (`P`: SEK34/SEL34 and DME data sheets, B&R error 7013; the
 //! manual leaves the list to each data sheet).
 
 use std::fmt;
 
-/// One byte of the encoder's status queue.
+/// A code from the status queue of the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct StatusCode(u8);
 
 /// The class of a status code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StatusClass {
-    /// Found while the encoder started.
+    /// An error found during start-up.
     Initialisation,
     /// A frame was not understood, or the encoder was restarted.
     Protocol,
-    /// A data field refused.
+    /// Access to a data field was refused.
     Data,
-    /// The position cannot be relied upon.
+    /// The position is unreliable.
     Position,
-    /// Monitoring of temperature, transmitter and signals.
+    /// Monitoring of temperature, transmitter or signals.
     Monitoring,
-    /// Not in the list.
+    /// A code that is not in the list.
     Unknown,
 }
 
@@ -58,41 +58,41 @@ const CODES: [(u8, StatusClass, &str); 27] = [
 ];
 
 impl StatusCode {
-    /// 00h: nothing to report.
+    /// 00h: no error.
     pub const OK: StatusCode = StatusCode(0x00);
-    /// 08h: the counter overflowed from FFFFFFh to 0.
+    /// 08h: the counter has overflowed from FFFFFFh to 0.
     pub const COUNTER_OVERFLOW: StatusCode = StatusCode(0x08);
-    /// 09h: a character with the wrong parity bit.
+    /// 09h: a character had a parity error.
     pub const PARITY: StatusCode = StatusCode(0x09);
-    /// 0Ah: a frame with a wrong checksum.
+    /// 0Ah: a frame had a wrong checksum.
     pub const CHECKSUM: StatusCode = StatusCode(0x0A);
-    /// 0Bh: a command the encoder does not have.
+    /// 0Bh: unknown command.
     pub const UNKNOWN_COMMAND: StatusCode = StatusCode(0x0B);
-    /// 0Ch: a request of the wrong length.
+    /// 0Ch: wrong length of a request.
     pub const LENGTH: StatusCode = StatusCode(0x0C);
-    /// 0Dh: an argument out of its range.
+    /// 0Dh: an argument is out of range.
     pub const ARGUMENT: StatusCode = StatusCode(0x0D);
-    /// 0Eh: WE is 0.
+    /// 0Eh: the data field is write-protected (WE is 0).
     pub const WRITE_PROTECTED: StatusCode = StatusCode(0x0E);
-    /// 0Fh: another code than this data field's access code.
+    /// 0Fh: wrong access code for the data field.
     pub const WRONG_CODE: StatusCode = StatusCode(0x0F);
     /// 10h: only the last field can change its size, and only within the memory.
     pub const SIZE_FIXED: StatusCode = StatusCode(0x10);
-    /// 11h: beyond the end of the data field.
+    /// 11h: access beyond the end of the data field.
     pub const OUT_OF_FIELD: StatusCode = StatusCode(0x11);
-    /// 12h: no data field with that number.
+    /// 12h: the data field does not exist.
     pub const NO_SUCH_FIELD: StatusCode = StatusCode(0x12);
-    /// 1Eh: the encoder is too hot or too cold.
+    /// 1Eh: the temperature of the encoder is out of range.
     pub const TEMPERATURE: StatusCode = StatusCode(0x1E);
     /// 1Fh: the shaft turns too fast.
     pub const TOO_FAST: StatusCode = StatusCode(0x1F);
 
-    /// Creates it: any byte is a status code.
+    /// Creates a status code from its byte; every value is valid.
     pub const fn new(byte: u8) -> Self {
         StatusCode(byte)
     }
 
-    /// Returns the byte on the line.
+    /// Returns the code as a byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -102,18 +102,18 @@ impl StatusCode {
         self.entry().map_or(StatusClass::Unknown, |(class, _)| class)
     }
 
-    /// Returns the text of the code.
+    /// Returns the description of the code.
     pub fn text(self) -> &'static str {
         self.entry().map_or("unknown status code", |(_, text)| text)
     }
 
-    /// Returns whether it is a warning: 08h, 1Ch, 1Dh and 1Eh are; every other code but 00h is an error.
+    /// Returns whether the code is a warning: 08h, 1Ch, 1Dh and 1Eh are; all others except 00h are errors.
     pub fn is_warning(self) -> bool {
         matches!(self.0, 0x08 | 0x1C..=0x1E)
     }
 
-    /// Returns whether a position read at the same time is unreliable: 01h…06h and 1Fh…23h. Codes 09h…12h concern a frame
-    /// or a data field and never make a position invalid.
+    /// Returns whether a position read at the same time is unreliable: true for 01h…06h and 1Fh…23h. Codes 09h…12h
+    /// concern a frame or a data field and never invalidate a position.
     pub fn spoils_position(self) -> bool {
         matches!(self.0, 0x01..=0x06 | 0x1F..=0x23)
     }

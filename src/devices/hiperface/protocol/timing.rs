@@ -1,47 +1,47 @@
-//! The times of the protocol (manual, "Dialog Timing" and the table of commands).
+//! Protocol timing (manual, "Dialog Timing" and the table of commands).
 
 use std::time::Duration;
 
 use super::{LineSettings, Request};
 use crate::units::CharacterFormat;
 
-/// The times of a line with given settings.
+/// Timing of a line with given settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// One character: 11 bits.
+    /// Duration of one character of 11 bits.
     pub character: Duration,
-    /// Silence that ends a frame: 44 bits, or 11 if set. The dead time before the next request is longer than this.
+    /// Silence that ends a frame: 44 bits, or 11 if so configured. The dead time before the next request is longer.
     pub timeout: Duration,
 }
 
 impl Timing {
-    /// Longest time after power-on or reset during which the encoder does not receive.
+    /// Maximum time after power-on or reset during which the encoder does not receive.
     pub const INITIALISATION: Duration = Duration::from_millis(100);
-    /// Time after power-on during which the encoder uses factory settings; then it applies the stored ones.
+    /// Time after power-on during which the encoder uses the factory settings; it then applies the stored ones.
     pub const DEFAULT_WINDOW_END: Duration = Duration::from_millis(900);
-    /// Longest time during which the encoder does not receive while it applies the stored settings.
+    /// Maximum time during which the encoder does not receive while it applies the stored settings.
     pub const SWITCH: Duration = Duration::from_millis(200);
 
-    /// Times for a character format and the long (44 bits) or short (11 bits) time-out.
+    /// Creates the timing for a character format and the long (44 bits) or short (11 bits) time-out.
     pub fn new(format: CharacterFormat, long_timeout: bool) -> Self {
         let bits = if long_timeout { 44 } else { 11 };
         Timing { character: format.character_time(), timeout: format.baud.time_of_bits(bits) }
     }
 
-    /// Returns the times for a settings byte; `None` if it is reserved.
+    /// Creates the timing for a settings byte, or returns `None` if it is reserved.
     pub fn of_settings(settings: LineSettings) -> Option<Self> {
         Some(Self::new(settings.format()?, settings.long_timeout()))
     }
 
-    /// Returns the time from the first bit of the request to the latest last bit of the longest reply: transfer,
-    /// time-out, processing, transfer. Without reply: transfer and time-out.
+    /// Returns the time from the first bit of a request to the latest possible last bit of its reply: transfer,
+    /// time-out, processing and transfer. Without a reply: transfer and time-out.
     pub fn worst_case(&self, request: &Request) -> Duration {
         let sent = request.emit(0).bytes().len();
         let reply = request.reply_length(&[]).map_or(0, |length| length.max);
         self.characters(sent + reply) + self.timeout + request.command().row().max_time
     }
 
-    /// Returns the time of `count` characters back to back.
+    /// Returns the duration of `count` consecutive characters.
     pub fn characters(&self, count: usize) -> Duration {
         self.character.saturating_mul(u32::try_from(count).unwrap_or(u32::MAX))
     }

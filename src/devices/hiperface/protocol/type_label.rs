@@ -2,44 +2,45 @@
 
 use super::LineSettings;
 
-/// Reply to 52h.
+/// Type label, in reply to 52h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TypeLabel {
-    /// The stored interface settings, in force after the next reset.
+    /// Stored interface settings, effective after the next reset.
     pub settings: LineSettings,
-    /// Encoder type; FFh: the extended label in field FFh describes the encoder.
+    /// Type code; FFh refers to the extended label in field FFh.
     pub encoder_type: u8,
     /// Size of the EEPROM in units of 16 bytes.
     pub eeprom_units: u8,
-    /// Hardware and software options, HIPERFACE version; the layout is not public, so it is kept raw.
+    /// Hardware and software options and HIPERFACE version; the layout is not public, so the byte is kept raw.
     pub options: u8,
 }
 
 impl TypeLabel {
-    /// The encoder describes itself in data field FFh.
+    /// Type code of encoders that are described by their extended label.
     pub const EXTENDED: u8 = 0xFF;
 
-    /// Returns the EEPROM size in bytes; the encoder itself uses a part of it.
+    /// Returns the EEPROM size in bytes, a part of which the encoder itself uses.
     pub fn eeprom_bytes(self) -> usize {
         usize::from(self.eeprom_units) * 16
     }
 }
 
-/// Reply to 56h: nine characters of serial number, up to twenty of firmware version, eight of date.
+/// Serial number and firmware, in reply to 56h: nine characters of serial number, up to twenty of firmware version,
+/// eight of date.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SerialLabel {
-    /// Serial number as sent by the encoder, without blanks and NUL at its ends.
+    /// Serial number as sent by the encoder, without leading and trailing blanks and NUL characters.
     pub serial_number: String,
     /// Firmware version, trimmed in the same way.
     pub firmware_version: String,
-    /// Date of the firmware, `DD.MM.YY`.
+    /// Firmware date in the format `DD.MM.YY`.
     pub firmware_date: String,
 }
 
 impl SerialLabel {
-    /// Shortest payload: serial number and date, no version.
+    /// Minimum payload length: serial number and date without a version.
     pub const MIN_PAYLOAD: usize = 9 + 8;
-    /// Longest payload: a version of 20 characters.
+    /// Maximum payload length: a version of 20 characters.
     pub const MAX_PAYLOAD: usize = 9 + 20 + 8;
 
     /// Parses the payload: the first nine bytes, the last eight, and those in between. `None` unless it has

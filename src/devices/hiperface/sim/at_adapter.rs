@@ -1,4 +1,4 @@
-//! The encoder at the serial line of a virtual adapter, if requested.
+//! The encoder on the serial line of a virtual adapter, if requested.
 
 use super::{Bus, Config};
 use crate::buses::bridge::sim::{Attachable, Attached, SerialDevice};

@@ -1,6 +1,6 @@
-//! The line between the host's UART and the encoders: every character with its start and end, in time order. It adds the
-//! converter's echo, noise, and the effects of simultaneous transmissions or different settings. It does not interpret
-//! bytes; half duplex and pull-ups: manual, "Parameterkanal".
+//! The line between the UART of the host and the encoders: every character with its start and end, in time order. It
+//! adds the echo of the converter, noise, and the effects of simultaneous transmissions or different settings, but does
+//! not interpret bytes; half duplex and pull-ups: manual, "Parameterkanal".
 
 use std::time::Duration;
 

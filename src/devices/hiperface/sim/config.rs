@@ -1,4 +1,4 @@
-//! The settings of a virtual encoder, as in the query of a `sim:` link: `seed=7&fault=drop:0.01&encoders=2`. Nothing is
+//! Settings of a virtual encoder in the query of a `sim:` link, such as `seed=7&fault=drop:0.01&encoders=2`. Nothing is
 //! opened here; [`Bus::new`](super::Bus::new) creates the virtual line.
 
 use super::encoder::Pace;
@@ -73,7 +73,6 @@ impl Config {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }
 
-    /// Checks combinations of keys.
     fn check_together(&self) -> Result<(), ConfigError> {
         let range = self.geometry(&EncoderTypes::built_in()).range();
         if let (Some(position), Some(range)) = (self.position, range)

@@ -1,5 +1,5 @@
-//! The electronics of an encoder: its data and the effect of its twenty commands (manual, "Die Befehle"), without times
-//! and frames, which are in [`encoder`](super::encoder).
+//! Electronics of an encoder: its data and the effects of its twenty commands (manual, "Die Befehle"). Timing and
+//! frames are implemented in [`encoder`](super::encoder).
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -18,12 +18,10 @@ use crate::units::Moment;
 pub struct Wear(BTreeMap<u8, u32>);
 
 impl Wear {
-    /// Writes that this command has caused.
     pub fn writes(&self, command: Command) -> u32 {
         self.0.get(&command.byte()).copied().unwrap_or(0)
     }
 
-    /// Writes altogether.
     pub fn total(&self) -> u32 {
         self.0.values().sum()
     }

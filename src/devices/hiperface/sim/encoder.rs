@@ -1,14 +1,14 @@
-//! One virtual encoder on the line: when it listens, how long it works, when it replies, and with which settings (manual,
+//! A virtual encoder on the line: when it listens, how long it works, when it replies, and with which settings (manual,
 //! "Dialog Timing", figure 38 "Einschaltverhalten", "Fehlerbehandlung"). The effects of commands are in
-//! [`electronics`](super::electronics); other senders are known only to the [`Bus`](super::Bus).
+//! [`electronics`](super::electronics); only the [`Bus`](super::Bus) knows other senders.
 //!
 //! ```text
 //! off ── power ──▶ INIT (deaf) ── 100 ms ──▶ DEFAULT (factory settings) ── 900 ms ──▶ SWITCH (deaf) ── 200 ms ──▶ USER
 //!                                               └── plausible command: keeps the factory settings
 //! listening ── silence ≥ time-out ──▶ executing ──▶ talking ──▶ listening
 //! ```
-//! Left open by the manual (`U`) and chosen here: bytes sent to the encoder while it works or sends are lost, to the end of
-//! that frame; its own reply ends a frame at once; a damaged broadcast is not answered.
+//! Assumptions where the manual is silent (`U`): bytes received while the encoder works or sends are lost, to the end
+//! of that frame; its own reply ends a frame at once; a damaged broadcast is not answered.
 
 use std::time::Duration;
 
@@ -107,7 +107,6 @@ enum Activity {
     Talking { until: Moment },
 }
 
-/// Frame being received.
 #[derive(Clone)]
 struct Reception {
     bytes: Vec<u8>,
@@ -143,17 +142,14 @@ impl Encoder {
         }
     }
 
-    /// Returns the address it obeys.
     pub fn address(&self) -> DeviceAddress {
         self.electronics.address
     }
 
-    /// Returns its data fields and access codes.
     pub fn memory(&self) -> &Memory {
         &self.electronics.memory
     }
 
-    /// Returns the number of EEPROM writes.
     pub fn wear(&self) -> &Wear {
         &self.electronics.wear
     }
@@ -168,7 +164,6 @@ impl Encoder {
         self.electronics.counter = counter & 0x00FF_FFFF;
     }
 
-    /// Returns the position word at a moment.
     pub fn position(&self, at: Moment) -> u32 {
         self.electronics.shaft.position(at)
     }

@@ -1,9 +1,9 @@
-//! The EEPROM of an encoder: data fields one after the other, and four access codes (manual, "Datenspeicherung und
-//! Verwaltung"). It refuses with the status codes of the reference, in the order field (12h), range (11h), access code
-//! (0Fh), write enable (0Eh), size (10h). Frames, time and wear are not handled here.
+//! EEPROM of an encoder: consecutive data fields and four access codes (manual, "Datenspeicherung und Verwaltung").
+//! Requests are refused with the status codes of the reference, checked in the order field (12h), range (11h), access
+//! code (0Fh), write enable (0Eh), size (10h). Frames, time and wear are not handled here.
 //!
-//! Left open by the manual (`U`) and chosen here: bytes never written are FFh; a deleted field's bytes stay where they are
-//! and appear again in a field created in their place; a change of a field requires its present code.
+//! Assumptions where the manual is silent (`U`): bytes that were never written are FFh; the bytes of a deleted field
+//! remain and reappear in a field created in their place; changing a field requires its present code.
 
 use std::ops::Range;
 
@@ -77,7 +77,6 @@ impl Memory {
         self.bytes.get(self.place(field)?)
     }
 
-    /// Returns the present value of an access code.
     pub fn code(&self, number: CodeNumber) -> AccessCode {
         // A number is 0…3; the factory value is used for the impossible case.
         self.codes.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)

@@ -1,14 +1,14 @@
-//! The virtual HIPERFACE encoder: one or several of them on a line, with the timing, the power-up states, the memory and
-//! the error replies of the manual. Where the manual leaves a rule open (`U`), one documented choice is followed.
+//! The virtual HIPERFACE encoder: one or several on a line, with the timing, power-up states, memory and error replies
+//! of the manual. Where the manual is silent (`U`), the assumption made is documented.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
-//! | `models` | the encoders there are, a line each |
+//! | `models` | the available encoders, one line each |
 //! | `config` | the settings of a `sim:` link |
 //! | `memory` | data fields and access codes |
 //! | `shaft` | the moving shaft and its analogue signals |
-//! | `electronics` | the twenty commands: what they do, without time |
-//! | `encoder` | hearing, processing, talking, power-up: when it happens |
+//! | `electronics` | the effects of the twenty commands, without timing |
+//! | `encoder` | the timing of receiving, processing, replying and power-up |
 //! | `bus` | the line: characters in both directions, echo, noise, collisions |
 //! | `at_adapter` | the serial line of a virtual adapter |
 

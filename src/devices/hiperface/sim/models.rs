@@ -10,13 +10,10 @@ pub struct Model {
     pub name: &'static str,
     /// Type byte of 52h; FFh refers to the extended label.
     pub encoder_type: u8,
-    /// Periods and turns.
     pub geometry: Geometry,
     /// Without a bearing of its own: it has command 63h.
     pub kit: bool,
-    /// Nine characters.
     pub serial_number: &'static str,
-    /// Up to twenty characters.
     pub firmware_version: &'static str,
     /// `DD.MM.YY`.
     pub firmware_date: &'static str,

@@ -1,7 +1,7 @@
-//! The shaft (or scale) as measured by the encoder: the position as an exact function of time, and the sine and cosine
-//! signals (manual, "Position lesen", "Position setzen"). The position word is the mechanical position plus an offset; the
-//! analogue signals depend on the mechanical position only, so setting a position may break their phase, as with a real
-//! encoder.
+//! The shaft (or scale) as measured by the encoder: position as an exact function of time, and the sine and cosine
+//! signals (manual, "Position lesen", "Position setzen"). The position word is the mechanical position plus an offset;
+//! the analogue signals depend on the mechanical position only, so setting a position may break their phase, as in a
+//! real encoder.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +16,6 @@ pub(super) struct Shaft {
     /// Mechanical place in steps at `since`.
     place: f64,
     since: Moment,
-    /// Position word minus mechanical place.
     offset: u64,
 }
 

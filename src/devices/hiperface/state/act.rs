@@ -1,4 +1,4 @@
-//! The user's actions on an encoder: edits take effect at once, everything else is a job of the session or a task.
+//! Actions of the user on an encoder: edits take effect at once, everything else is a job of the session or a task.
 
 use std::time::Duration;
 
@@ -69,7 +69,6 @@ impl Encoder {
         self.wish_watched();
     }
 
-    /// Passes the watched values to the session.
     pub(super) fn wish_watched(&mut self) {
         if let Some(line) = &self.session.line {
             line.watch(self.record.watched().into_iter().map(|what| (what, WATCHED_EVERY)).collect());

@@ -16,7 +16,6 @@ pub enum HiperfaceAction {
     ReadStatus,
     /// While the position is read all the time, read this too, or no more.
     Watch(Watch, bool),
-    /// Read an analogue channel.
     ReadAnalogue(u8),
     /// Read the shaft at rest: position, sine and cosine.
     ReadRest,
@@ -26,14 +25,11 @@ pub enum HiperfaceAction {
         /// Send 53h first.
         restart: bool,
     },
-    /// Restart the encoder.
     Reset,
     /// Other interface settings until the next restart.
     ConfigureForNow(LineSettings),
-    /// The user knows an access code.
     UseCode {
         number: CodeNumber,
-        /// Its value.
         code: AccessCode,
     },
     /// Put bytes into a field.
@@ -43,9 +39,7 @@ pub enum HiperfaceAction {
         address: usize,
         bytes: Vec<u8>,
     },
-    /// Take the edits of a range back.
     Revert(FieldRange),
-    /// Show the effect of a change.
     Plan(Change),
     /// Make the plan again with other options, if the change is a restore.
     PlanAgain(RestoreOptions),
@@ -54,9 +48,7 @@ pub enum HiperfaceAction {
     /// Write the plan that was shown, and no other.
     Write(PlanId),
     CloseReview,
-    /// Save the profile.
     Save(PathBuf),
-    /// The commutation assistant.
     Commutation(commutation::CommutationAction),
 }
 

@@ -1,7 +1,7 @@
-//! The commutation assistant: from the position at which a motor rests in a static vector to the offset between encoder and
-//! motor, by both methods of the manual (SICK 8010701, commutation; section 5 of the project's sine/cosine reference). It
-//! energises nothing and writes nothing: its results are edits of the memory or a position to be set, which both go through
-//! the review of a write.
+//! The commutation assistant: from the position at which a motor rests in a static vector to the offset between encoder
+//! and motor, by both methods of the manual (SICK 8010701, commutation; section 5 of the project's sine/cosine
+//! reference). It neither energises the motor nor writes: its results are edits of the memory, or a position to set,
+//! which both go through the review of a write.
 
 mod act;
 mod form;
@@ -25,9 +25,7 @@ pub use report::kind_words;
 /// An action of the assistant.
 pub enum CommutationAction {
     Edit(Box<Form>),
-    /// Read the position at rest.
     Read(Slot),
-    /// Take the position that is typed.
     Use(Slot),
     /// Discard all readings.
     Clear,
@@ -58,12 +56,10 @@ struct PendingReading {
     phase: String,
 }
 
-/// A position at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestReading {
     /// The position in periods, in the whole range of the encoder.
     pub fine_periods: f64,
-    /// How it was obtained.
     pub kind: Kind,
     /// The position word, if the encoder was read.
     pub raw: Option<u32>,
@@ -72,9 +68,7 @@ pub struct RestReading {
 /// How a position was obtained, and its quality.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// Absolute position and phase brought together.
     Fine {
-        /// Absolute minus fine position in periods.
         residual_periods: f64,
         verdict: Verdict,
         /// The smallest distinguishable step, in periods; `None` if the phase was entered.
@@ -86,7 +80,6 @@ pub enum Kind {
 }
 
 impl Commutation {
-    /// Returns the position for a slot.
     pub fn reading(&self, slot: Slot) -> Option<&RestReading> {
         let [one, other, second] = &self.readings;
         match slot {
@@ -97,12 +90,10 @@ impl Commutation {
         .as_ref()
     }
 
-    /// Returns the position that is being read.
     pub fn pending_slot(&self) -> Option<Slot> {
         self.asked.as_ref().map(|asked| asked.slot)
     }
 
-    /// Requests a position at rest for a slot.
     fn ask(&mut self, slot: Slot) {
         self.asked = Some(PendingReading { slot, source: self.form.source, phase: self.form.phase.clone() });
     }
@@ -142,7 +133,6 @@ impl Commutation {
         own
     }
 
-    /// Gives up the pending reading.
     pub(super) fn give_up(&mut self) {
         self.asked = None;
     }

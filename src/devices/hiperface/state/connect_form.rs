@@ -18,17 +18,12 @@ use crate::sim::ConfigError;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
 
-/// The kind of connection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LinkKind {
-    /// The virtual encoder in this program.
     #[default]
     Virtual,
-    /// A serial port.
     Serial,
-    /// A serial device server.
     Tcp,
-    /// A recorded trace.
     Replay,
 }
 
@@ -37,23 +32,17 @@ pub enum LinkKind {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkForm {
     pub kind: LinkKind,
-    /// Serial port.
     pub port: String,
-    /// Name or address of a device server.
     pub host: String,
     pub tcp_port: String,
-    /// The recording.
     pub file: String,
-    /// Speed.
     pub baud: Baud,
     pub parity: Parity,
     /// `40`, `0x40` or `40h`, always hexadecimal; or `broadcast`.
     pub address: String,
-    /// Whether the adapter echoes; unknown: detect it.
     pub echo: Echo,
     /// If set, the encoder's time-out is 44 bits, else 11.
     pub long_timeout: bool,
-    /// Model of the virtual encoder.
     pub model: String,
     /// Text of other parameters.
     pub typed: Typed,

@@ -1,4 +1,4 @@
-//! Edits of an encoder's memory, kept after a crash: field, address, byte.
+//! Memory edits that survive a crash: field, address and byte.
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;

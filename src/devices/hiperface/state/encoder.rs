@@ -1,4 +1,4 @@
-//! An open encoder, or a profile of one: its known data, the user's edits, and the running jobs.
+//! An open encoder or a profile of one: known data, edits and running jobs.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,6 @@ use crate::devices::hiperface::state::explain as words;
 pub struct Encoder {
     pub session: Session<Hiperface>,
     pub identity: Option<Identity>,
-    /// Its memory and the edits.
     pub staged: Staged,
     /// The error queue as last read, with the codes announced since; `None`: never read.
     pub codes: Option<Vec<StatusCode>>,
@@ -36,15 +35,12 @@ pub struct Encoder {
     pub position_set: Option<(u32, u32)>,
     /// Analogue values as last read, with their limits; or why the encoder does not provide them.
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
-    /// The recording from polling.
     pub record: Record,
-    /// The commutation assistant.
     pub commutation: Commutation,
     pub(super) rest: RestAsked,
     pub(super) meaning: Meaning,
     /// Access codes that the user gave or changed: the next session with this encoder begins with them.
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
-    /// The item that the pending job reads.
     pub(super) asked: Option<Item>,
     /// Access codes to be given to the session again once the encoder is identified.
     pub(super) codes_due: Vec<(CodeNumber, AccessCode)>,
@@ -86,7 +82,6 @@ impl Encoder {
         self.identity = Some(identity);
     }
 
-    /// Logs the encoder that has replied.
     fn log_answer(&self, services: &mut Services) {
         let Some(identity) = &self.identity else { return };
         let (label, firmware) = (&identity.label, identity.serial.firmware_version.trim());
@@ -168,7 +163,6 @@ impl Encoder {
         self.unreadable.get(&field.number).cloned().or_else(|| rules::edit(field).err())
     }
 
-    /// Records samples and single readings.
     pub(super) fn add_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
         let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
         self.record.add(samples, dropped, geometry);

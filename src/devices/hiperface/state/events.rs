@@ -1,4 +1,4 @@
-//! Events of the line: results of jobs, messages of the encoder, live samples, and loss.
+//! Events from the line: results of jobs, messages of the encoder, live samples, and loss of the connection.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;

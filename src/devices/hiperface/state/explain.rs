@@ -1,4 +1,4 @@
-//! Texts of a HIPERFACE encoder: the errors of its jobs, and its reports.
+//! Texts for a HIPERFACE encoder: job errors and status messages.
 
 mod change;
 mod check;

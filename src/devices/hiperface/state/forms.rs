@@ -1,4 +1,4 @@
-//! Parses entries: codes, addresses, positions, channels. For an invalid entry the valid ones are returned.
+//! Parsing of entries: codes, addresses, positions and channels. Errors state the valid values.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{
@@ -96,7 +96,6 @@ pub fn settings(
     Ok(from.with_format(format).ok_or_else(refused)?.with_long_timeout(long_timeout).with_bus(bus))
 }
 
-/// Returns the status of a new, writable field.
 pub fn new_field(size: FieldSize, code: CodeNumber, code_required: bool) -> DataFieldStatus {
     DataFieldStatus::new(size, code, code_required)
 }

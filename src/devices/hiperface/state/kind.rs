@@ -1,4 +1,4 @@
-//! The kind HIPERFACE for the studio, before there is a device.
+//! HIPERFACE as a kind of device for the studio, before a device is open.
 
 use super::{Encoder, LinkForm};
 use crate::app::services::Services;

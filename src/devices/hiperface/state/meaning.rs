@@ -1,4 +1,4 @@
-//! The meaning of the frames in the trace: a reply is decoded with the request before it.
+//! Meaning of frames in the trace: a reply is decoded together with the preceding request.
 
 use crate::app::{Explained, Text, TraceFault};
 use crate::devices::hiperface::procedures::Damage;

@@ -1,4 +1,4 @@
-//! HIPERFACE: an open encoder, its memory and the user's edits, and the review of a write.
+//! State of the HIPERFACE tab: an open encoder, its memory and edits, and the review of a write.
 
 mod act;
 mod action;

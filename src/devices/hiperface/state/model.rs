@@ -1,4 +1,4 @@
-//! A HIPERFACE encoder among the devices of the studio.
+//! Implementation of the studio's device traits for HIPERFACE encoders.
 
 use std::convert::Infallible;
 

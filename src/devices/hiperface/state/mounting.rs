@@ -1,4 +1,4 @@
-//! The parts of the memory that belong to the mounting: values that are valid for one encoder on one motor only.
+//! Parts of the memory that belong to the mounting: values valid for one encoder on one motor only.
 
 use super::encoder::Encoder;
 use crate::app::session::Source;

@@ -1,5 +1,4 @@
-//! The recording of a HIPERFACE encoder from polling: positions in the units of its geometry, analogue values and its
-//! counter.
+//! Recording of a polled HIPERFACE encoder: positions in the units of its geometry, analogue values and the counter.
 
 use crate::devices::hiperface::state::TEXTS;
 
@@ -21,7 +20,6 @@ pub struct Record {
 }
 
 impl Record {
-    /// Begins a session; earlier recordings are kept.
     pub(super) fn begin(&mut self, began: &Zoned) {
         (self.last, self.refused) = (None, false);
         self.track.begin(began);
@@ -56,7 +54,6 @@ impl Record {
         self.track.watch(watched);
     }
 
-    /// Returns the values recorded with the position.
     pub fn watched(&self) -> Vec<Watch> {
         self.track.watched()
     }
@@ -71,7 +68,6 @@ impl Record {
         self.refused
     }
 
-    /// Returns the number of recorded positions.
     pub fn positions(&self) -> u64 {
         self.track.positions()
     }
@@ -83,7 +79,6 @@ impl Record {
     }
 }
 
-/// Returns the meaning of position words.
 fn meaning(geometry: Option<Geometry>) -> Meaning {
     match geometry {
         Some(Geometry::Linear { period_nm, .. }) => {
@@ -122,7 +117,6 @@ impl Watchable for Watch {
     }
 }
 
-/// Returns the name of a watched value.
 pub fn watch_name(what: Watch) -> Text {
     match what {
         Watch::TEMPERATURE => TEXTS.text("recorder.temperature"),

@@ -1,4 +1,4 @@
-//! Reading the shaft at rest, for the commutation assistant or on request.
+//! Reading of the shaft at rest, for the commutation assistant or on request.
 
 use super::{Encoder, HiperfaceAction};
 use crate::app::services::Services;
@@ -25,7 +25,6 @@ impl Encoder {
         self.rest.is_under_way = self.try_submit(HiperfaceJob::Rest, services);
     }
 
-    /// Takes a reading of the shaft at rest.
     pub(super) fn take_rest(&mut self, rest: Rest) {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Ok(rest));
@@ -44,7 +43,6 @@ impl Encoder {
         self.commutation.failed(why)
     }
 
-    /// Gives up the pending reading.
     pub(super) fn give_up_rest(&mut self) {
         self.rest.is_under_way = false;
         self.commutation.give_up();

@@ -1,4 +1,4 @@
-//! The review of a write to a HIPERFACE encoder: the permissions, warnings and costs of its plan.
+//! Review of a write to a HIPERFACE encoder: permits, warnings and cost of its plan.
 
 use crate::app::Text;
 use crate::app::review::{self, OpWords, Permit, Question, Reviewed};
@@ -9,7 +9,6 @@ use crate::devices::hiperface::protocol::CodeNumber;
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
-/// Review of a write.
 pub type Review = review::Review<Hiperface>;
 pub type ReviewState = review::ReviewState<Hiperface>;
 

@@ -1,5 +1,5 @@
-//! The encoder's rules for its data fields, checked before an action is offered: the same plans that a write would
-//! make, on the memory as read.
+//! The encoder's rules for data fields, checked before an action is offered: the same plans that a write would make,
+//! based on the memory as read.
 
 use super::Staged;
 use crate::app::Text;

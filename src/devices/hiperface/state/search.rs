@@ -1,4 +1,4 @@
-//! The search for an encoder with unknown settings, on the line of the connection form, at every speed, parity and
+//! Search for an encoder with unknown settings on the line of the connection form, at every baud rate, parity and
 //! address.
 
 use crossbeam_channel::Receiver;
@@ -21,9 +21,7 @@ use crate::devices::hiperface::state::{Encoder, LinkForm, TEXTS};
 use crate::link::LinkUrl;
 use crate::worker::{Event, Progress};
 
-/// A search for encoders.
 pub struct Search {
-    /// Its number in the studio.
     pub(crate) number: u32,
     pub(crate) url: LinkUrl,
     pub(crate) options: FindOptions,
@@ -124,16 +122,13 @@ pub struct SearchFinder {
 }
 
 pub enum SearchAction {
-    /// Search for encoders.
     Search(FindOptions),
-    /// Connect to an encoder that was found.
     Choose(usize),
 }
 
 /// A link was opened for a search.
 pub struct OpenedForSearch {
     number: u32,
-    /// The opened session.
     result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>,
 }
 

@@ -1,8 +1,8 @@
-//! The bytes of the data fields in the encoder, and the edited ones. Nothing is written to an encoder here; a plan is made
-//! from the difference.
+//! Data fields of the encoder with the edited bytes. Nothing is written to an encoder here; a plan is made from the
+//! difference.
 //!
-//! Edits survive a new reading of the encoder: an edited byte stays as edited, whatever the encoder has now; every other
-//! byte follows the encoder. Edits of a field that cannot be read, because its access code is no longer known, wait until
+//! Edits survive a new reading: an edited byte keeps its edited value, whatever the encoder now contains; all other
+//! bytes follow the encoder. Edits of a field that cannot be read because its access code is no longer known wait until
 //! it can.
 
 use crate::app::{EditBase, Edits};
@@ -30,20 +30,13 @@ impl EditBase for Vec<FieldImage> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StagedError {
     #[error("data field {field} does not exist")]
-    NoField {
-        /// Number of the field.
-        field: u8,
-    },
+    NoField { field: u8 },
     /// Its access code is not known, so its bytes are not.
     #[error("data field {field} is locked")]
-    Locked {
-        /// Number of the field.
-        field: u8,
-    },
+    Locked { field: u8 },
     /// The field ends before.
     #[error("data field {field} ends at {last}")]
     Outside {
-        /// Number of the field.
         field: u8,
         /// Its last address.
         last: usize,
@@ -132,7 +125,6 @@ impl Staged {
         self.take_back(|(field, address)| range.contains(field, address));
     }
 
-    /// Returns the edits, for a draft on disk.
     pub fn edits(&self) -> impl Iterator<Item = (u8, usize, u8)> {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }

@@ -1,4 +1,4 @@
-//! The texts of HIPERFACE.
+//! Text catalogue of HIPERFACE.
 
 use crate::app::Catalogue;
 

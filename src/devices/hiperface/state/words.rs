@@ -1,4 +1,4 @@
-//! Texts of jobs.
+//! Job names for display.
 
 use crate::app::Text;
 use crate::bits::hex;
@@ -6,7 +6,6 @@ use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
-/// Returns its name in the list of jobs.
 pub(super) fn job(job: &HiperfaceJob) -> Text {
     match job {
         HiperfaceJob::Identify | HiperfaceJob::Survey => Text::new("job.survey"),

@@ -1,4 +1,4 @@
-//! Writing to an encoder: the edits or a profile as a request, its jobs, and the consequences in the session.
+//! Writing to an encoder: edits or a profile as a request, its jobs, and the consequences in the session.
 
 use super::commutation::Commutation;
 use super::encoder::Encoder;

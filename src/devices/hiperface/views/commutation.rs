@@ -1,4 +1,4 @@
-//! The commutation assistant: the preparation, the readings, the results, and both ways to store them.
+//! The commutation assistant page: preparation, readings, results, and both ways to store them.
 
 mod result;
 
@@ -93,7 +93,6 @@ fn before(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     });
 }
 
-/// Draws what is wrong with the entry above.
 fn problem_ui(ui: &mut Ui, theme: &Theme, problem: Option<&Text>) {
     if let Some(why) = problem {
         paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.bad));

@@ -92,7 +92,6 @@ fn line(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
     });
 }
 
-/// Draws the rarely used settings.
 fn more(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut bool) {
     if !unfolded(ui, theme, open) {
         return;

@@ -1,5 +1,5 @@
-//! The encoder's memory: the map of its data fields, the actions of each, the bytes of the selected one, their meaning, and
-//! the bar for writing the edits.
+//! The memory page: the map of data fields with their actions, the bytes of the selected field and their meaning, and
+//! the bar for writing edits.
 
 use egui::{RichText, Ui};
 

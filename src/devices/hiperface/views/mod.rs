@@ -1,4 +1,4 @@
-//! The HIPERFACE tab: its pages, one per task.
+//! The HIPERFACE tab: one page per task.
 
 mod commutation;
 mod connect_form;
@@ -19,17 +19,12 @@ use crate::ui::{NamedAction, Theme, backups, icons, page};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// Identity, state and wiring.
     #[default]
     Encoder,
     Memory,
-    /// Analogue values and the counter.
     Values,
-    /// Position, address, line settings, restart, access codes.
     Setup,
-    /// The offset between encoder and motor.
     Commutation,
-    /// Profiles, backups and the logbook.
     Backups,
 }
 

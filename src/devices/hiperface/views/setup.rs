@@ -1,5 +1,5 @@
-//! The setup page: position, synchronisation, address, line settings, access codes, restart. Everything persistent goes
-//! through the review.
+//! The setup page: position, synchronisation, address, line settings, access codes and restart. Every persistent change
+//! goes through the review.
 
 use egui::Ui;
 
@@ -26,7 +26,6 @@ pub(super) struct SetupUiState {
     position_problem: Option<Text>,
     address: String,
     address_problem: Option<Text>,
-    /// The choice that replaces the stored settings.
     settings: Option<Chosen>,
     settings_problem: Option<Text>,
     code_number: CodeNumber,

@@ -1,4 +1,4 @@
-//! Analogue channels and the counter.
+//! The values page: analogue channels and the counter.
 
 use egui::{RichText, Ui};
 

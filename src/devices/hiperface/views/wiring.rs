@@ -1,5 +1,5 @@
-//! The wiring card: the eight wires, their signals, and the termination of the line. Pins and wire colours differ between
-//! types and are in the data sheet.
+//! The wiring card: the eight wires with their signals, and the line termination. Pins and wire colours differ between
+//! types and are listed in the data sheet.
 
 use egui::Ui;
 

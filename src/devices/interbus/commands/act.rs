@@ -1,4 +1,4 @@
-//! `do`: the preset, the default, the device check, and the return of an encoder to its earlier mode.
+//! `do`: preset, factory settings, device check, and returning an encoder to its previous mode.
 
 use serde_json::json;
 
@@ -44,7 +44,6 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     }
 }
 
-/// Returns the preset that the encoder has.
 fn preset(runner: &mut Runner) -> Result<u32> {
     Ok(
         result_of!(runner.run(InterbusJob::Read(Item::Preset))?, InterbusOutput::Item(ItemValue::Number(preset)) => preset),

@@ -1,4 +1,4 @@
-//! Options of `decode` that only words of INTERBUS encoders have.
+//! Options of `decode` specific to words of INTERBUS encoders.
 
 use clap::{Args, ValueEnum};
 

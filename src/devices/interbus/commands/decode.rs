@@ -1,4 +1,4 @@
-//! `decode interbus`: words of the process data, with all possible meanings or the one selected by the options.
+//! `decode interbus`: explains process data words, with all possible meanings or the one selected by options.
 
 use serde_json::{Map, Value as Json, json};
 

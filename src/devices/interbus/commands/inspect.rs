@@ -1,4 +1,4 @@
-//! Commands that only read: `identify`, `status`, `read`.
+//! Read-only commands: `identify`, `status` and `read`.
 
 use serde_json::{Value as Json, json};
 

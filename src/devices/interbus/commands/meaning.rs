@@ -1,4 +1,4 @@
-//! The meaning of a word of an INTERBUS encoder as text.
+//! Description of a word of an INTERBUS encoder.
 
 use serde_json::{Value as Json, json};
 
@@ -19,7 +19,6 @@ pub(super) struct WordMeaning {
     /// Modes in which it has this meaning; empty if in all.
     modes: Vec<Mode>,
     words: String,
-    /// The number in it.
     value: Option<u32>,
     /// It may be sent, or may be received, in these modes.
     legal: bool,
@@ -152,7 +151,6 @@ fn stray(bits: u32, place: &str) -> String {
     if bits == 0 { String::new() } else { format!("; warning: 0x{bits:X} {place} should be 0") }
 }
 
-/// Returns a command, and the number in it.
 fn command_words(command: Command) -> (String, Option<u32>) {
     let with = |words: String, value: u32| (words, Some(value));
     match command {

@@ -1,4 +1,4 @@
-//! The commands for INTERBUS encoders behind a gateway; words of the process data are explained offline as well.
+//! Commands for INTERBUS encoders behind a gateway; process data words are also explained offline.
 
 mod act;
 mod args;
@@ -114,7 +114,6 @@ fn item(text: &str) -> Result<Item> {
 /// How a command disturbs the process data used by a machine.
 #[derive(Clone, Copy)]
 enum Disturbs {
-    /// Values are read out.
     Reading,
     /// In addition, cam programs are selected one after the other.
     Programs,

@@ -1,4 +1,4 @@
-//! The plan for an INTERBUS encoder: shown, confirmed, carried out.
+//! Plans for an INTERBUS encoder on the command line: display, confirmation and execution.
 
 use serde_json::Value as Json;
 
@@ -32,7 +32,6 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     Ok(prepared)
 }
 
-/// Returns whether an operation shortens the measuring range.
 fn is_shorter(op: &Op) -> bool {
     let Op::Parameterise(changes) = op else { return false };
     changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)

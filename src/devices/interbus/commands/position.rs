@@ -1,4 +1,4 @@
-//! `position`: prints IN words, converted by the encoder's gear.
+//! `position`: prints IN words, converted with the gear of the encoder.
 
 use serde_json::json;
 
@@ -58,7 +58,6 @@ fn show(output: &Output, reading: &WordReading) -> Result<()> {
     output.show(&json, &format!("{t:10.3} s  0x{:08X}  {}\n", reading.word, words(reading, cams.as_deref())))
 }
 
-/// Returns the cams that are on.
 fn on(outputs: u8) -> Vec<u8> {
     CamNumber::all().map(CamNumber::get).filter(|cam| outputs >> cam & 1 != 0).collect()
 }

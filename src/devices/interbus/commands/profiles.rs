@@ -1,4 +1,4 @@
-//! The commands for profiles of an INTERBUS encoder: `save`, `restore`, and reading it for a comparison.
+//! Profile commands for INTERBUS encoders: `save`, `restore`, and reading for a comparison.
 
 use serde_json::json;
 

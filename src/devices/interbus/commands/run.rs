@@ -27,7 +27,6 @@ impl Runs for Interbus {
     }
 }
 
-/// Identifies the encoder; refuses implausible data.
 pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     let identity = result_of!(runner.run(InterbusJob::Identify)?, InterbusOutput::Identity(identity) => identity);
     identity.gear().map_err(|why| failed(&words::implausible(why)))?;

@@ -1,4 +1,4 @@
-//! Parses the value of an item.
+//! Parsing of item values.
 
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::{Failure, Result};

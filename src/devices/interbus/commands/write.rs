@@ -1,4 +1,4 @@
-//! `write`: one item.
+//! `write`: writes a single item.
 
 use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;

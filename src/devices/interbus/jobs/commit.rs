@@ -1,4 +1,4 @@
-//! Carries a plan out.
+//! Execution of a plan.
 
 use super::{
     ChangeKind, Commit, Committed, DeviceMessage, Interbus, JobError, JobStep, Prepared, ProgressSink, device_key,
@@ -44,7 +44,6 @@ impl Planned for Prepared {
         op.note()
     }
 
-    /// Every profile contains the parameters.
     fn before_image(&self) -> String {
         let (base, identity) = (&self.plan.base, &self.identity);
         let mut image = Image::of(self.parameters);

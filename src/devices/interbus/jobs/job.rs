@@ -1,4 +1,4 @@
-//! The jobs of an INTERBUS encoder, and their results.
+//! Jobs of an INTERBUS encoder and their results.
 
 use std::fmt;
 
@@ -39,7 +39,6 @@ pub enum InterbusJob {
     Survey,
     /// These cam programs, and the shift of the window.
     Programs(Vec<ProgramNumber>),
-    /// Identifies the encoder.
     Identify,
     /// Reads its mode, its error and its temperature.
     Status,
@@ -52,9 +51,7 @@ pub enum InterbusJob {
     ReadOut(ReadOut),
     /// Selects another mode: position, speed, or a cam program; the encoder stays in it.
     Select(StartupMode),
-    /// Everything that can be restored.
     Save {
-        /// Including the cam programs.
         programs: bool,
     },
     /// Makes a plan; writes nothing.
@@ -78,7 +75,6 @@ pub enum Change {
     Item(Item, ItemValue),
     /// Stores this preset, and sets the shaft's position to it; at standstill.
     Preset {
-        /// The position.
         value: u32,
     },
     /// Restores the factory settings: experimental (reference 6.10).
@@ -88,13 +84,10 @@ pub enum Change {
 /// Kind of change, by how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// Restore of a profile: repeating it completes it.
     Restore,
     /// Edits: those not yet written remain edits.
     Edits,
-    /// A preset is stored and fired.
     Preset,
-    /// Everything is set back.
     Default,
 }
 
@@ -109,12 +102,10 @@ impl Change {
     }
 }
 
-/// Plan, ready for review.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: InterbusPlan,
-    /// The encoder that it is for.
     pub identity: Identity,
     /// Parameters of the position, as read for the plan.
     pub parameters: Parameters,
@@ -126,7 +117,6 @@ pub struct Prepared {
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<Item>,
-    /// The profile is of another type of encoder.
     pub other_type: Option<OtherType>,
     /// Values of another device's mounting that are written: they must be set up again.
     pub mounting_written: Vec<Item>,
@@ -181,9 +171,7 @@ pub enum DeviceMessage {
 /// Step of a running job. Its text is that of the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
-    /// Something is read out.
     ReadOut(ReadOut),
-    /// A cam program is read.
     Program(ProgramNumber),
     /// Operation of a plan, with the item it changes.
     Operation(String),
@@ -214,7 +202,6 @@ pub enum InterbusOutput {
     Position(WordReading),
     Item(ItemValue),
     ReadOut(ReadOut, Value),
-    /// With the mode that the encoder reports.
     Selected(StartupMode),
     Saved(Box<InterbusProfile>),
     Prepared(Box<Prepared>),
@@ -236,7 +223,6 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     key_of(&identity.serial_number, is_virtual)
 }
 
-/// Returns the same by the serial number alone.
 pub(super) fn key_of(serial_number: &str, is_virtual: bool) -> DeviceKey {
     DeviceKey::of(KIND, "K3", serial_number, is_virtual)
 }

@@ -1,5 +1,5 @@
-//! Notes that outlast a job with an INTERBUS encoder: the mode in which it was found, and stores that reading may have
-//! cost, in the logbook.
+//! Logbook notes that outlast a job: the mode in which the encoder was found, and store cycles that reading may have
+//! cost.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,6 @@ const WHAT: &str = "cam programs read, each of which may be stored when it is le
 pub(super) struct Notes {
     store: Store,
     is_virtual: bool,
-    /// Readings in progress, by serial number.
     begun: BTreeMap<String, (Logbook, EntryId)>,
 }
 

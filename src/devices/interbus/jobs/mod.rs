@@ -1,4 +1,4 @@
-//! An INTERBUS encoder behind its gateway as seen by a session, and its jobs.
+//! The INTERBUS encoder behind its gateway as a device of a session, and its jobs.
 
 mod commit;
 mod job;
@@ -33,7 +33,6 @@ use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watche
 pub struct Interbus {
     wire: Box<dyn ByteLink>,
     station: Station,
-    /// Motor of a virtual encoder.
     motor: Option<Motor>,
 }
 
@@ -68,7 +67,6 @@ impl Session<Interbus> {
         Session::with(Interbus { wire, station, motor }, clock, store, is_virtual)
     }
 
-    /// Returns the state of the gateway.
     pub fn station(&self) -> &Station {
         &self.device.station
     }

@@ -1,4 +1,4 @@
-//! Opening a session with an INTERBUS encoder from a link URL.
+//! Opening a session with an INTERBUS encoder from a link.
 
 use std::sync::Arc;
 

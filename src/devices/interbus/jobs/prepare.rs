@@ -1,4 +1,4 @@
-//! Makes a plan from a change. Reads; writes nothing, and leaves the encoder in its mode.
+//! Preparation of a plan from a change. Only reads; the encoder remains in its mode.
 
 use super::{Change, DeviceMessage, Interbus, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::interbus::procedures::{identify, read_state};

@@ -1,5 +1,5 @@
-//! The device check: gateway, IN word and encoder, with one verdict per item. It sets nothing: an echo would cost a store,
-//! so the handshake is tested with read-outs only.
+//! Device check: gateway, IN word and encoder, with a verdict for each item. Nothing is set: an echo would cost a store
+//! cycle, so the handshake is only tested with read-outs.
 
 use std::time::Duration;
 
@@ -16,7 +16,6 @@ pub type InterbusStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
-    /// The gateway answers.
     Gateway,
     /// The order of the two halves of a word.
     WordOrder,
@@ -27,7 +26,6 @@ pub enum CheckStep {
     /// Read-outs: OUT reaches the encoder, and IN comes back.
     Handshake,
     Temperature,
-    /// Stores in the EEPROM.
     Wear,
 }
 
@@ -36,7 +34,6 @@ pub enum CheckStep {
 pub enum CheckFinding {
     /// Number of readings of the IN word, and the longest reply time.
     Replies {
-        /// Number of requests.
         requested: u32,
         /// The longest, in milliseconds.
         slowest_ms: u64,
@@ -46,10 +43,8 @@ pub enum CheckFinding {
     /// Words make sense with their halves exchanged only.
     OrderSwapped {
         input: u32,
-        /// With its halves exchanged.
         swapped: u32,
     },
-    /// A position, a speed or cam outputs.
     Runs(u32),
     /// Bits that should be 0 are not.
     Stray(u32),
@@ -64,9 +59,7 @@ pub enum CheckFinding {
         steps: u32,
         turns: u32,
     },
-    /// Implausible data.
     Implausible(Implausible),
-    /// The preset is beyond the measuring range.
     PresetBeyond {
         preset: u32,
         /// The last position.
@@ -75,9 +68,7 @@ pub enum CheckFinding {
     /// It reports its steps minus one.
     StepsMinusOne,
     Mode(StartupMode),
-    /// Values read out.
     ReadOuts {
-        /// Number of values.
         requested: u64,
         /// Milliseconds for each.
         each_ms: u64,
@@ -86,11 +77,9 @@ pub enum CheckFinding {
     Failed(Error),
     /// Tenths of a degree Celsius.
     Temperature(i32),
-    /// Recorded stores, and the limit of the EEPROM.
     Wear {
         /// Minimum number of stores.
         seen: u64,
-        /// Limit of stores.
         limit: u64,
     },
 }

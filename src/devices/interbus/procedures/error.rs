@@ -1,4 +1,4 @@
-//! Errors of an encoder behind a gateway, with the facts that a user needs.
+//! Errors of an encoder behind a gateway, with the facts that a message requires.
 
 use std::fmt;
 
@@ -30,7 +30,6 @@ pub enum RequestedItem {
 }
 
 impl RequestedItem {
-    /// Returns the function of Modbus.
     pub const fn function(self) -> u8 {
         match self {
             RequestedItem::Input { .. } => 4,
@@ -70,12 +69,10 @@ impl Exception {
         Exception(code)
     }
 
-    /// Returns its number.
     pub const fn code(self) -> u8 {
         self.0
     }
 
-    /// Returns the name in the protocol.
     pub const fn name(self) -> &'static str {
         match self.0 {
             0x01 => "illegal function",
@@ -123,21 +120,10 @@ pub enum Damage {
         /// Number of bytes.
         bytes: usize,
     },
-    /// A reply of another unit.
     #[error("a reply from unit {got} instead of {requested}")]
-    Unit {
-        /// Requested unit.
-        requested: u8,
-        /// Unit of the reply.
-        got: u8,
-    },
-    /// A reply to another function.
+    Unit { requested: u8, got: u8 },
     #[error("a reply to function {got} instead of {requested}")]
-    Function {
-        requested: u8,
-        /// Function of the reply.
-        got: u8,
-    },
+    Function { requested: u8, got: u8 },
     /// Other registers than requested, or another number of them.
     #[error("not the registers that were requested")]
     Registers,
@@ -146,9 +132,7 @@ pub enum Damage {
 /// The event that did not occur within the time of the handshake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Awaited {
-    /// The echo of a word, exactly.
     Echo,
-    /// A value that was asked for.
     Value,
     /// The encoder runs: a position, a speed, or cam outputs.
     Run,
@@ -173,36 +157,24 @@ pub enum Implausible {
     /// Steps and turns.
     #[error(transparent)]
     Gear(#[from] GearError),
-    /// Neither clockwise nor counterclockwise.
     #[error("{0} is not a direction")]
     Direction(u32),
     /// A preset, an edge or a shift out of range.
     #[error("{value} for OUT {read:08X} is too large")]
-    Value {
-        /// The OUT word that asked.
-        read: u32,
-        value: u32,
-    },
+    Value { read: u32, value: u32 },
 }
 
 /// A procedure that ended early.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// The wire to the gateway.
     #[error(transparent)]
     Link(#[from] LinkError),
     /// The gateway does not answer.
     #[error("the gateway does not answer {requested} (attempts: {tries})")]
-    NoReply {
-        requested: RequestedItem,
-        /// Number of attempts.
-        tries: u32,
-    },
-    /// Every reply is damaged.
+    NoReply { requested: RequestedItem, tries: u32 },
     #[error("damaged reply to {requested} (attempts: {tries}): {cause}")]
     Damaged {
         requested: RequestedItem,
-        /// Number of attempts.
         tries: u32,
         /// Damage of the last reply.
         cause: Damage,
@@ -210,14 +182,8 @@ pub enum Error {
     /// Bytes keep arriving during the required silence.
     #[error("the gateway sends data that was not requested")]
     NeverSilent,
-    /// The gateway refuses.
     #[error("the gateway refuses {requested}: exception {:02X}, {}; {}", exception.code(), exception.name(), exception.cause())]
-    Exception {
-        requested: RequestedItem,
-        /// Code of the exception.
-        exception: Exception,
-    },
-    /// The user cancelled it.
+    Exception { requested: RequestedItem, exception: Exception },
     #[error("cancelled")]
     Cancelled,
     /// In its mode, the encoder would interpret the word as another command: it was not sent.
@@ -232,48 +198,34 @@ pub enum Error {
     /// No reaction to a word within the time of the handshake.
     #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", other_echo(*input))]
     TimeOut {
-        /// The awaited event.
         awaited: Awaited,
-        /// The OUT word.
         sent: u32,
         /// The last IN word.
         input: u32,
         /// Time waited, in milliseconds.
         milliseconds: u64,
     },
-    /// Another master writes to the encoder.
     #[error("another master writes to the encoder: OUT is {output:08X}, but {sent:08X} was written")]
     OtherMaster {
         /// The OUT word written last.
         sent: u32,
-        /// The OUT word that the gateway holds.
         output: u32,
     },
     /// The encoder is being parameterised, and not by this program: a write was interrupted, or another master is active.
     #[error("the encoder is being parameterised: IN is {input:08X}")]
-    NotRunning {
-        /// The IN word.
-        input: u32,
-    },
+    NotRunning { input: u32 },
     /// IN words make sense with their halves exchanged only.
     #[error("IN {input:08X} makes sense as {swapped:08X} only: the word order may be swapped")]
     WordOrder {
         /// The word as it was read.
         input: u32,
-        /// With its halves exchanged.
         swapped: u32,
     },
-    /// The data of the encoder are implausible.
     #[error("the encoder reports implausible data: {0}")]
     Implausible(#[from] Implausible),
     /// It does not go into a mode.
     #[error("the encoder stays in mode {} instead of changing to {}", is.emit(), wanted.emit())]
-    NoMode {
-        /// The mode that it was sent to.
-        wanted: StartupMode,
-        /// The mode that it reports.
-        is: StartupMode,
-    },
+    NoMode { wanted: StartupMode, is: StartupMode },
     /// A mode that cannot be selected.
     #[error("mode {} cannot be selected", mode.emit())]
     NotSelectable { mode: StartupMode },
@@ -285,19 +237,11 @@ pub enum Error {
     Moving {
         /// The first position.
         from: u32,
-        /// The one farthest from it.
         to: u32,
     },
     /// A written value does not read back.
     #[error("{item} is {reads} after {wanted} was written")]
-    NotTaken {
-        item: String,
-        /// The value written.
-        wanted: u32,
-        /// The value read.
-        reads: u32,
-    },
-    /// Values changed between the plan and its execution.
+    NotTaken { item: String, wanted: u32, reads: u32 },
     #[error("{item} has changed since the plan was made")]
     Changed { item: String },
     /// Something ended early, and the encoder could not be led back.
@@ -305,7 +249,6 @@ pub enum Error {
     NotLedBack {
         /// The error of the work; if it did not fail, why the encoder could not be returned to its mode.
         cause: Box<Error>,
-        /// Its possible state.
         standing: LeftState,
     },
 }
@@ -348,7 +291,6 @@ impl Error {
         }
     }
 
-    /// Returns whether the user cancelled it.
     pub fn is_cancelled(&self) -> bool {
         match self {
             Error::Cancelled => true,

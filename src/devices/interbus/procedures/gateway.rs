@@ -1,7 +1,8 @@
-//! Process data behind a Modbus/TCP gateway: the IN word is two input registers, the OUT word two holding registers.
+//! Process data behind a Modbus/TCP gateway: the IN word occupies two input registers, the OUT word two holding
+//! registers.
 //!
-//! Each request has its own number, so that a late reply is never taken for the next one. Writing an OUT word twice has the
-//! same effect as once, so every request may be repeated.
+//! Each request has its own number, so a late reply is never mistaken for the next one. Writing an OUT word twice has
+//! the same effect as writing it once, so every request may be repeated.
 
 use std::time::Duration;
 
@@ -191,7 +192,6 @@ impl<'a> Gateway<'a> {
     }
 }
 
-/// Returns the frame of a request.
 fn request(requested: RequestedItem, unit: u8, number: u16, order: WordOrder) -> Option<(ModbusRequest, Vec<u8>)> {
     let mut request = ModbusRequest::new_tcp_udp(unit, number);
     let mut bytes = Vec::new();
@@ -210,7 +210,6 @@ fn request(requested: RequestedItem, unit: u8, number: u16, order: WordOrder) ->
 pub enum Fault {
     /// It is not a reply to the request.
     Broken(Damage),
-    /// The gateway refuses.
     Refused(Exception),
 }
 
@@ -315,9 +314,7 @@ impl ProcessData for Gateway<'_> {
 /// The word that a frame carries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
-    /// An OUT word that is written.
     Out(u32),
-    /// An IN word that was read.
     In(u32),
 }
 

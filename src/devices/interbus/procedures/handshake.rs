@@ -1,4 +1,4 @@
-//! A step of the handshake as reported, and the possible state of an encoder after a failure.
+//! Reported steps of the handshake, and the possible state of an encoder after a failure.
 
 use std::fmt;
 
@@ -8,10 +8,8 @@ use crate::units::Moment;
 /// Step of the handshake: the present OUT word, the IN word received, and its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Handshake {
-    /// Time of reading IN.
     pub at: Moment,
     pub out: u32,
-    /// Meaning of OUT in the encoder's mode.
     pub command: Command,
     pub input: u32,
     /// Meaning of IN as the answer.
@@ -24,7 +22,6 @@ pub enum WordReply {
     /// It runs: a position, a speed or cam outputs.
     Runs,
     Busy,
-    /// The exact echo.
     Echoed,
     /// The echo of another word: an old one, unless it stays.
     OldEcho,

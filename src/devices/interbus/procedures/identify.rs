@@ -1,4 +1,4 @@
-//! Reads the identity and settings of an encoder, and everything else that it provides (reference 3 and 5).
+//! Reading the identity and settings of an encoder, and everything else that it provides (reference 3 and 5).
 
 use super::error::Implausible;
 use super::{Error, Master, WordReading};
@@ -8,7 +8,6 @@ use crate::devices::interbus::protocol::{
     StartupMode, Value, WindowShift,
 };
 
-/// Identity of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// Its serial number, decimal.
@@ -17,10 +16,8 @@ pub struct Identity {
     pub steps: u32,
     /// Turns until the position starts again.
     pub revolutions: u32,
-    /// Direction of counting.
     pub direction: Direction,
     pub software_version: u32,
-    /// Its mode, now and at power-up.
     pub mode: StartupMode,
     pub flags: Flags,
 }
@@ -63,7 +60,6 @@ pub struct Status {
     pub reading: WordReading,
     /// The error that it sends instead of a position.
     pub error: Option<ErrorWord>,
-    /// Its mode, now and at power-up.
     pub mode: StartupMode,
     pub flags: Flags,
     /// Operating time in minutes.
@@ -201,7 +197,6 @@ pub(super) fn read_survey(
     })
 }
 
-/// Reads the mode in this job.
 fn read_mode(master: &mut Master<'_>) -> Result<StartupMode, Error> {
     match master.said_mode() {
         Some(mode) => Ok(mode),
@@ -229,7 +224,6 @@ pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity
     Ok(Parameters { steps, revolutions, direction, preset, zero_shift })
 }
 
-/// Reads the parameters of the position.
 pub(super) fn read_parameters(master: &mut Master<'_>) -> Result<Parameters, Error> {
     let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOut::new(number))?.get());
     let [steps, revolutions, direction] = [read(1)?, read(2)?, read(3)?];
@@ -281,7 +275,6 @@ pub(super) fn programs(
     Ok((read, read_shift(master)?))
 }
 
-/// Reads the program that is selected.
 pub(super) fn read_program(master: &mut Master<'_>) -> Result<Program, Error> {
     // There are eight; the upper byte is 0 (reference 6.9).
     let mask = master.ask(Command::ReadActivation)?.get() as u8;
@@ -307,7 +300,6 @@ pub(super) fn read_shift(master: &mut Master<'_>) -> Result<WindowShift, Error> 
     Ok(shift)
 }
 
-/// Measured values.
 pub(super) struct Measured {
     pub(super) minutes: u32,
     pub(super) tenths: i32,

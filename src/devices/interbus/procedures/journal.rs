@@ -1,5 +1,5 @@
-//! Facts of a job that outlast it: the mode into which an encoder was sent, until it is returned, and stores that this may
-//! have cost.
+//! Facts that outlast a job: the mode to which an encoder was switched, until it is returned, and the store cycles that
+//! this may have cost.
 
 use crate::devices::interbus::protocol::StartupMode;
 

@@ -1,5 +1,5 @@
-//! The host's side of the handshake (reference 4): words are sent, each until it has had its effect. Only words that have
-//! the intended meaning in the encoder's mode are sent; all others are refused here.
+//! Host side of the handshake (reference 4): each word is sent until it has had its effect. Words that would not have
+//! the intended meaning in the present mode of the encoder are refused here.
 
 mod acknowledge;
 mod modes;
@@ -28,7 +28,6 @@ pub struct Master<'a> {
     data: Box<dyn ProcessData + 'a>,
     known: &'a mut KnownState,
     patience: Duration,
-    /// A recording replies.
     recorded: bool,
     tell: Option<StepListener<'a>>,
     /// The mode, as read in this job.
@@ -41,7 +40,6 @@ pub struct Master<'a> {
     found: Option<StartupMode>,
     /// The error that it already had: it sends no position in any case.
     found_error: Option<u32>,
-    /// Parameters or cams are being set.
     parameterising: bool,
     /// The last command of this job.
     out: Option<Command>,
@@ -52,7 +50,6 @@ pub struct Master<'a> {
     /// When it was last seen in its state before this job, with no request to it.
     rested: Option<Moment>,
     reported: Option<(u32, WordReply)>,
-    /// The notes that outlast this job.
     notes: Notes<'a>,
 }
 
@@ -137,7 +134,6 @@ impl<'a> Master<'a> {
         Ok(WordReading { at: self.data.now(), word, mode, gear, shift })
     }
 
-    /// Returns the possible states of the encoder.
     pub(super) fn standing(&self) -> LeftState {
         let out = self.out.map_or(0, Command::emit);
         LeftState { out, parameterising: self.parameterising, found: self.found, is: self.is }

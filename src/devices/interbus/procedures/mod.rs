@@ -1,9 +1,10 @@
-//! The procedures of an INTERBUS encoder (POSITAL OCD-IB, K3): its process data are transmitted over a Modbus/TCP gateway,
-//! and everything but the position over the handshake in them. Reading or setting any value replaces the position and makes
-//! cam outputs invalid meanwhile; another program switches them. The reference is the project's "interbus".
+//! Procedures of an INTERBUS encoder (POSITAL OCD-IB, K3). Its process data are transmitted over a Modbus/TCP gateway,
+//! and everything except the position is transferred by a handshake within them. Reading or setting a value replaces
+//! the position and invalidates the cam outputs in the meantime; selecting another program switches them. "Reference"
+//! is the project's "interbus".
 //!
 //! ```text
-//! identify, survey, write ── master: the handshake, modes, back to the mode found ──▶ data: OUT ⇄ IN ◀── gateway
+//! identify, survey, write ── master: the handshake, modes, back to the previous mode ──▶ data: OUT ⇄ IN ◀── gateway
 //! ```
 
 pub mod check;

@@ -1,4 +1,4 @@
-//! The IN word for display and plotting.
+//! IN words for display and plotting.
 
 use crate::devices::interbus::protocol::{CamOutput, Gear, Reply, StartupMode, Value, WindowShift};
 use crate::units::Moment;
@@ -6,7 +6,6 @@ use crate::units::Moment;
 /// IN word, with the session's known facts about the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordReading {
-    /// Time of reading.
     pub at: Moment,
     /// As received.
     pub word: u32,
@@ -30,7 +29,6 @@ pub struct TurnPosition {
 }
 
 impl WordReading {
-    /// Returns the meaning of the word.
     pub fn reply(&self) -> Reply {
         Reply::parse(self.word)
     }
@@ -66,7 +64,6 @@ impl WordReading {
         }
     }
 
-    /// Returns the cam outputs, in cam mode.
     pub fn cams(&self) -> Option<CamOutput> {
         match self.mode {
             Some(StartupMode::Cams(_)) => CamOutput::parse(self.word).ok(),

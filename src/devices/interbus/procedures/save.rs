@@ -1,4 +1,4 @@
-//! Reads values to be saved, to plan with, or to show as an item.
+//! Reading of values to save, to plan with, or to show as an item.
 
 use super::identify::{direction_of, programs, read_cam, read_image, read_other_parameters, read_survey};
 use super::write::read_parameter;
@@ -46,12 +46,9 @@ pub fn save(
     })
 }
 
-/// The part being read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SaveStep {
-    /// Something that is read out.
     ReadOut(ReadOut),
-    /// A cam program.
     Program(ProgramNumber),
 }
 

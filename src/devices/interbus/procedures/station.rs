@@ -1,4 +1,4 @@
-//! The state of a gateway and the encoder behind it that is kept between jobs.
+//! State of a gateway and the encoder behind it that is kept between jobs.
 
 use std::fmt;
 use std::time::Duration;
@@ -13,7 +13,6 @@ parameters! {
     /// Parameters of the gateway and the registers behind it in a link.
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
-        /// The unit that the gateway is asked for.
         pub unit: u8 = 1, "unit" => UNIT, "connect.unit";
         /// The first of the two input registers with the IN word.
         pub input: u16 = 0, "input" => INPUT, "connect.input";
@@ -37,7 +36,6 @@ pub struct Station {
     /// A recording replies: its replies have the recorded request numbers.
     pub recorded: bool,
     pub(super) line: LineState,
-    /// The number of the next request.
     pub(super) next: u16,
     /// Bytes received and not used yet.
     pub(super) waiting: Vec<u8>,
@@ -55,7 +53,6 @@ pub(super) struct KnownState {
     pub(super) shift: Option<WindowShift>,
     /// The OUT word that keeps this mode, if normal running does not.
     pub(super) hold: Option<(StartupMode, Command)>,
-    /// Normal running keeps this mode.
     pub(super) kept: Option<StartupMode>,
     /// The longest that it was seen at work on a word.
     pub(super) processing: Duration,

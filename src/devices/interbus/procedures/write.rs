@@ -1,5 +1,5 @@
-//! Writes a plan to an encoder: reads its base again, carries out each operation and reads it back, and returns the encoder
-//! to its earlier mode.
+//! Execution of a plan: reads its base again, carries out each operation and reads it back, and returns the encoder to
+//! its previous mode.
 
 use std::time::Duration;
 
@@ -36,9 +36,7 @@ const LOOK: Duration = Duration::from_millis(20);
 
 /// An encoder into which a plan is written.
 pub struct EncoderWrite<'w, 'm> {
-    /// The host's side of its process data.
     pub master: Master<'m>,
-    /// The encoder for which the plan was made.
     pub identity: &'w Identity,
 }
 
@@ -58,7 +56,6 @@ impl Write for EncoderWrite<'_, '_> {
         self.master.begin()
     }
 
-    /// Cancellation is checked between two words.
     fn apply(&mut self, op: &Op, _: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Error> {
         perform(&mut self.master, op, done)?;
         done.carried_out(op.weight());

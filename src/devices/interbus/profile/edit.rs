@@ -1,17 +1,17 @@
-//! Plans for changes, each checked against the encoder's own rules before anything is sent, in the fewest stores: one for
-//! all parameters, and one for each program that changes.
+//! Planning of changes, each checked against the rules of the encoder before anything is sent, in as few store cycles
+//! as possible: one for all parameters, and one for each changed program.
 
 use super::{
     Base, CamChange, Edge, Image, InterbusPlan, Item, Op, ParameterChange, Parameters, PlanError, ProgramChange,
 };
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, Program, ProgramNumber, Value};
 
-/// Plans the changes that give an encoder the wanted values: only differences are written. Values that the wanted image
-/// does not contain stay as they are; `device` must contain all values of the wanted image.
+/// Plans the changes that give an encoder the wanted values; only differences are written. Values that the wanted image
+/// lacks are left unchanged; `device` must contain all values of the wanted image.
 ///
-/// The parameters come first, all in one parameterisation and in an order in which each is legal when it is sent; the cams
-/// are then within the range. The shift of the window is set with the first program that changes; if none does, it is set
-/// by itself with the first program that was read, which costs a store.
+/// Parameters come first, in a single parameterisation and in an order in which each is valid when sent; the cams are
+/// then within range. The window shift is set together with the first changed program. If no program changes, it is set
+/// on its own with the first program that was read, which costs a store cycle.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -55,11 +55,11 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
     Ok(plan)
 }
 
-/// Plans to set the position at the shaft's present place to this value: it is programmed, even if it already is, since a
-/// preset can be fired once for each programming (reference 4); then it is fired.
+/// Plans to set the position at the present shaft angle to a value. The preset is always programmed, since it can be
+/// fired once per programming (reference 4), and then fired.
 ///
 /// # Errors
-/// The value is beyond the measuring range.
+/// The value exceeds the measuring range.
 pub fn plan_preset(device: &Parameters, value: u32) -> Result<InterbusPlan, PlanError> {
     Parameter::Preset.check(value, device.gear()?)?;
     let change = ParameterChange { parameter: Parameter::Preset, from: device.preset, to: value };
@@ -67,7 +67,7 @@ pub fn plan_preset(device: &Parameters, value: u32) -> Result<InterbusPlan, Plan
     Ok(InterbusPlan { base, ops: vec![Op::Parameterise(vec![change]), Op::FirePreset { value }] })
 }
 
-/// Plans restoring the factory settings: experimental (reference 6.10). The resulting values are not known before.
+/// Plans to restore the factory settings: experimental (reference 6.10). The resulting values are not known in advance.
 pub fn plan_default(device: &Parameters) -> InterbusPlan {
     InterbusPlan { base: Base { parameters: Some(*device), ..Base::default() }, ops: vec![Op::Default] }
 }
@@ -145,10 +145,10 @@ fn check_edge(item: Item, edge: Edge, position: Value, steps: u32) -> Result<(),
 }
 
 impl Edge {
-    /// Both, in the order in which they are set.
+    /// Both edges, in the order in which they are set.
     pub const BOTH: [Edge; 2] = [Edge::Start, Edge::Stop];
 
-    /// Returns the edge of a cam.
+    /// Returns this edge of a cam.
     pub const fn of(self, cam: Cam) -> Value {
         match self {
             Edge::Start => cam.start,

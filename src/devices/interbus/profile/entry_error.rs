@@ -1,18 +1,18 @@
-//! Why an INTERBUS profile is refused.
+//! Reasons why an INTERBUS profile is refused.
 
 use super::item::{Item, ItemError};
 use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
 
-/// Why an entry of a profile is refused.
+/// The reason why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
-    /// A program that is already in the list.
+    /// The program occurs twice.
     #[error("program {} appears twice", .0.get())]
     ProgramTwice(ProgramNumber),
-    /// A cam that is already in its program.
+    /// The cam occurs twice in its program.
     #[error("cam {} appears twice", .0.get())]
     CamTwice(CamNumber),
-    /// An unknown program, cam or marked item.
+    /// The program, cam or marked item is unknown.
     #[error(transparent)]
     Item(#[from] ItemError),
     /// The marked item is not a setting.

@@ -1,47 +1,47 @@
-//! The content of a K3 encoder's EEPROM that can be read back.
+//! Readable content of a K3 encoder's EEPROM.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::devices::interbus::protocol::{Gear, GearError, Parameter, Program, ProgramNumber, WindowShift};
 
-/// All values that can be written and read back. Values not read, or not in a profile, are `None`.
+/// All values that can be written and read back. Values that were not read, or are not in a profile, are `None`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Image {
-    /// Parameters of the position.
+    /// Position parameters.
     pub parameters: Parameters,
-    /// Shift of the position under its window in cam mode: one for all programs.
+    /// Shift of the position under its window in cam mode, common to all programs.
     pub shift: Option<WindowShift>,
-    /// The cam programs, the first at 0. One that was read has every cam, active or not.
+    /// Cam programs, the first at index 0. A program that was read contains every cam, active or not.
     pub programs: [Option<Program>; ProgramNumber::COUNT],
 }
 
-/// The parameters of an encoder's position.
+/// Position parameters of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Parameters {
-    /// Steps over all programmed turns: the measuring range. See [`Gear`].
+    /// Steps over all programmed turns, that is the measuring range. See [`Gear`].
     pub steps: u32,
-    /// Turns until the position starts again.
+    /// Number of turns after which the position starts again.
     pub revolutions: u32,
-    /// Direction of counting.
+    /// Counting direction.
     pub direction: Direction,
-    /// Position for the shaft's place when the preset is fired; belongs to the mounting.
+    /// Position assigned to the present shaft angle when the preset is fired; belongs to the mounting.
     pub preset: u32,
-    /// Zero point shifting; belongs to the mounting.
+    /// Zero shift; belongs to the mounting.
     pub zero_shift: u32,
 }
 
-/// The direction of counting, seen at the shaft.
+/// Counting direction, as seen when looking at the shaft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
-    /// 3: up when the shaft turns clockwise.
+    /// 3: the position increases when the shaft turns clockwise.
     Clockwise,
-    /// 4: up when it turns counterclockwise.
+    /// 4: the position increases when the shaft turns counterclockwise.
     Counterclockwise,
 }
 
 impl Direction {
-    /// Returns the parameter's number.
+    /// Returns the value of the parameter.
     pub const fn code(self) -> u32 {
         match self {
             Direction::Clockwise => 3,
@@ -49,7 +49,7 @@ impl Direction {
         }
     }
 
-    /// Returns the direction for the parameter's value; `None` if it is neither 3 nor 4.
+    /// Returns the direction for a parameter value, or `None` if it is neither 3 nor 4.
     pub const fn of_code(code: u32) -> Option<Self> {
         match code {
             3 => Some(Direction::Clockwise),
@@ -58,7 +58,7 @@ impl Direction {
         }
     }
 
-    /// Returns the word on the command line and in profiles.
+    /// Returns the keyword used on the command line and in profiles.
     pub const fn word(self) -> &'static str {
         match self {
             Direction::Clockwise => "cw",
@@ -73,7 +73,7 @@ impl fmt::Display for Direction {
     }
 }
 
-/// A word that is no direction.
+/// The keyword does not denote a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a direction is cw (3) or ccw (4)")]
 pub struct DirectionError;
@@ -91,7 +91,7 @@ impl FromStr for Direction {
 }
 
 impl Parameters {
-    /// Returns a parameter's number; `None` if it is not a setting.
+    /// Returns the value of a parameter, or `None` if it is not a setting.
     pub const fn value(&self, parameter: Parameter) -> Option<u32> {
         match parameter {
             Parameter::Steps => Some(self.steps),
@@ -103,27 +103,27 @@ impl Parameters {
         }
     }
 
-    /// Returns steps and turns as the gear that they are together.
+    /// Returns the gear formed by steps and turns.
     ///
     /// # Errors
-    /// One of them is out of range.
+    /// Steps or turns are out of range.
     pub const fn gear(&self) -> Result<Gear, GearError> {
         Gear::new(self.steps, self.revolutions)
     }
 }
 
 impl Image {
-    /// Creates an image of the parameters only.
+    /// Creates an image that only contains parameters.
     pub const fn of(parameters: Parameters) -> Self {
         Image { parameters, shift: None, programs: [None; ProgramNumber::COUNT] }
     }
 
-    /// Returns a program; `None` if it is not known.
+    /// Returns a program, if known.
     pub fn program(&self, number: ProgramNumber) -> Option<&Program> {
         self.programs.get(usize::from(number.get() - 1)).and_then(Option::as_ref)
     }
 
-    /// Returns the place of a program.
+    /// Returns the entry of a program, mutably.
     pub fn program_mut(&mut self, number: ProgramNumber) -> Option<&mut Option<Program>> {
         self.programs.get_mut(usize::from(number.get() - 1))
     }

@@ -1,4 +1,4 @@
-//! The names of items in an encoder, as `read` takes them: `steps`, `cam:2:5`, `cam-mask:2`; and their values.
+//! Names of encoder items as accepted by `read`, such as `steps`, `cam:2:5` and `cam-mask:2`, and their values.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,22 +6,22 @@ use std::str::FromStr;
 use super::{Direction, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Parameter, Program, ProgramNumber, WindowShift};
 
-/// Item of an encoder.
+/// An item of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Item {
     /// Steps over all programmed turns.
     Steps,
-    /// Turns until the position starts again.
+    /// Number of turns after which the position starts again.
     Revolutions,
-    /// Direction of counting.
+    /// Counting direction.
     Direction,
     /// Preset value of the position.
     Preset,
     /// Zero point shifting.
     ZeroShift,
-    /// Shift of the position under its window: one for all programs.
+    /// Shift of the position under its window, common to all programs.
     Shift,
-    /// The active cams of a program.
+    /// Mask of the active cams of a program.
     CamMask(ProgramNumber),
     /// Both edges of a cam.
     Cam(ProgramNumber, CamNumber),
@@ -34,36 +34,36 @@ pub enum Item {
 /// The value of an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ItemValue {
-    /// Steps, turns, or the shift of the window.
+    /// Steps, turns, or window shift.
     Number(u32),
-    /// Direction of counting.
+    /// Counting direction.
     Direction(Direction),
-    /// Bit i for cam i.
+    /// Mask with bit i for cam i.
     Mask(u8),
-    /// Both edges.
+    /// Both edges of a cam.
     Cam(Cam),
-    /// Tenths of a degree Celsius.
+    /// Temperature in tenths of a degree Celsius.
     TenthsOfDegree(i32),
-    /// Minutes, in tens.
+    /// Operating time in minutes, with a resolution of ten.
     Minutes(u32),
 }
 
-/// Why a text does not name an item.
+/// The reason why a string does not name an item.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
-    /// Not of the form of any item.
+    /// The string has none of the valid forms.
     #[error("{0:?} is not an item; items are {ITEMS}")]
     Unknown(String),
-    /// There is no such program.
+    /// The program does not exist.
     #[error("program {number} is not within 1 to {}", ProgramNumber::COUNT)]
     Program {
-        /// As given.
+        /// Given program number.
         number: u64,
     },
-    /// There is no such cam.
+    /// The cam does not exist.
     #[error("cam {number} is not within 0 to {}", Program::CAMS - 1)]
     Cam {
-        /// As given.
+        /// Given cam number.
         number: u64,
     },
 }
@@ -84,14 +84,13 @@ impl Item {
         Item::OperatingTime,
     ];
 
-    /// Returns all writable items in the order of comparison: parameters, the shift, then the mask and the cams of each
-    /// program.
+    /// Returns all writable items in comparison order: parameters, shift, then mask and cams of each program.
     pub fn writable() -> impl Iterator<Item = Item> {
         let plain = Item::PLAIN.into_iter().filter(|item| item.is_writable());
         plain.chain(ProgramNumber::all().flat_map(Item::of_program))
     }
 
-    /// Returns the mask and the cams of a program.
+    /// Returns the items of a program: mask and cams.
     pub fn of_program(program: ProgramNumber) -> impl Iterator<Item = Item> {
         std::iter::once(Item::CamMask(program)).chain(CamNumber::all().map(move |cam| Item::Cam(program, cam)))
     }
@@ -101,7 +100,7 @@ impl Item {
         !matches!(self, Item::Temperature | Item::OperatingTime)
     }
 
-    /// Returns its parameter; `None` for an item of the cams or a measured one.
+    /// Returns the corresponding parameter, or `None` for cam items and measured values.
     pub const fn parameter(self) -> Option<Parameter> {
         match self {
             Item::Steps => Some(Parameter::Steps),
@@ -113,7 +112,7 @@ impl Item {
         }
     }
 
-    /// Returns the item of a parameter; `None` if it is not a setting.
+    /// Returns the item of a parameter, or `None` if the parameter is not a setting.
     pub const fn of_parameter(parameter: Parameter) -> Option<Self> {
         match parameter {
             Parameter::Steps => Some(Item::Steps),
@@ -125,7 +124,7 @@ impl Item {
         }
     }
 
-    /// Returns the program of the item.
+    /// Returns the program to which the item belongs.
     pub const fn program(self) -> Option<ProgramNumber> {
         match self {
             Item::CamMask(program) | Item::Cam(program, _) => Some(program),
@@ -133,7 +132,7 @@ impl Item {
         }
     }
 
-    /// Returns the unit of its number; empty if it has none.
+    /// Returns the unit of the value; empty if there is none.
     pub const fn unit(self) -> &'static str {
         match self {
             Item::Steps | Item::Preset | Item::ZeroShift | Item::Cam(..) => "steps",
@@ -204,7 +203,7 @@ impl fmt::Display for ItemValue {
 }
 
 impl Image {
-    /// Returns the value of an item; `None` if it is not known, and for measured values.
+    /// Returns the value of an item, or `None` if it is unknown or measured.
     pub fn item(&self, item: Item) -> Option<ItemValue> {
         let number = ItemValue::Number;
         let Parameters { steps, revolutions, direction, preset, zero_shift } = self.parameters;
@@ -221,8 +220,8 @@ impl Image {
         })
     }
 
-    /// Sets the value of an item. A program that was not known becomes known to this extent; its mask is 0. Returns false
-    /// if the item cannot have such a value.
+    /// Sets the value of an item; returns `false` if the item cannot have the value. An unknown program becomes known
+    /// to this extent, with a mask of 0.
     pub fn put(&mut self, item: Item, value: ItemValue) -> bool {
         let parameters = &mut self.parameters;
         match (item, value) {

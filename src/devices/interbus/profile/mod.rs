@@ -1,4 +1,4 @@
-//! INTERBUS profiles: the content of a K3 encoder, what is saved of it, the differences between two, and the effect of a
+//! INTERBUS profiles: the saved content of a K3 encoder, the differences between two profiles, and the effect of a
 //! write.
 
 #![warn(missing_docs)]

@@ -1,10 +1,10 @@
-//! The changes of an operation in one line for the logbook: items, old and new. The terms are the manual's, in any language
-//! of the window.
+//! Summary of an operation's changes as one line for the logbook: items, old and new values. The terms are those of the
+//! manual in every window language.
 
 use super::{CamChange, Direction, Op, ParameterChange};
 use crate::devices::interbus::protocol::Parameter;
 
-/// A line of an operation.
+/// A single change within an operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangeStep {
     /// Name of the changed item, or of an edge of one.
@@ -16,7 +16,7 @@ pub struct ChangeStep {
 }
 
 impl Op {
-    /// Returns the changes, old and new.
+    /// Returns the changes, old and new, as one line.
     pub fn note(&self) -> String {
         match self {
             Op::FirePreset { value } => format!("position: → {value}"),
@@ -28,7 +28,7 @@ impl Op {
         }
     }
 
-    /// Returns the changes one by one: a parameter, a mask, an edge of a cam. Empty if nothing can be read.
+    /// Returns the changes one by one: parameters, masks and cam edges. Empty if none of them is readable.
     pub fn steps(&self) -> Vec<ChangeStep> {
         let step = |name: String, from: &dyn ToString, to: &dyn ToString| ChangeStep {
             name,

@@ -1,4 +1,4 @@
-//! The operations that change an encoder, their cost, and their base.
+//! Operations that change an encoder, their cost, and the values on which they are based.
 
 use std::fmt;
 
@@ -9,77 +9,79 @@ use crate::profile::{Operation, Plan};
 /// A planned write to an INTERBUS encoder.
 pub type InterbusPlan = Plan<Base, Op>;
 
-/// Values that a plan is based on: everything that its operations change, and the range of its cams. Programs that it does
-/// not change are not included, since reading one switches the encoder's outputs.
+/// The values on which a plan is based: everything that its operations change, and the range of its cams. Unchanged
+/// programs are excluded, since reading one switches the outputs of the encoder.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
-    /// The parameters; `None` if the plan is empty.
+    /// Parameters, or `None` if the plan is empty.
     pub parameters: Option<Parameters>,
-    /// The shift of the window; `None` if the plan does not change it.
+    /// Window shift, or `None` if the plan does not change it.
     pub shift: Option<WindowShift>,
-    /// The programs that the plan touches, as they are.
+    /// Present content of the affected programs.
     pub programs: Vec<(ProgramNumber, Program)>,
 }
 
-/// Operation, from entering a mode to leaving it. Each stores once in the EEPROM, except firing the preset.
+/// An operation, from entering a mode to leaving it. Each costs one EEPROM store cycle, except firing the preset.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Sets parameters in one parameterisation, in this order; `80000000` stores them (reference 4).
+    /// Set parameters in a single parameterisation, in this order; `80000000` stores them (reference 4).
     Parameterise(Vec<ParameterChange>),
-    /// A cam program is selected, changed, and left, which stores it (reference 5).
+    /// Select and change a cam program; leaving it stores the changes (reference 5).
     Program(ProgramChange),
-    /// `40000000`: sets the position at the shaft's place to this preset, which is programmed before (reference 4).
+    /// `40000000`: sets the position at the present shaft angle to the preset value, which has been programmed before
+    /// (reference 4).
     FirePreset {
-        /// The value.
+        /// Preset value.
         value: u32,
     },
-    /// `0E000000`: restores the factory settings. Experimental: only the manual's appendix mentions it (reference 6.10).
+    /// `0E000000`: restores the factory settings. Experimental, since only the appendix of the manual mentions it
+    /// (reference 6.10).
     Default,
 }
 
-/// A parameter with another number.
+/// A parameter with a new value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ParameterChange {
-    /// The parameter.
+    /// Parameter to change.
     pub parameter: Parameter,
-    /// Present number.
+    /// Present value.
     pub from: u32,
-    /// New number; the same if a preset is programmed again so that it can be fired.
+    /// New value; equal to the present one if a preset is programmed again in order to be fired.
     pub to: u32,
 }
 
-/// The changes in a program.
+/// Changes within a program.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ProgramChange {
-    /// The program.
+    /// Program number.
     pub program: ProgramNumber,
-    /// Edges of cams, by cam and the start first.
+    /// Changed cam edges, ordered by cam, start first.
     pub cams: Vec<CamChange>,
-    /// The activation mask, now and from then on.
+    /// Present and new activation mask.
     pub mask: Option<(u8, u8)>,
-    /// The present and the new shift of the window: there is one for the encoder, which is set with a program.
+    /// Present and new window shift. The shift is common to all programs and set together with one of them.
     pub shift: Option<(WindowShift, WindowShift)>,
 }
 
-/// An edge of a cam with another position.
+/// A cam edge with a new position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CamChange {
-    /// The cam.
+    /// Cam number.
     pub cam: CamNumber,
-    /// The edge.
+    /// Edge to change.
     pub edge: Edge,
-    /// Old place.
+    /// Old position.
     pub from: Value,
-    /// New place.
+    /// New position.
     pub to: Value,
 }
 
-/// Edge of a cam. Both belong to it.
+/// An edge of a cam. Both edge positions belong to the cam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Edge {
-    /// Its first position.
+    /// First position of the cam.
     Start,
-    /// Its last one.
+    /// Last position of the cam.
     Stop,
 }
 
@@ -93,8 +95,8 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the changed items, named as in `read`; a cam once, whether one of its edges changes or both. Those of
-    /// the default are not known.
+    /// Returns the changed items; a cam is listed once, whether one of its edges changes or both. The items changed by
+    /// restoring the factory settings are unknown.
     pub fn items(&self) -> Vec<Item> {
         match self {
             Op::Parameterise(changes) => {
@@ -105,7 +107,7 @@ impl Op {
         }
     }
 
-    /// Returns the names of the changed items, as `read` takes them if they can be read.
+    /// Returns the names of the changed items, as accepted by `read` if they are readable.
     pub fn item(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
@@ -114,7 +116,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes as a comparison counts them.
+    /// Returns the number of changes, counted as in a comparison.
     pub fn weight(&self) -> u64 {
         match self {
             Op::FirePreset { .. } | Op::Default => 1,

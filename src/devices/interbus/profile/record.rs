@@ -1,5 +1,5 @@
-//! The saved content of an INTERBUS encoder: identity, EEPROM, names of its cams, and recorded values. Its text is in
-//! [`text`](super::text).
+//! Saved content of an INTERBUS encoder: identity, EEPROM, cam names and recorded values. [`text`](super::text) defines
+//! the file format.
 
 use std::collections::BTreeMap;
 
@@ -7,62 +7,62 @@ use super::{Image, Item};
 use crate::devices::interbus::protocol::{CamNumber, Flags, ProgramNumber, StartupMode};
 use crate::profile::ron_text::Unknown;
 
-/// Profile of an INTERBUS encoder.
+/// A profile of an INTERBUS encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InterbusProfile {
-    /// The identity.
+    /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// The content of its EEPROM. A program, a cam or a shift that is `None` is not in the profile.
+    /// EEPROM content. Programs, cams or a shift that are not in the profile are `None`.
     pub image: Image,
-    /// Names of the programs and their cams; the encoder does not store them.
+    /// Names of programs and cams, which the encoder does not store.
     pub names: Names,
-    /// Values that belong to the mounting and are never written to another encoder unasked.
+    /// Values that belong to the mounting and are never written to another encoder without asking.
     pub mounting: Vec<MountingMark>,
-    /// Values that change by themselves or cannot be written: recorded, neither compared nor restored.
+    /// Values that change on their own or cannot be written: recorded, but neither compared nor restored.
     pub recorded: Recorded,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: UnknownEntries,
 }
 
-/// The identity of an encoder.
+/// Identity of an encoder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
-    /// Read-out 0, decimal; empty if the profile is of no particular encoder.
+    /// Serial number, read-out 0, in decimal; empty if the profile belongs to no particular encoder.
     pub serial_number: String,
-    /// Read-out Ah: how its steps count, and whether it counts turns; `None` if it is not known.
+    /// Flags, read-out Ah: how steps are counted, and whether turns are; `None` if unknown.
     pub flags: Option<Flags>,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// Values that change by themselves or cannot be written.
+/// Values that change on their own or cannot be written.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recorded {
-    /// Read-out 7.
+    /// Software version, read-out 7.
     pub software_version: Option<u32>,
-    /// Read-out 8.
+    /// Operating time in minutes, read-out 8.
     pub operating_minutes: Option<u32>,
-    /// Read-out Ch.
+    /// Temperature in tenths of a degree Celsius, read-out Ch.
     pub temperature_tenths: Option<i32>,
-    /// Read-out 9: the mode in which it was found.
+    /// Mode in which the encoder was found, read-out 9.
     pub mode: Option<StartupMode>,
-    /// Read-out 6.
+    /// Preset flag, read-out 6.
     pub preset_flag: Option<u32>,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// Something that is right for one encoder on one machine and no other.
+/// A mark on a value that is valid for one encoder on one machine only.
 pub type MountingMark = crate::profile::MountingMark<Item>;
 
-/// The user's names of programs and cams; empty without a name.
+/// User-defined names of programs and cams; empty if there is no name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Names {
     programs: BTreeMap<ProgramNumber, String>,
     cams: BTreeMap<(ProgramNumber, CamNumber), String>,
 }
 
-/// Unknown entries, by their structure, which are preserved.
+/// Unknown entries by structure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
     pub(super) parameters: Unknown,
@@ -71,7 +71,7 @@ pub struct UnknownEntries {
 }
 
 impl InterbusProfile {
-    /// Creates the profile of an encoder that was read, with the values of the mounting marked.
+    /// Creates a profile from a reading and marks the values of the mounting.
     pub fn of(identity: ProfileIdentity, image: Image, recorded: Recorded) -> Self {
         let mut profile = InterbusProfile {
             identity,
@@ -85,7 +85,7 @@ impl InterbusProfile {
         profile
     }
 
-    /// Marks the items that belong to the mounting and are not marked yet: preset and zero shift.
+    /// Marks all unmarked items that belong to the mounting: preset and zero shift.
     pub fn mark_mounting(&mut self) {
         for (item, meaning) in [(Item::Preset, "preset value"), (Item::ZeroShift, "zero point shifting")] {
             if !self.is_mounting(item) {
@@ -99,24 +99,24 @@ impl InterbusProfile {
         self.mounting.iter().any(|mark| mark.item == item)
     }
 
-    /// Returns the items in the profile, in the order in which they are compared.
+    /// Returns the items of the profile in comparison order.
     pub fn items(&self) -> impl Iterator<Item = Item> {
         Item::writable().filter(|item| self.image.item(*item).is_some())
     }
 }
 
 impl Names {
-    /// Returns a program's name.
+    /// Returns the name of a program.
     pub fn program(&self, program: ProgramNumber) -> &str {
         self.programs.get(&program).map_or("", String::as_str)
     }
 
-    /// Returns a cam's name.
+    /// Returns the name of a cam.
     pub fn cam(&self, program: ProgramNumber, cam: CamNumber) -> &str {
         self.cams.get(&(program, cam)).map_or("", String::as_str)
     }
 
-    /// Names a program; an empty name removes its name.
+    /// Sets the name of a program; an empty string removes it.
     pub fn set_program(&mut self, program: ProgramNumber, name: String) {
         if name.is_empty() {
             self.programs.remove(&program)
@@ -125,7 +125,7 @@ impl Names {
         };
     }
 
-    /// Names a cam; an empty name removes its name.
+    /// Sets the name of a cam; an empty string removes it.
     pub fn set_cam(&mut self, program: ProgramNumber, cam: CamNumber, name: String) {
         let place = (program, cam);
         if name.is_empty() {

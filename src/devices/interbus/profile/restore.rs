@@ -1,25 +1,25 @@
-//! Planning a restore: only differences, in the fewest stores, and nothing that belongs to another encoder's mounting. A
-//! preset is stored but never fired.
+//! Planning of a restore: differences only, in as few store cycles as possible, without values that belong to the
+//! mounting of another encoder. A preset is stored but never fired.
 
 pub use crate::profile::RestoreOptions;
 
 use super::{Image, InterbusPlan, InterbusProfile, Item, OtherType, PlanError, ProfileIdentity, plan_edits};
 use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
 
-/// Present state of an encoder, as far as a plan needs it.
+/// Present state of an encoder, as far as planning requires it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
-    /// The identity.
+    /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// The content of its EEPROM: at least the programs of [`programs_needed`], with the shift if there are any.
+    /// EEPROM content: at least the programs of [`programs_needed`], with the shift if there are any.
     pub image: Image,
 }
 
-/// The outcome of planning a restore.
+/// Result of planning a restore.
 pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
 
-/// Returns the programs that must be read before a restore of this profile can be planned. The shift of the window is read
-/// with one of them: with the first program if the profile has nothing but the shift.
+/// Returns the programs that must be read before a restore of this profile can be planned. The window shift is read
+/// together with one of them: with the first program if the profile only contains the shift.
 pub fn programs_needed(profile: &InterbusProfile) -> Vec<ProgramNumber> {
     let of_cams = profile.image.known().map(|(number, _)| number);
     let all: Vec<ProgramNumber> = of_cams.collect();
@@ -68,7 +68,7 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
-/// Refuses an encoder that the profile was not read from. A profile without a serial number fits any encoder.
+/// Refuses an encoder other than that of the profile. A profile without a serial number fits any encoder.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
@@ -76,14 +76,14 @@ pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Resu
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Returns the types of a profile and of an encoder if they differ; `None` if they are equal, or one is not known.
+/// Returns the types of a profile and an encoder if they differ, or `None` if they are equal or one is unknown.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
     let (profile, device) = profile.flags.zip(device.flags)?;
     let what = |flags: Flags| (flags.multiturn(), flags.steps_minus_one());
     (what(profile) != what(device)).then_some(OtherType { profile, device })
 }
 
-/// Refuses an encoder that the profile was not read from, as far as that is not allowed.
+/// Refuses an encoder other than that of the profile, unless the options allow it.
 ///
 /// # Errors
 /// As [`check_device`].

@@ -1,19 +1,19 @@
-//! Positions in the units of a machine: degrees of its turn, or millimetres of its travel, in addition to the steps of the
-//! encoder.
+//! Positions in units of the machine: degrees of its rotation or millimetres of its travel, in addition to encoder
+//! steps.
 
-/// The unit of a machine.
+/// Unit of a machine position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Unit {
-    /// Steps of the encoder's position.
+    /// Encoder steps.
     #[default]
     Steps,
-    /// Degrees of a turn of the machine.
+    /// Degrees of the machine's rotation.
     Degrees,
-    /// Millimetres of its travel.
+    /// Millimetres of the machine's travel.
     Millimetres,
 }
 
-/// The relation between a machine's positions and the encoder's.
+/// Relation between machine positions and encoder positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     unit: Unit,
@@ -23,28 +23,28 @@ pub struct Scale {
     zero: u32,
 }
 
-/// A position of a machine, as the encoder can have it.
+/// A machine position rounded to encoder steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// The nearest step.
+    /// Nearest step.
     pub step: u32,
-    /// Rounding error, in units.
+    /// Rounding error in machine units.
     pub off: f64,
 }
 
-/// Why a position is not possible.
+/// The position is outside the measuring range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{value} is not within {least} to {most}")]
 pub struct Outside {
-    /// As given, in units.
+    /// Given position in machine units.
     pub value: f64,
-    /// The first position of the measuring range, in units.
+    /// First position of the measuring range in machine units.
     pub least: f64,
-    /// The last one.
+    /// Last position of the measuring range in machine units.
     pub most: f64,
 }
 
-/// Numbers that make no scale.
+/// The numbers do not define a valid scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("steps in a unit are a number above 0")]
 pub struct ScaleError;
@@ -67,7 +67,7 @@ impl Unit {
     /// All units.
     pub const ALL: [Unit; 3] = [Unit::Steps, Unit::Degrees, Unit::Millimetres];
 
-    /// Returns the symbol after a number; empty for steps.
+    /// Returns the unit symbol; empty for steps.
     pub const fn symbol(self) -> &'static str {
         match self {
             Unit::Steps => "",
@@ -78,8 +78,8 @@ impl Unit {
 }
 
 impl Scale {
-    /// Creates a scale in degrees, with this number of steps in a turn of the machine, and its 0 at a position of the
-    /// encoder.
+    /// Creates a scale in degrees with the given number of steps per machine turn, and the machine's 0 at an encoder
+    /// position.
     ///
     /// # Errors
     /// [`ScaleError`] if the steps are not above 0.
@@ -87,8 +87,8 @@ impl Scale {
         Scale::new(Unit::Degrees, steps_in_turn, zero)
     }
 
-    /// Creates a scale in millimetres, with this number of steps per millimetre, and the machine's 0 at a position of the
-    /// encoder.
+    /// Creates a scale in millimetres with the given number of steps per millimetre, and the machine's 0 at an encoder
+    /// position.
     ///
     /// # Errors
     /// [`ScaleError`] if the steps are not above 0.
@@ -96,10 +96,10 @@ impl Scale {
         Scale::new(Unit::Millimetres, steps_in_one, zero)
     }
 
-    /// Creates the scale of a unit. `steps` is the number of steps in a turn or a millimetre, and unused for steps.
+    /// Creates a scale for a unit. `steps` is the number of steps per turn or millimetre, and unused for steps.
     ///
     /// # Errors
-    /// [`ScaleError`] if it is used and not above 0.
+    /// [`ScaleError`] if `steps` is used and not above 0.
     pub fn new(unit: Unit, steps: f64, zero: u32) -> Result<Self, ScaleError> {
         let steps = match unit {
             Unit::Steps => 1.0,
@@ -115,18 +115,18 @@ impl Scale {
         self.unit
     }
 
-    /// Returns the steps in one unit.
+    /// Returns the number of steps per unit.
     pub const fn steps_in_unit(&self) -> f64 {
         self.steps
     }
 
-    /// Returns the encoder's position at the machine's 0.
+    /// Returns the encoder position at the machine's 0.
     pub const fn zero(&self) -> u32 {
         self.zero
     }
 
-    /// Returns whether the scale wraps at the end of the measuring range: steps do, and degrees if the range has whole
-    /// turns of the machine.
+    /// Returns whether the scale wraps at the end of the measuring range: steps do, and degrees if the range is a whole
+    /// number of machine turns.
     pub fn is_round(&self, range: u32) -> bool {
         match self.unit {
             Unit::Steps => true,
@@ -138,19 +138,19 @@ impl Scale {
         }
     }
 
-    /// Returns a step in units of the machine.
+    /// Converts a step to machine units.
     pub fn value(&self, step: u32, range: u32) -> f64 {
         let from_zero = f64::from(step) - f64::from(self.zero);
         self.round(from_zero, range) / self.steps
     }
 
-    /// Units of the whole measuring range.
+    /// Returns the length of the measuring range in machine units.
     pub fn span(&self, range: u32) -> f64 {
         f64::from(range) / self.steps
     }
 
-    /// Returns the step nearest to a position of the machine. Degrees wrap with the measuring range; steps must be within
-    /// it, wherever 0 is.
+    /// Returns the step nearest to a machine position. Degrees wrap with the measuring range; steps must be within it,
+    /// wherever 0 is.
     ///
     /// # Errors
     /// [`Outside`] with the limits.
@@ -178,7 +178,7 @@ impl Scale {
         }
     }
 
-    /// Returns the decimals that distinguish one step from the next.
+    /// Returns the number of decimals that distinguish adjacent steps.
     pub fn decimals(&self) -> usize {
         let one = 1.0 / self.steps;
         let tells = |decimals: &usize| {

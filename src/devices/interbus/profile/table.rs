@@ -1,8 +1,8 @@
-//! Tables of cams, as in a spreadsheet or on a machine's drawing: read from a file or pasted text, and written. A row is a
-//! pulse: program, cam or name, start, stop; in steps, degrees or millimetres of the machine.
+//! Cam tables, as in a spreadsheet or on a machine drawing: read from a file or pasted text, and written. A row is a
+//! pulse: program, cam or name, start and stop, in steps, degrees or millimetres of the machine.
 //!
-//! Invalid entries are reported by line and column; the rest is read regardless. Each edge is kept as
-//! rounded to the encoder's steps, with its rounding error.
+//! Invalid entries are reported by line and column; all others are read regardless. Each edge is rounded to encoder
+//! steps, and its rounding error is recorded.
 
 mod columns;
 mod emit;

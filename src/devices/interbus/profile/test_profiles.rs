@@ -1,4 +1,4 @@
-//! Test profiles: an encoder with programs, to be changed.
+//! Test profiles: an encoder with programs, as a basis for changes.
 
 use super::{Direction, Image, InterbusProfile, Item, ItemValue, Parameters, ProfileIdentity, Recorded};
 use crate::devices::interbus::protocol::{
@@ -25,7 +25,6 @@ pub(super) fn item(text: &str) -> Item {
     text.parse().unwrap()
 }
 
-/// Returns the image with items changed.
 pub(super) fn with(image: &Image, items: &[(&str, ItemValue)]) -> Image {
     let mut image = image.clone();
     for (name, value) in items {

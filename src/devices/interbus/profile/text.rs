@@ -1,4 +1,4 @@
-//! The text of an INTERBUS profile, written for people and edited by them. An error names its entry.
+//! The text format of an INTERBUS profile, which people read and edit. Errors name the entry.
 
 use super::{
     Direction, EntryError, Image, InterbusProfile, Item, ItemError, MountingMark, Names, Parameters, ProfileIdentity,
@@ -237,7 +237,6 @@ fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     })
 }
 
-/// Reads a number that fits into a word.
 fn value(entries: &mut Entries, name: &str) -> Result<Value, ProfileError> {
     optional_value(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.path_of(name) })
 }

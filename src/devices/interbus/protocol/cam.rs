@@ -1,36 +1,36 @@
-//! Cams and programs: the outputs at a position (reference 5).
+//! Cams and programs, and their outputs at a position (reference 5).
 
 use super::value::Value;
 
-/// The number of a program's cam: 0 to 7. Words have room for 16, and the manual names 8 (reference 6.9).
+/// Number of a cam within its program, 0 to 7. Words have room for 16, but the manual only mentions 8 (reference 6.9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CamNumber(u8);
 
-/// The number of a program: 1 to 8.
+/// Number of a program, 1 to 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProgramNumber(u8);
 
-/// A range of positions. Both edges belong to it (`U`); if the start is beyond the stop, it passes the end of the measuring
-/// range.
+/// A cam, defined by a range of positions that includes both edges (`U`). If the start is beyond the stop, the range
+/// extends across the end of the measuring range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cam {
-    /// The first position at which it is on.
+    /// First position at which the cam is on.
     pub start: Value,
-    /// The last one.
+    /// Last position at which the cam is on.
     pub stop: Value,
 }
 
-/// Eight cams, and their activation.
+/// A program of eight cams with their activation mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Program {
-    /// The cams by number; `None` if there is none.
+    /// Cams by number; `None` if undefined.
     pub cams: [Option<Cam>; Program::CAMS],
-    /// The activation mask: bit i for cam i.
+    /// Activation mask: bit i for cam i.
     pub mask: u8,
 }
 
 impl CamNumber {
-    /// All numbers, in ascending order.
+    /// All numbers in ascending order.
     pub const EACH: [CamNumber; Program::CAMS] = [
         CamNumber(0),
         CamNumber(1),
@@ -42,17 +42,17 @@ impl CamNumber {
         CamNumber(7),
     ];
 
-    /// Returns all numbers, in ascending order.
+    /// Returns all numbers in ascending order.
     pub fn all() -> impl Iterator<Item = CamNumber> {
         CamNumber::EACH.into_iter()
     }
 
-    /// Creates it from a number; `None` beyond 7.
+    /// Creates a cam number, or returns `None` beyond 7.
     pub const fn new(number: u8) -> Option<Self> {
         if (number as usize) < Program::CAMS { Some(CamNumber(number)) } else { None }
     }
 
-    /// Returns 0 to 7.
+    /// Returns the number, 0 to 7.
     pub const fn get(self) -> u8 {
         self.0
     }
@@ -61,32 +61,32 @@ impl CamNumber {
 impl ProgramNumber {
     /// Number of programs.
     pub const COUNT: usize = 8;
-    /// 1.
+    /// Program 1.
     pub const FIRST: ProgramNumber = ProgramNumber(1);
 
-    /// Returns all numbers, in ascending order.
+    /// Returns all numbers in ascending order.
     pub fn all() -> impl Iterator<Item = ProgramNumber> {
         (1..=8).map(ProgramNumber)
     }
 
-    /// Creates a number from 1 to 8; `None` for others.
+    /// Creates a program number, or returns `None` outside 1 to 8.
     pub const fn new(number: u8) -> Option<Self> {
         if number >= 1 && number as usize <= ProgramNumber::COUNT { Some(ProgramNumber(number)) } else { None }
     }
 
-    /// Returns 1 to 8.
+    /// Returns the number, 1 to 8.
     pub const fn get(self) -> u8 {
         self.0
     }
 }
 
 impl Cam {
-    /// Returns whether the cam passes the end of the measuring range.
+    /// Returns whether the cam extends across the end of the measuring range.
     pub fn wraps(self) -> bool {
         self.start > self.stop
     }
 
-    /// Returns whether it is on at a position.
+    /// Returns whether the cam is on at a position.
     pub fn is_on(self, position: Value) -> bool {
         if self.wraps() {
             position >= self.start || position <= self.stop
@@ -97,7 +97,7 @@ impl Cam {
 }
 
 impl Program {
-    /// Cams of a program.
+    /// Number of cams in a program.
     pub const CAMS: usize = 8;
 
     /// Returns whether a cam is active.
@@ -105,17 +105,17 @@ impl Program {
         self.mask >> cam.0 & 1 == 1
     }
 
-    /// Lets a cam work, or not.
+    /// Activates or deactivates a cam.
     pub const fn set_on(&mut self, cam: CamNumber, on: bool) {
         self.mask = self.mask & !(1 << cam.0) | (on as u8) << cam.0;
     }
 
-    /// Returns a cam; `None` if there is none.
+    /// Returns a cam, or `None` if it is undefined.
     pub fn cam(&self, number: CamNumber) -> Option<Cam> {
         self.cams.get(usize::from(number.0)).copied().flatten()
     }
 
-    /// Sets or removes a cam. The mask is unchanged.
+    /// Sets or removes a cam. The mask is left unchanged.
     pub fn set_cam(&mut self, number: CamNumber, cam: Option<Cam>) {
         if let Some(place) = self.cams.get_mut(usize::from(number.0)) {
             *place = cam;

@@ -1,40 +1,40 @@
-//! The IN word while a cam program runs: eight outputs, and a window of the position (reference 5).
+//! IN word of a running cam program: eight outputs and a window of the position (reference 5).
 
 use super::value::Value;
 
-/// The word of an encoder in cam mode.
+/// IN word in cam mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CamOutput {
-    /// Bits 7..0: cam i is on in bit i.
+    /// Outputs in bits 7..0: bit i is set while cam i is on.
     pub outputs: u8,
-    /// Bits 24..8 of the word: 17 bits of the position, from bit `shift_iw` of it on.
+    /// Window in bits 24..8: 17 bits of the position, starting at bit `shift_iw`.
     pub window: u32,
     /// Bits 30..25, which should be 0.
     pub stray: u8,
 }
 
-/// Error: the word is invalid, because bit 31 is set.
+/// The word is invalid because bit 31 is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cam outputs are not valid in {word:08X}")]
 pub struct CamOutputError {
-    /// The word, which [`Reply`](super::Reply) reads.
+    /// The invalid word, which [`Reply`](super::Reply) can parse.
     pub word: u32,
 }
 
-/// `shift_iw`: the number of bits by which the position is shifted to the right under the window. 0 to 25.
+/// `shift_iw`: number of bits by which the position is shifted right under the window, 0 to 25.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct WindowShift(u8);
 
-/// The meaning of a bit of the word.
+/// Meaning of a bit in the word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CamBit {
-    /// Bit 31: the rest is invalid.
+    /// Bit 31: all other bits are invalid.
     Invalid,
     /// A bit that should be 0.
     Zero,
-    /// This bit of the position.
+    /// The given bit of the position.
     Position(u8),
-    /// The output of this cam.
+    /// Output of the given cam.
     Cam(u8),
 }
 
@@ -43,33 +43,33 @@ const WINDOW_BITS: u32 = 17;
 const OUTPUT_BITS: u32 = 8;
 
 impl WindowShift {
-    /// Creates it from a number; `None` beyond 25.
+    /// Creates a shift, or returns `None` beyond 25.
     pub const fn new(shift: u8) -> Option<Self> {
         if shift as u32 <= Value::BITS { Some(WindowShift(shift)) } else { None }
     }
 
-    /// Returns 0 to 25.
+    /// Returns the shift, 0 to 25.
     pub const fn get(self) -> u8 {
         self.0
     }
 
-    /// Returns the bits of the position under the window; none at 25.
+    /// Returns the mask of the position bits in the window; 0 for a shift of 25.
     pub const fn mask(self) -> u32 {
         (((1_u64 << WINDOW_BITS) - 1) << self.0) as u32 & Value::MAX.get()
     }
 }
 
 impl CamOutput {
-    /// Returns the word of an encoder at a position with these outputs.
+    /// Returns the word of an encoder at a position with the given outputs.
     pub const fn at(position: Value, outputs: u8, shift: WindowShift) -> Self {
         let window = (position.get() & shift.mask()) >> shift.0;
         CamOutput { outputs, window, stray: 0 }
     }
 
-    /// Reads a word.
+    /// Parses a word.
     ///
     /// # Errors
-    /// Returns an error if bit 31 is set.
+    /// Bit 31 is set.
     pub const fn parse(word: u32) -> Result<Self, CamOutputError> {
         if word >> 31 != 0 {
             return Err(CamOutputError { word });
@@ -81,18 +81,18 @@ impl CamOutput {
         })
     }
 
-    /// Returns the word. Bits of the window and stray bits that do not fit are left out.
+    /// Returns the word. Window bits and stray bits that do not fit are dropped.
     pub const fn emit(self) -> u32 {
         let window = self.window & ((1 << WINDOW_BITS) - 1);
         ((self.stray & 0x3F) as u32) << Value::BITS | window << OUTPUT_BITS | self.outputs as u32
     }
 
-    /// Returns the bits of the position in the window, at their places; [`WindowShift::mask`] says which they are.
+    /// Returns the position bits in the window, at their original positions; see [`WindowShift::mask`].
     pub const fn position_bits(self, shift: WindowShift) -> u32 {
         ((self.window as u64) << shift.0) as u32 & shift.mask()
     }
 
-    /// Returns the meaning of a bit of the word, counted from 0. `None` beyond 31.
+    /// Returns the meaning of a bit of the word, counted from 0, or `None` beyond 31.
     pub const fn bit(bit: u8, shift: WindowShift) -> Option<CamBit> {
         Some(match bit {
             0..=7 => CamBit::Cam(bit),

@@ -1,19 +1,20 @@
-//! The three classes of encoders, their identification on the bus, and the words of those without commands (reference 1).
+//! The three classes of encoders, their identification on the bus, and the words of those without commands (reference
+//! 1).
 
 use super::value::Value;
 
-/// The class of process data that an encoder exchanges with its master.
+/// Class of the process data that an encoder exchanges with its master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
-    /// 16 bits IN: a position.
+    /// 16 bits IN with the position.
     K1,
-    /// 32 bits IN: a position.
+    /// 32 bits IN with the position.
     K2,
-    /// 32 bits IN and OUT: seven bits of status or command, 25 of data.
+    /// 32 bits IN and OUT: seven bits of status or command and 25 data bits.
     K3,
 }
 
-/// The carrier of the bus.
+/// Physical layer of the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interface {
     /// Copper.
@@ -25,15 +26,15 @@ pub enum Interface {
 }
 
 impl Interface {
-    /// All of them, in the manual's order.
+    /// All interfaces in the order of the manual.
     pub const ALL: [Interface; 3] = [Interface::Standard, Interface::OpticalFibre, Interface::Loop2];
 }
 
 impl Class {
-    /// All of them.
+    /// All classes.
     pub const ALL: [Class; 3] = [Class::K1, Class::K2, Class::K3];
 
-    /// Returns the bytes from the encoder, and bytes to it.
+    /// Returns the number of bytes from the encoder and to it.
     pub const fn bytes(self) -> (usize, usize) {
         match self {
             Class::K1 => (2, 0),
@@ -43,8 +44,8 @@ impl Class {
     }
 }
 
-/// Returns the identification code of an encoder. K3 with copper or fibre is 37h = 55: manual 5.1 prints 36h next to 55
-/// (reference 6.1).
+/// Returns the identification code of an encoder. The code of K3 with copper or fibre is 37h = 55: manual 5.1 prints
+/// 36h next to 55 (reference 6.1).
 pub const fn id_code(class: Class, interface: Interface) -> u8 {
     match (class, interface) {
         (Class::K1 | Class::K2, Interface::Standard | Interface::OpticalFibre) => 0x36,
@@ -54,7 +55,7 @@ pub const fn id_code(class: Class, interface: Interface) -> u8 {
     }
 }
 
-/// Returns the devices with an identification code: several if their codes are equal, none for other devices.
+/// Returns the devices with an identification code: several if they share it, none for other devices.
 pub fn class_of_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
     Class::ALL
         .into_iter()
@@ -62,12 +63,12 @@ pub fn class_of_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
         .filter(move |(class, interface)| id_code(*class, *interface) == code)
 }
 
-/// The word of a K1 or K2 encoder: a position, right-justified, with zeros above it. Bits that should be 0 are kept.
+/// Word of a K1 or K2 encoder: a right-justified position with zeros above. Bits that should be 0 are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Single {
-    /// 12 bits of a single turn in 16.
+    /// 12 position bits of a single turn in a 16-bit word.
     K1(u16),
-    /// Up to 25 bits in 32.
+    /// Up to 25 position bits in a 32-bit word.
     K2(u32),
 }
 
@@ -82,7 +83,7 @@ impl Single {
         Single::K2(word)
     }
 
-    /// Returns the word, right-justified.
+    /// Returns the right-justified word.
     pub const fn emit(self) -> u32 {
         match self {
             Single::K1(word) => word as u32,
@@ -98,7 +99,7 @@ impl Single {
         }
     }
 
-    /// Returns the bits that should be 0 and are not.
+    /// Returns the bits that should be 0 but are set.
     pub const fn stray(self) -> u32 {
         self.emit() & !self.position().get()
     }

@@ -1,4 +1,4 @@
-//! OUT words: the commands of a master to a K3 encoder (reference 3 and 5), and the modes in which they are allowed.
+//! OUT words: commands of the master to a K3 encoder (reference 3 and 5), and the modes in which they are allowed.
 
 use super::cam::{CamNumber, ProgramNumber};
 use super::cam_output::WindowShift;
@@ -7,52 +7,52 @@ use super::parameter::Parameter;
 use super::read_out::ReadOut;
 use super::value::{Code, Value};
 
-/// The request of an OUT word.
+/// Meaning of an OUT word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Command {
-    /// 00000000h: normal running.
+    /// 00000000h: normal operation.
     Normal,
-    /// 80000000h: run. Its edge ends parameterisation, a read-out and the setting of cams.
+    /// 80000000h: run. Its rising edge ends parameterisation, a read-out and the setting of cams.
     Run,
-    /// 40000000h: applies the preset to the position. Once for each preset that was set.
+    /// 40000000h: applies the preset to the position, once for each programmed preset.
     Preset,
-    /// 60000000h: any number of times; run follows.
+    /// 60000000h: applies the preset any number of times; *run* follows.
     FrabaPreset,
-    /// A parameter is set.
+    /// Sets a parameter.
     Set(Parameter, Value),
-    /// 20400001h and 20400000h: speed instead of the position, or the position again.
+    /// 20400001h and 20400000h: selects speed or position for the IN word.
     Velocity(bool),
-    /// 2021xxxxh: a read-out.
+    /// 2021xxxxh: requests a read-out.
     ReadOut(ReadOut),
-    /// 2080000ph: cam mode with this program; without one position mode.
+    /// 2080000ph: selects cam mode with this program, or position mode without one.
     Cams(Option<ProgramNumber>),
-    /// 2040cccch: the active cams, bit i for cam i. There are 8, so that the upper byte is 0 (reference 6.9).
+    /// 2040cccch: sets the active cams, bit i for cam i. There are 8, so the upper byte is 0 (reference 6.9).
     Activate(u16),
-    /// 201000ssh: the shift of the position under its window.
+    /// 201000ssh: sets the window shift.
     Shift(WindowShift),
-    /// 40h to 4Fh as the first byte: the first position of a cam.
+    /// First byte 40h to 4Fh: sets the first position of a cam.
     CamStart(CamNumber, Value),
-    /// 60h to 6Fh as the first byte: its last position.
+    /// First byte 60h to 6Fh: sets the last position of a cam.
     CamStop(CamNumber, Value),
-    /// 20200000h: the activation mask is read.
+    /// 20200000h: reads the activation mask.
     ReadActivation,
-    /// 2020001ch: a cam's first position is read.
+    /// 2020001ch: reads the first position of a cam.
     ReadCamStart(CamNumber),
-    /// 2020002ch: its last one.
+    /// 2020002ch: reads the last position of a cam.
     ReadCamStop(CamNumber),
-    /// 20200040h: the shift of the window is read (20200030h is a misprint, reference 6.5).
+    /// 20200040h: reads the window shift (20200030h is a misprint, reference 6.5).
     ReadShift,
-    /// A word that is not in the manual.
+    /// A word that the manual does not define.
     Unknown(u32),
 }
 
-/// A command that an encoder in this mode takes for another one, or for none. It must not be sent.
+/// An encoder in this mode would interpret the command as another one, or as none. The command must not be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{:08X} ({}) is not legal in {mode}", command.emit(), command.name())]
 pub struct Refused {
     /// The intended command.
     pub command: Command,
-    /// The mode that the encoder is in.
+    /// Present mode of the encoder.
     pub mode: Mode,
 }
 
@@ -97,7 +97,8 @@ impl Command {
         }
     }
 
-    /// Returns all meanings of a word, in any mode: one or two; [`Command::Unknown`] if it is not in the manual.
+    /// Returns the meanings of a word in any mode: one or two, or [`Command::Unknown`] if the manual does not define
+    /// the word.
     pub fn readings(word: u32) -> Vec<Command> {
         let both: Vec<Command> = [Command::outside_cams(word), Command::of_cams(word)].into_iter().flatten().collect();
         // Both contain the selection of a program, with the same meaning.
@@ -108,10 +109,10 @@ impl Command {
         }
     }
 
-    /// Parses a word as an encoder in a mode understands it.
+    /// Parses a word as an encoder in the given mode interprets it.
     ///
     /// # Errors
-    /// [`Refused`] with its meaning in another mode, or none.
+    /// [`Refused`] with the meaning in another mode, if any.
     pub fn in_mode(word: u32, mode: Mode) -> Result<Command, Refused> {
         let readings = Command::readings(word);
         match readings.iter().find(|command| command.is_legal_in(mode)) {
@@ -120,16 +121,17 @@ impl Command {
         }
     }
 
-    /// Checks that an encoder in a mode understands this command as intended.
+    /// Checks that an encoder in the given mode interprets the command as intended.
     ///
     /// # Errors
-    /// [`Refused`]: nothing may be sent.
+    /// [`Refused`]: the command must not be sent.
     pub fn ensure_legal(self, mode: Mode) -> Result<(), Refused> {
         if self.is_legal_in(mode) { Ok(()) } else { Err(Refused { command: self, mode }) }
     }
 
-    /// Returns whether it may be sent in a mode. Words remain on the process data, so one that enters a mode is legal in
-    /// it. Read-outs are allowed if the outputs are valid, since one of them shows the mode (`U`).
+    /// Returns whether the command may be sent in a mode. Words remain on the process data, so a word that enters a
+    /// mode is legal in it. Read-outs are allowed while the outputs are valid, since one of them reveals the mode
+    /// (`U`).
     pub const fn is_legal_in(self, mode: Mode) -> bool {
         use Mode::{Cam, Parameterisation, Position, ReadOut, Velocity};
         match self {

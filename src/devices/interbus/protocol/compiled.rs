@@ -1,9 +1,10 @@
-//! All programs prepared for many evaluations: the positions at which the outputs change, and the outputs from there on.
+//! Programs precompiled for many evaluations: the positions at which outputs change, and the outputs from each of them
+//! on.
 
 use super::cam::{Program, ProgramNumber};
 use super::value::Value;
 
-/// Programs as a list of sections without a change. A preview evaluates it for millions of positions.
+/// Programs as a list of sections with constant outputs. A preview evaluates them for millions of positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Compiled {
     /// Starts of the sections, in ascending order. The outputs before the first of them are in `before`.
@@ -14,7 +15,7 @@ pub struct Compiled {
 }
 
 impl Compiled {
-    /// Makes eight programs ready.
+    /// Compiles eight programs.
     pub fn new(programs: &[Program; ProgramNumber::COUNT]) -> Self {
         let at = |position: u32| u64::from_le_bytes(programs.map(|program| program.outputs(Value::of_word(position))));
         let cams = programs.iter().flat_map(|program| program.cams.iter().flatten());
@@ -27,7 +28,8 @@ impl Compiled {
         Compiled { starts, outputs, before: at(0) }
     }
 
-    /// Returns the outputs at a position: a byte per program, bit i for cam i. The same as [`Program::outputs`] of each.
+    /// Returns the outputs at a position: a byte per program, bit i for cam i. The result equals [`Program::outputs`]
+    /// of each program.
     pub fn outputs(&self, position: Value) -> [u8; ProgramNumber::COUNT] {
         let begun = self.starts.partition_point(|start| *start <= position.get());
         let stretch = begun.checked_sub(1).and_then(|at| self.outputs.get(at));

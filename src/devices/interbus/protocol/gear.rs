@@ -1,34 +1,34 @@
-//! The gear: a number of steps over a number of turns (reference 3).
+//! The gear: number of steps over a number of turns (reference 3).
 
 use super::value::Value;
 
-/// Steps of the shaft's disc in a turn, before the gear.
+/// Resolution of the encoder disc in steps per turn, before the gear.
 pub const STEPS_PER_TURN: u32 = 8192;
-/// The most turns an encoder counts.
+/// Maximum number of turns that an encoder counts.
 pub const TURNS: u32 = 4096;
 
-/// Steps and turns, which are set separately and used together: `steps` of the position over `turns` of the shaft.
+/// A gear: `steps` of the position over `turns` of the shaft. Both are set separately and used together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Gear {
     steps: u32,
     turns: u32,
 }
 
-/// The reason why two numbers are not a gear.
+/// The reason why two numbers do not form a gear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GearError {
-    /// More turns than the encoder counts.
+    /// The turns exceed those that an encoder counts.
     #[error("{turns} turns are not within 1 to {TURNS}")]
     Turns {
-        /// The given turns.
+        /// Given number of turns.
         turns: u32,
     },
-    /// More than the disc has over these turns, or more than 25 bits hold.
+    /// The steps exceed the resolution of the disc over these turns, or 25 bits.
     #[error("{steps} steps are not within 1 to {most}, which is what {turns} turns have")]
     Steps {
-        /// The given steps.
+        /// Given number of steps.
         steps: u32,
-        /// The given turns.
+        /// Given number of turns.
         turns: u32,
         /// The limit.
         most: u32,
@@ -36,8 +36,10 @@ pub enum GearError {
 }
 
 impl Gear {
+    /// Creates a gear.
+    ///
     /// # Errors
-    /// [`GearError`] if a number is beyond its limit; turns are checked first.
+    /// [`GearError`] if a number exceeds its limit; turns are checked first.
     pub const fn new(steps: u32, turns: u32) -> Result<Self, GearError> {
         if turns == 0 || turns > TURNS {
             return Err(GearError::Turns { turns });
@@ -55,28 +57,28 @@ impl Gear {
         if all > Value::MAX.get() { Value::MAX.get() } else { all }
     }
 
-    /// Returns steps of the position over all turns: the measuring range.
+    /// Returns the position steps over all turns, that is the measuring range.
     pub const fn steps(self) -> u32 {
         self.steps
     }
 
-    /// Returns the turns of the shaft until the position starts again.
+    /// Returns the number of shaft turns after which the position starts again.
     pub const fn turns(self) -> u32 {
         self.turns
     }
 
-    /// Returns the steps of the disc until the position starts again.
+    /// Returns the number of disc steps after which the position starts again.
     pub const fn range(self) -> u32 {
         STEPS_PER_TURN * self.turns
     }
 
-    /// Converts steps of the disc to steps of the position: `raw · steps / (8192 · turns)`, rounded down (`U`: the manual
-    /// only says that the two are one gear). The result is not wrapped: the complete range results in all steps.
+    /// Converts disc steps to position steps: `raw · steps / (8192 · turns)`, rounded down (`U`: the manual only states
+    /// that both numbers form one gear). The result does not wrap: the complete range yields all steps.
     pub const fn scaled(self, raw: u32) -> u64 {
         raw as u64 * self.steps as u64 / self.range() as u64
     }
 
-    /// Returns the position that the encoder sends for a position of the disc: [`scaled`](Self::scaled) within the range
+    /// Returns the position that the encoder sends for a disc position: [`scaled`](Self::scaled) within the range
     /// (`U`).
     pub const fn position(self, raw: u32) -> Value {
         // Less than `steps`, which has 25 bits.

@@ -1,17 +1,17 @@
-//! The meaning of the four LEDs of an encoder (reference 1).
+//! Meaning of the four LEDs of an encoder (reference 1).
 
-/// The state of an LED.
+/// State of an LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LedState {
-    /// Dark.
+    /// Off.
     Off,
-    /// Lit.
+    /// On.
     On,
-    /// On and off.
+    /// Blinking.
     Blinking,
 }
 
-/// The LEDs by their names at the encoder.
+/// The LEDs by their labels on the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Leds {
     /// UL.
@@ -24,14 +24,14 @@ pub struct Leds {
     pub rbda: LedState,
 }
 
-/// The meaning of a combination of LEDs, and what to do.
+/// Meaning and remedy of an LED combination.
 #[derive(Clone, Copy, Debug)]
 pub struct LedRow {
-    /// The combination.
+    /// LED states.
     pub leds: Leds,
-    /// Meaning in the manual's words.
+    /// Meaning in the words of the manual.
     pub meaning: &'static str,
-    /// Remedy; not in the manual (`U`).
+    /// Suggested remedy; not in the manual (`U`).
     pub remedy: &'static str,
 }
 
@@ -41,7 +41,7 @@ const fn leds(ul: LedState, ba: LedState, rc: LedState, rbda: LedState) -> Leds 
     Leds { ul, ba, rc, rbda }
 }
 
-/// The combinations of the manual, in its order.
+/// The LED combinations in the manual, in its order.
 pub const LEDS: [LedRow; 4] = [
     LedRow {
         leds: leds(On, Off, On, Off),
@@ -62,7 +62,7 @@ pub const LEDS: [LedRow; 4] = [
 ];
 
 impl Leds {
-    /// Returns the row of the table; `None` if it is not in the manual.
+    /// Returns the row of the combination, or `None` if the manual does not define it.
     pub fn row(self) -> Option<&'static LedRow> {
         LEDS.iter().find(|row| row.leds == self)
     }

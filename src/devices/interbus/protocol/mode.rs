@@ -1,27 +1,27 @@
-//! The mode of an encoder: it determines the meaning of an OUT word (reference 6.3).
+//! The mode of an encoder, which determines the meaning of an OUT word (reference 6.3).
 
 use std::fmt;
 
 /// A mode of a K3 encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Mode {
-    /// Running; IN is the position.
+    /// Normal operation: IN contains the position.
     Position,
-    /// A parameter was sent and [`Command::Run`](super::Command::Run) not yet: the outputs are not valid.
+    /// A parameter has been sent, but [`Command::Run`](super::Command::Run) has not: the outputs are invalid.
     Parameterisation,
-    /// A read-out is requested; IN is its value.
+    /// A read-out has been requested: IN contains its value.
     ReadOut,
-    /// IN is the speed, in revolutions per minute.
+    /// Velocity: IN contains the speed in revolutions per minute.
     Velocity,
-    /// A cam program is selected; IN is the cam output word.
+    /// A cam program is selected: IN contains the cam output word.
     Cam,
 }
 
 impl Mode {
-    /// All of them, in the manual's order.
+    /// All modes in the order of the manual.
     pub const ALL: [Mode; 5] = [Mode::Position, Mode::Parameterisation, Mode::ReadOut, Mode::Velocity, Mode::Cam];
 
-    /// Returns its spelling.
+    /// Returns the name of the mode.
     pub const fn name(self) -> &'static str {
         match self {
             Mode::Position => "position",

@@ -1,37 +1,37 @@
-//! The parameters: codes, units and limits in one table (reference 3).
+//! Parameters with their codes, units and limits (reference 3).
 
 use std::ops::RangeInclusive;
 
 use super::gear::{Gear, TURNS};
 use super::value::{Code, Value};
 
-/// A parameter that an encoder is set with.
+/// A parameter of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Parameter {
     /// Steps over all programmed turns.
     Steps,
-    /// Turns.
+    /// Number of turns.
     Turns,
-    /// 3 clockwise, 4 counterclockwise.
+    /// Counting direction: 3 clockwise, 4 counterclockwise.
     Direction,
-    /// The position that the encoder is to have when the preset is fired.
+    /// Position that the encoder adopts when the preset is fired.
     Preset,
-    /// Zero point shifting. Unlike in manual 5.4.1, it does not apply the preset (reference 6.2).
+    /// Zero shift. Contrary to manual 5.4.1, it does not apply the preset (reference 6.2).
     ZeroShift,
-    /// Back to factory settings. Only in the appendix of the manual (reference 6.10): experimental.
+    /// Restores the factory settings. Only in the appendix of the manual (reference 6.10): experimental.
     Default,
 }
 
-/// A row of the table.
+/// A row of the parameter table.
 #[derive(Clone, Copy, Debug)]
 pub struct ParameterRow {
     /// The parameter.
     pub parameter: Parameter,
-    /// Bits 28..25 of its word.
+    /// Code in bits 28..25 of the word.
     pub code: u8,
     /// Name on the command line.
     pub name: &'static str,
-    /// Unit of its number; empty if there is none.
+    /// Unit of the value; empty if there is none.
     pub unit: &'static str,
     limit: Limit,
 }
@@ -39,31 +39,31 @@ pub struct ParameterRow {
 /// The limits of a number.
 #[derive(Clone, Copy, Debug)]
 enum Limit {
-    /// Always the same.
+    /// Constant limits.
     Fixed(u32, u32),
-    /// From 1 to the maximum for the turns.
+    /// From 1 to the maximum for the programmed turns.
     StepsOfTurns,
-    /// From 0 to one step before the range's end.
+    /// From 0 to the last position of the range.
     WithinRange,
 }
 
-/// Error: a parameter's number is outside its limits.
+/// The value of a parameter is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {value} is not within {low} to {high}", parameter.name())]
 pub struct OutOfRange {
     /// The parameter.
     pub parameter: Parameter,
-    /// The given value.
+    /// Given value.
     pub value: u32,
-    /// The least.
+    /// Lower limit.
     pub low: u32,
-    /// The greatest.
+    /// Upper limit.
     pub high: u32,
 }
 
 use Parameter::{Default, Direction, Preset, Steps, Turns, ZeroShift};
 
-/// All parameters, in the manual's order.
+/// All parameters in the order of the manual.
 pub const PARAMETERS: [ParameterRow; 6] = [
     row(Steps, 1, "steps", "steps", Limit::StepsOfTurns),
     row(Turns, 2, "revolutions", "turns", Limit::Fixed(1, TURNS)),
@@ -96,12 +96,12 @@ impl Parameter {
         self.row().name
     }
 
-    /// Returns the parameter of a code; `None` for codes that are not in the manual.
+    /// Returns the parameter with a code, or `None` for codes that the manual does not define.
     pub fn of_code(code: Code) -> Option<Self> {
         PARAMETERS.iter().find(|row| row.code == code.get()).map(|row| row.parameter)
     }
 
-    /// Returns the allowed numbers in an encoder with this gear.
+    /// Returns the valid values for an encoder with this gear.
     pub const fn range(self, gear: Gear) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,
@@ -110,7 +110,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the allowed numbers in an encoder with any gear.
+    /// Returns the valid values for an encoder with any gear.
     pub const fn widest_range(self) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,
@@ -119,10 +119,10 @@ impl Parameter {
         }
     }
 
-    /// Returns a number for this parameter.
+    /// Checks a value for this parameter.
     ///
     /// # Errors
-    /// [`OutOfRange`] with the limits of this gear.
+    /// [`OutOfRange`] with the limits for this gear.
     pub fn check(self, value: u32, gear: Gear) -> Result<Value, OutOfRange> {
         let range = self.range(gear);
         let (low, high) = (*range.start(), *range.end());

@@ -1,24 +1,24 @@
-//! The values that can be read from an encoder, and their meaning (reference 3).
+//! Values that can be read out of an encoder, and their meaning (reference 3).
 
 use super::cam::ProgramNumber;
 use super::value::Value;
 
-/// The number of a value: bits 15..0 of a word 2021xxxxh. Numbers that are not in the manual are kept.
+/// Number of a read-out: bits 15..0 of a word 2021xxxxh. Numbers that the manual does not define are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ReadOut(u16);
 
-/// A row of the table.
+/// A row of the read-out table.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadOutRow {
-    /// The value's number.
+    /// Number of the read-out.
     pub read_out: ReadOut,
     /// Name in the manual.
     pub name: &'static str,
-    /// Unit of the value as sent; empty if there is none.
+    /// Unit of the transmitted value; empty if there is none.
     pub unit: &'static str,
 }
 
-/// All read-outs, in the manual's order, without the sixteen registers of the chip.
+/// All read-outs in the order of the manual, except the sixteen registers of the OPC chip.
 pub const READ_OUTS: [ReadOutRow; 12] = [
     row(ReadOut::SERIAL_NUMBER, "serial number", ""),
     row(ReadOut(0x1), "steps", "steps"),
@@ -41,59 +41,59 @@ const fn row(read_out: ReadOut, name: &'static str, unit: &'static str) -> ReadO
 /// The lowest digit of a chip register's number.
 const CHIP: u16 = 0xD;
 
-/// A value that was read out.
+/// Value of a read-out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadOutValue {
-    /// A number in the unit of its row; also for unknown read-outs and registers.
+    /// A number in the unit of its row; also used for unknown read-outs and chip registers.
     Plain(u32),
-    /// Minutes.
+    /// Operating time in minutes.
     Minutes(u32),
-    /// Tenths of a degree Celsius.
+    /// Temperature in tenths of a degree Celsius.
     TenthsOfDegree(i32),
-    /// The mode of the encoder.
+    /// Mode of the encoder.
     StartupMode(StartupMode),
     /// Flags of the encoder.
     Flags(Flags),
 }
 
-/// Read-out 9: the mode in which the encoder is and starts. The manual prints `3h to 10h` for the programs: decimal 3 to
-/// 10.
+/// Read-out 9: present and start-up mode of the encoder. The manual prints `3h to 10h` for the programs, meaning
+/// decimal 3 to 10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StartupMode {
-    /// 0: as a K2 encoder.
+    /// 0: operates like a K2 encoder.
     K2,
-    /// 1: as a K3 encoder.
+    /// 1: operates like a K3 encoder.
     K3,
-    /// 2: speed.
+    /// 2: velocity.
     Velocity,
-    /// 3 to 0Ah: cam program 1 to 8.
+    /// 3 to 0Ah: cam programs 1 to 8.
     Cams(ProgramNumber),
-    /// Nothing that the manual has.
+    /// A value that the manual does not define.
     Unknown(Value),
 }
 
-/// Read-out Ah.
+/// Flags of the encoder, read-out Ah.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Flags(Value);
 
 impl ReadOut {
-    /// 0.
+    /// Serial number, 0.
     pub const SERIAL_NUMBER: ReadOut = ReadOut(0x0);
-    /// 8, in ten minutes.
+    /// Operating time, 8, in units of ten minutes.
     pub const OPERATING_TIME: ReadOut = ReadOut(0x8);
-    /// 9: the mode.
+    /// Start-up mode, 9.
     pub const STARTUP_MODE: ReadOut = ReadOut(0x9);
-    /// Ah.
+    /// Flags, Ah.
     pub const FLAGS: ReadOut = ReadOut(0xA);
-    /// Ch, in tenths of a degree Celsius.
+    /// Temperature, Ch, in tenths of a degree Celsius.
     pub const TEMPERATURE: ReadOut = ReadOut(0xC);
 
-    /// Creates it: any number is a read-out.
+    /// Creates a read-out from its number; every value is valid.
     pub const fn new(number: u16) -> Self {
         ReadOut(number)
     }
 
-    /// Returns a register of the OPC chip: `xDh`. `None` beyond 15.
+    /// Returns the read-out of an OPC chip register, `xDh`, or `None` beyond 15.
     pub const fn chip_register(register: u8) -> Option<Self> {
         if register < 16 { Some(ReadOut((register as u16) << 4 | CHIP)) } else { None }
     }
@@ -108,12 +108,12 @@ impl ReadOut {
         if self.0 & 0xF == CHIP && self.0 <= 0xFF { Some((self.0 >> 4) as u8) } else { None }
     }
 
-    /// Returns its row; `None` for registers of the chip and numbers that are not in the manual.
+    /// Returns the table row, or `None` for chip registers and numbers that the manual does not define.
     pub fn row(self) -> Option<&'static ReadOutRow> {
         READ_OUTS.iter().find(|row| row.read_out == self)
     }
 
-    /// Parses the value received for it.
+    /// Interprets a value received for this read-out.
     pub fn value(self, value: Value) -> ReadOutValue {
         match self {
             ReadOut::OPERATING_TIME => ReadOutValue::Minutes(value.get() * 10),
@@ -133,7 +133,7 @@ const fn signed(value: Value) -> i32 {
 }
 
 impl StartupMode {
-    /// Returns the meaning of this number.
+    /// Parses a mode.
     pub fn parse(value: Value) -> Self {
         let program = |number: u32| u8::try_from(number).ok().and_then(ProgramNumber::new);
         match value.get() {
@@ -144,7 +144,7 @@ impl StartupMode {
         }
     }
 
-    /// Returns its number.
+    /// Returns the number of the mode.
     pub fn emit(self) -> u32 {
         match self {
             StartupMode::K2 => 0,
@@ -157,27 +157,27 @@ impl StartupMode {
 }
 
 impl Flags {
-    /// Creates it from any value; unknown bits are kept.
+    /// Creates flags from any value; unknown bits are preserved.
     pub const fn new(value: Value) -> Self {
         Flags(value)
     }
 
-    /// Returns its number.
+    /// Returns the flags as a number.
     pub const fn value(self) -> Value {
         self.0
     }
 
-    /// Returns bit 0: steps are reported less one, as by older encoders.
+    /// Returns whether steps are reported minus one, as by older encoders (bit 0).
     pub const fn steps_minus_one(self) -> bool {
         self.0.get() & 1 != 0
     }
 
-    /// Returns bit 1: it counts turns.
+    /// Returns whether the encoder counts turns (bit 1).
     pub const fn multiturn(self) -> bool {
         self.0.get() & 2 != 0
     }
 
-    /// Returns the type of encoder that they make.
+    /// Returns the encoder type indicated by the flags.
     pub const fn type_name(self) -> &'static str {
         match (self.multiturn(), self.steps_minus_one()) {
             (true, false) => "multiturn",
@@ -187,7 +187,7 @@ impl Flags {
         }
     }
 
-    /// Returns the other bits, whose meaning is unknown.
+    /// Returns all other bits, whose meaning is unknown.
     pub const fn unknown(self) -> u32 {
         self.0.get() & !3
     }

@@ -1,55 +1,56 @@
-//! IN words of a K3 encoder (reference 2). The mode defines the meaning of a position or a value:
-//! [`CamOutput`](super::CamOutput), [`ReadOut::value`](super::ReadOut::value).
+//! IN words of a K3 encoder (reference 2). The meaning of a position or value depends on the mode: see
+//! [`CamOutput`](super::CamOutput) and [`ReadOut::value`](super::ReadOut::value).
 
 use super::command::Command;
 use super::mode::Mode;
 use super::value::{Code, Value};
 
-/// The meaning of an IN word.
+/// Meaning of an IN word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reply {
-    /// Bit 31 is clear: the encoder runs. A position; in velocity mode a speed, in cam mode the cam output word.
+    /// Bit 31 is clear: the encoder is running. The value is a position, a speed in velocity mode, or the cam output
+    /// word in cam mode.
     Run {
         /// Bits 24..0.
         value: Value,
-        /// Bits 30..25, which should be 0: other values are worth a warning.
+        /// Bits 30..25, which should be 0; other values justify a warning.
         stray: u8,
     },
-    /// Prefix 110 or 111, code 0: busy with a parameter; for cam 0 it may be the echo.
+    /// Prefix 110 or 111, code 0: the encoder is processing a parameter; for cam 0 the word may be the echo.
     Busy {
         /// Bit 29.
         manufacturer: bool,
         /// Data of the word.
         data: Value,
     },
-    /// Prefix 110 or 111: the word was received. It may not be accepted yet.
+    /// Prefix 110 or 111: the command was received, but may not have been accepted yet.
     Echo {
         /// Bit 29.
         manufacturer: bool,
-        /// Code of the parameter, or the cam; never 0.
+        /// Code of the parameter, or number of the cam; never 0.
         code: Code,
-        /// The data as sent.
+        /// Data as sent.
         data: Value,
     },
-    /// Prefix 101, code 0: a value that was read out.
+    /// Prefix 101, code 0: value of a read-out.
     ReadOut(Value),
-    /// Prefix 101, code 2: no such read-out.
+    /// Prefix 101, code 2: the read-out does not exist.
     UnknownReadOut(Value),
-    /// Prefix 101, another code: not in the manual.
+    /// Prefix 101 with a code that the manual does not define.
     Unknown {
-        /// Neither 0 nor 2.
+        /// Code other than 0 and 2.
         code: Code,
         /// Bits 24..0.
         data: Value,
     },
-    /// 100 in front.
+    /// Prefix 100: error.
     Error(ErrorWord),
 }
 
 /// An error word: prefix 100.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorWord {
-    /// Bits 28..25.
+    /// Error code, bits 28..25.
     pub code: Code,
     /// Bits 24..0.
     pub data: Value,
@@ -76,7 +77,7 @@ impl Reply {
         }
     }
 
-    /// Returns the word. Stray bits that do not fit are left out.
+    /// Returns the word. Stray bits that do not fit are dropped.
     pub fn emit(self) -> u32 {
         let echo = |manufacturer: bool| if manufacturer { ECHO | MANUFACTURER } else { ECHO };
         match self {
@@ -90,13 +91,13 @@ impl Reply {
         }
     }
 
-    /// Returns the echo of a command: its word with bits 31 and 30 set, the data as sent (for cams `U`). Compare all of it:
-    /// an older reply may have the same code (reference 4).
+    /// Returns the echo of a command: its word with bits 31 and 30 set and the data as sent (for cams `U`). Compare the
+    /// complete word: an older reply may have the same code (reference 4).
     pub fn echo_of(command: Command) -> Self {
         Reply::parse(command.emit() | ECHO)
     }
 
-    /// Returns the echoed command, if a parameter or a cam was set in this mode.
+    /// Returns the echoed command, if a parameter or cam can be set in this mode.
     pub fn echoed(self, mode: Mode) -> Option<Command> {
         let sets = |command: &Command| {
             use Command::{Activate, CamStart, CamStop, Cams, Set, Shift};
@@ -113,10 +114,10 @@ impl Reply {
 }
 
 impl ErrorWord {
-    /// The manufacturer's error of a cam's edge beyond the measuring range, in `data` of code Ch.
+    /// Manufacturer error for a cam edge beyond the measuring range, in `data` of code Ch.
     pub const CAM_BEYOND_RANGE: u32 = 4;
 
-    /// Returns its meaning in the manual's words.
+    /// Returns the meaning in the words of the manual.
     pub const fn meaning(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "wrong parameter data",

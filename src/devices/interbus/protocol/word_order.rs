@@ -1,13 +1,13 @@
-//! A word of the process data in the two 16-bit registers of a gateway (reference 1, `U`).
+//! Arrangement of a process data word in two 16-bit registers of a gateway (reference 1, `U`).
 
 use crate::expected::Quantity;
 use crate::parameter::{Whole, Words};
 
-/// The unit that a gateway is asked for.
+/// Valid unit identifiers of a gateway.
 pub const UNIT: Whole<u8> = Whole(Quantity::Unit, 0..=255);
-/// The first of the two input registers of an IN word.
+/// Valid addresses of the first input register of an IN word.
 pub const INPUT: Whole<u16> = Whole(Quantity::InputRegister, 0..=LAST);
-/// The first of the two holding registers of an OUT word.
+/// Valid addresses of the first holding register of an OUT word.
 pub const OUTPUT: Whole<u16> = Whole(Quantity::HoldingRegister, 0..=LAST);
 /// The last register that is followed by another.
 const LAST: u16 = u16::MAX - 1;
@@ -15,10 +15,10 @@ const LAST: u16 = u16::MAX - 1;
 /// The half of a word that is in the first of its two registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordOrder {
-    /// Bits 31..16 (`U`: the usual order of INTERBUS).
+    /// Bits 31..16 first (`U`: the usual order of INTERBUS).
     #[default]
     HighFirst,
-    /// Bits 15..0.
+    /// Bits 15..0 first.
     LowFirst,
 }
 
@@ -27,7 +27,7 @@ impl WordOrder {
     pub const WORDS: Words<WordOrder> =
         Words(&[("high-first", WordOrder::HighFirst), ("low-first", WordOrder::LowFirst)]);
 
-    /// Returns the registers of a word.
+    /// Splits a word into its two registers.
     pub const fn registers(self, word: u32) -> [u16; 2] {
         let (high, low) = ((word >> 16) as u16, word as u16);
         match self {
@@ -36,7 +36,7 @@ impl WordOrder {
         }
     }
 
-    /// Returns the word of two registers.
+    /// Combines two registers into a word.
     pub const fn word(self, [first, second]: [u16; 2]) -> u32 {
         let (high, low) = match self {
             WordOrder::HighFirst => (first, second),

@@ -1,4 +1,4 @@
-//! The settings of a virtual encoder and its gateway, as in the query of a `sim:` link:
+//! Settings of a virtual encoder and its gateway in the query of a `sim:` link, such as
 //! `steps=360&revolutions=1&cams=demo&rpm=10`. Nothing is opened here.
 
 use std::time::Duration;
@@ -42,7 +42,6 @@ parameters! {
         pub(super) stores: u32 = 3, "stores" => Checked(Expected::Stores, number::<u32>);
         /// If set, steps are reported minus one, as by older encoders.
         pub(super) steps_minus_one: bool = false, "steps-minus-one" => SWITCH;
-        /// How long the word reports busy.
         pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
         /// Number of cycles for which the old IN word stays after a new OUT word.
         pub(super) stale: u32 = 1, "stale" => Whole(Quantity::Cycles, 0..=1000);

@@ -2,13 +2,13 @@
 //!
 //! ```text
 //! running ── parameter, cam word ──▶ setting ── run ──▶ store, running
-//!    ├── 2021xxxxh, 2020xxxxh ──▶ reading out ── normal, run ──▶ running (setting, if something was set and not stored)
-//!    └── 2080000ph ──▶ cam program; of a changed one before it a store
+//!   ├── 2021xxxxh, 2020xxxxh ──▶ reading out ── normal, run ──▶ running (setting, if something was set and not stored)
+//!   └── 2080000ph ──▶ cam program; of a changed one before it a store
 //! ```
-//! Chosen here (`U`): a store is used for every parameterisation and every program to which anything was written, even an
-//! equal value; a parameter where none is legal is unknown (84000000), and any other word without a meaning in its mode has
-//! no effect; the mode, the zero point and a fired preset survive a loss of power without a store; a speed has its sign in
-//! 25 bits; IN is 86000000 while the content of the EEPROM is lost.
+//! Assumptions (`U`): a store cycle is used for every parameterisation and every program to which anything was written,
+//! even an equal value; a parameter where none is legal is unknown (84000000), and any other word without a meaning in
+//! its mode has no effect; the mode, the zero point and a fired preset survive a loss of power without a store; a speed
+//! has its sign in 25 bits; IN is 86000000 while the content of the EEPROM is lost.
 
 mod cams;
 mod position;
@@ -25,7 +25,6 @@ use crate::devices::interbus::protocol::{
 use crate::sim::{Faults, Motor};
 use crate::units::Moment;
 
-/// A virtual encoder.
 #[derive(Debug)]
 pub struct Encoder {
     class: Class,
@@ -36,10 +35,8 @@ pub struct Encoder {
     offset: i64,
     mode: StartupMode,
     activity: Activity,
-    /// The present settings; a store makes them permanent.
     memory: Memory,
     eeprom: Eeprom,
-    /// The settings that a store has to save.
     unstored: Option<Stored>,
     power: bool,
     /// The OUT word of its master; it stays until the master changes it.
@@ -153,7 +150,6 @@ impl Encoder {
         }
     }
 
-    /// Returns the motor of its shaft.
     pub fn motor(&self) -> Motor {
         self.motor.clone()
     }
@@ -174,7 +170,6 @@ impl Encoder {
         &self.eeprom.kept
     }
 
-    /// Returns the number of stores to its EEPROM.
     pub const fn stores(&self) -> u32 {
         self.eeprom.stores()
     }
@@ -195,7 +190,6 @@ impl Encoder {
         }
     }
 
-    /// Returns the present OUT word.
     pub const fn out(&self) -> u32 {
         self.out
     }

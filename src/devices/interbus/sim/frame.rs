@@ -1,5 +1,5 @@
-//! Modbus/TCP requests and replies (*MODBUS Messaging on TCP/IP Implementation Guide V1.0b*; *MODBUS Application Protocol
-//! V1.1b3*): functions 3, 4, 6 and 16. Their registers are in another module.
+//! Modbus/TCP requests and replies (*MODBUS Messaging on TCP/IP Implementation Guide V1.0b*; *MODBUS Application
+//! Protocol V1.1b3*): functions 3, 4, 6 and 16. The registers are in another module.
 
 use rmodbus::ModbusProto;
 use rmodbus::consts::ModbusFunction;
@@ -8,9 +8,7 @@ use rmodbus::server::{ModbusFrame, Read};
 /// Why a request is refused: the codes of exceptions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Exception {
-    /// Unsupported function.
     Function = 0x01,
-    /// Unknown registers.
     Address = 0x02,
     /// A length or a count that cannot be.
     Value = 0x03,
@@ -50,7 +48,6 @@ pub(super) fn answer(request: &[u8], unit: u8, registers: &mut impl Registers) -
     }
 }
 
-/// Returns the reply that refuses a request.
 pub(super) fn refuse(request: &[u8], exception: Exception) -> Vec<u8> {
     let [high, low, _, _, _, _, unit, function, ..] = *request else { return Vec::new() };
     vec![high, low, 0, 0, 0, 3, unit, function | 0x80, exception as u8]

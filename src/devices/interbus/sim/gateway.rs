@@ -1,6 +1,6 @@
-//! The gateway: Modbus/TCP bytes of its clients, and the encoders behind it. Several clients may be connected at once, as
-//! with a real one, and every encoder obeys the last command, whichever client sent it. Chosen here: a reply takes two
-//! milliseconds; another unit, and an encoder without power, is exception 0Bh.
+//! The gateway: Modbus/TCP connections of its clients, and the encoders behind it. Several clients may be connected at
+//! once, as with a real gateway, and every encoder obeys the last command, whichever client sent it. Assumptions: a
+//! reply takes two milliseconds; requests for another unit, or for an encoder without power, return exception 0Bh.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! The settings of an encoder, and the EEPROM that stores them: about 200 stores, guaranteed up to 500 (reference 3).
+//! The settings of an encoder and the EEPROM that stores them: about 200 store cycles, 500 at most (reference 3).
 
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, GUARANTEED_STORES, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
@@ -41,7 +41,6 @@ impl Memory {
         if self.counterclockwise { 4 } else { 3 }
     }
 
-    /// Returns the position that the preset gives.
     pub const fn preset(&self) -> u32 {
         self.preset
     }

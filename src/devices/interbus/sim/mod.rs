@@ -1,16 +1,16 @@
-//! The virtual K3 encoder and the Modbus/TCP gateway in front of it (INTERBUS reference): the handshake with its busy words
-//! and its old echoes, the modes, eight cam programs, the EEPROM and its wear, losses of power. What the manual leaves open
-//! (`U`) follows one documented choice, or a setting.
+//! The virtual K3 encoder and the Modbus/TCP gateway in front of it (INTERBUS reference): the handshake with busy words
+//! and old echoes, the modes, eight cam programs, the EEPROM and its wear, and losses of power. Where the manual is
+//! silent (`U`), the assumption made is documented or can be set.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
 //! | `config` | the settings of a `sim:` link |
 //! | `shaft` | the turning shaft |
-//! | `memory` | what is set, what of it survives a loss of power, and how often it was stored |
-//! | `encoder` | what an OUT word does, and what the IN word is, at a moment |
-//! | `registers` | process data as Modbus registers: who has which |
-//! | `frame` | one Modbus request and its reply |
-//! | `gateway` | the connections to it, byte for byte, with their faults |
+//! | `memory` | stored settings, which of them survive a loss of power, and the number of store cycles |
+//! | `encoder` | the effect of an OUT word, and the IN word, at a moment |
+//! | `registers` | process data as Modbus registers |
+//! | `frame` | a Modbus request and its reply |
+//! | `gateway` | the connections of clients, byte by byte, with injected faults |
 
 mod config;
 mod encoder;

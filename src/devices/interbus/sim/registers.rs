@@ -1,6 +1,6 @@
-//! Process data as Modbus registers: every encoder has two input registers with its IN word and two holding registers with
-//! its OUT word. Reading one or both of them, or writing one or both, is a cycle of its process data. The word of a K1
-//! encoder, which is half as long, is in the lower register.
+//! Process data as Modbus registers: every encoder has two input registers for its IN word and two holding registers
+//! for its OUT word. Reading or writing one or both of them is a cycle of its process data. The word of a K1 encoder,
+//! which is half as long, is in the lower register.
 
 use super::config::Config;
 use super::encoder::Encoder;

@@ -1,4 +1,4 @@
-//! The shaft: its position as an exact function of time, in steps of the disc, of which a turn has 8192.
+//! The shaft: its position as an exact function of time, in disc steps, of which a turn has 8192.
 
 use crate::devices::interbus::protocol::STEPS_PER_TURN;
 use crate::units::Moment;
@@ -27,7 +27,6 @@ impl Shaft {
         self.rpm = rpm;
     }
 
-    /// Puts it somewhere.
     pub(super) fn put(&mut self, now: Moment, place: i32) {
         (self.place, self.since) = (f64::from(place), now);
     }

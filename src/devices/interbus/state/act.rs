@@ -1,4 +1,4 @@
-//! The user's actions on an encoder: edits take effect at once, everything else is a job of the session or a task.
+//! Actions of the user on an encoder: edits take effect at once, everything else is a job of the session or a task.
 
 use super::action::InterbusAction;
 use super::encoder::Encoder;

@@ -1,4 +1,4 @@
-//! The actions of an INTERBUS encoder that is shown.
+//! Actions of the selected INTERBUS encoder.
 
 use std::path::PathBuf;
 
@@ -14,35 +14,34 @@ pub enum InterbusAction {
     Stopped(bool),
     /// Read cam programs: the encoder's outputs switch to each of them.
     ReadPrograms(Vec<ProgramNumber>),
-    /// Read one thing out.
     ReadOut(ReadOut),
     /// Select what the encoder sends: its position, its speed, the outputs of a program.
     Select(StartupMode),
-    /// The device check.
     Check,
     /// Change something that is not written yet.
     Edit(Box<Edit>),
-    /// Show the effect of a change.
     Plan(Box<Change>),
     /// Return the encoder to its earlier mode, whoever changed it.
     LeadBack,
     /// Ask for a table of cams; rows without a program are for this one.
     AskTable(ProgramNumber),
-    /// Take the cams of a table.
     OpenTable(PathBuf),
     /// Take the cams of a table that was pasted.
     PasteTable(ProgramNumber, String),
     /// Take the table that was read into the edits, or discard it.
     TakeTable(bool),
     /// Ask where to write the cams as a table, with a decimal comma or a point.
-    AskSaveTable { decimal_comma: bool },
+    AskSaveTable {
+        decimal_comma: bool,
+    },
     /// Write the cams as a table.
-    SaveTable { path: PathBuf, decimal_comma: bool },
-    /// The machine counts in this.
+    SaveTable {
+        path: PathBuf,
+        decimal_comma: bool,
+    },
     SetScale(Scale),
     /// Turn the virtual encoder's shaft, in revolutions per minute.
     Turn(f64),
-    /// Save the profile.
     Save(PathBuf),
 }
 

@@ -1,7 +1,7 @@
-//! The cams of a program as a chart: a lane for each, over the measuring range or around a ring; its movable parts, and the
-//! result of moving them. It computes changed cams; it changes none.
+//! The cams of a program as a chart: a lane for each, over the measuring range or around a ring, with its movable parts
+//! and the results of moving them. The chart computes changed cams without applying them.
 //!
-//! A position is a place with a width: a cam from 10 to 19 is drawn from 10 to 20, so that inactive positions are not
+//! A position is drawn with a width: a cam from 10 to 19 extends from 10 to 20, so that no inactive positions are
 //! drawn.
 
 mod grid;
@@ -30,18 +30,14 @@ pub struct Chart {
     pub lanes: [Lane; Program::CAMS],
 }
 
-/// A cam in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lane {
     pub cam: CamNumber,
     pub name: Option<String>,
-    /// The cam is active.
     pub on: bool,
     /// Its edges; `None` if the profile does not contain them.
     pub edges: Option<Cam>,
-    /// The encoder, or the profile, has it otherwise.
     pub edited: bool,
-    /// It is active and beyond the measuring range.
     pub beyond: bool,
     /// It is active and overlaps another pulse of its track.
     pub clashes: bool,
@@ -81,7 +77,6 @@ impl Chart {
         Some(Chart::wanted(staged, wanted, program))
     }
 
-    /// Creates the same for a trial.
     pub fn wanted(staged: &Staged, wanted: &EditedValues, program: ProgramNumber) -> Self {
         let marks = wanted.marks();
         let about = |cam, is: fn(&Mark) -> bool| marks.iter().any(|mark| is(mark) && mark.is_about(program, cam));
@@ -175,7 +170,6 @@ impl VisibleRange {
         self.first
     }
 
-    /// Returns the number of visible positions.
     pub const fn span(&self) -> f64 {
         self.span
     }
@@ -203,7 +197,6 @@ impl VisibleRange {
         VisibleRange { first: around - part * span, span }.within(range)
     }
 
-    /// Returns the view moved by this many positions.
     #[must_use]
     pub fn panned(&self, by: f64, range: u32) -> Self {
         VisibleRange { first: self.first + by, ..*self }.within(range)
@@ -227,7 +220,6 @@ pub fn stretches(cam: Cam, range: u32) -> Vec<Stretch> {
     within.map(|(first, end)| Stretch { first, last: end.min(last) }).collect()
 }
 
-/// Returns one of a cam's edges.
 pub const fn of_edge(cam: Cam, edge: Edge) -> Value {
     match edge {
         Edge::Start => cam.start,

@@ -1,4 +1,4 @@
-//! The connection form of an INTERBUS encoder, and its link. Nothing is opened here.
+//! Connection form of an INTERBUS encoder and its link. Nothing is opened here.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -16,9 +16,7 @@ pub enum InterbusLinkKind {
     /// Virtual encoder in this program, behind a virtual gateway.
     #[default]
     Virtual,
-    /// A Modbus/TCP gateway.
     Gateway,
-    /// A recorded trace.
     Replay,
 }
 
@@ -27,11 +25,9 @@ pub enum InterbusLinkKind {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct InterbusForm {
     pub kind: InterbusLinkKind,
-    /// Name or address of the gateway.
     pub host: String,
     /// TCP port; empty: 502.
     pub tcp_port: String,
-    /// The recording.
     pub file: String,
     /// Text of other parameters.
     pub typed: Typed,
@@ -99,7 +95,6 @@ impl InterbusForm {
         LinkParameters::entries().into_iter().partition(|own| ["unit", "input", "output"].contains(&own.key))
     }
 
-    /// Returns the entries of the virtual encoder.
     pub fn of_the_virtual() -> Vec<Entry> {
         Config::entries()
     }

@@ -1,4 +1,4 @@
-//! Edits of an encoder's parameters and cams, kept over a crash.
+//! Parameter and cam edits that survive a crash.
 
 use super::encoder::Encoder;
 use super::staged::SavedEdit;
@@ -10,7 +10,6 @@ use crate::devices::interbus::profile::InterbusProfile;
 use crate::profile::Document;
 use crate::store::DeviceKey;
 
-/// The edits by location.
 pub(crate) type Edits = Vec<SavedEdit>;
 
 impl HasSession for Encoder {

@@ -1,4 +1,4 @@
-//! An open INTERBUS encoder, or a profile of one: its known data, the user's edits, and the running jobs.
+//! An open INTERBUS encoder or a profile of one: known data, edits and running jobs.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -31,21 +31,16 @@ pub struct Encoder {
     pub survey: Option<Survey>,
     /// The last device check.
     pub check: Option<Vec<CheckLine>>,
-    /// Parameters and cams, and their edits.
     pub staged: Staged,
-    /// The values read out, by number.
     pub read_outs: BTreeMap<u16, Value>,
-    /// The recording from polling.
     pub record: Record,
     /// Comparison of its cam outputs with those of its programs.
     pub preview: Preview,
     /// Words of the last handshakes, the newest last.
     pub handshake: VecDeque<Handshake>,
-    /// Motor of the virtual encoder.
     pub motor: Option<Motor>,
     /// A table of cams that was read and is not taken yet.
     pub import: Option<Import>,
-    /// Units of its machine.
     pub scale: Scale,
     /// Why the last edit was refused.
     pub refusal: Option<Text>,
@@ -55,7 +50,6 @@ pub struct Encoder {
     pub(super) table_program: ProgramNumber,
     /// Programs that were written, to be read again.
     pub(super) read_after: Vec<ProgramNumber>,
-    /// The meaning of the frames in the trace.
     pub(super) trace: Meaning,
 }
 
@@ -81,7 +75,6 @@ impl Encoder {
         }
     }
 
-    /// Returns the problems of the edited values.
     pub fn marks(&self) -> Vec<Mark> {
         self.staged.wanted().map(EditedValues::marks).unwrap_or_default()
     }
@@ -173,7 +166,6 @@ impl Encoder {
         self.read_outs.get(&what.number()).copied()
     }
 
-    /// Returns the programs that were read.
     pub(super) fn known_programs(&self) -> Vec<ProgramNumber> {
         self.staged.device().map(|image| image.known().map(|(number, _)| number).collect()).unwrap_or_default()
     }
@@ -237,7 +229,6 @@ impl Encoder {
         services.note(Severity::Note, vec![fact], Some(&self.session.name()));
     }
 
-    /// Handles a word of a handshake.
     pub(super) fn shake(&mut self, step: Handshake) {
         self.handshake.push_back(step);
         let surplus = self.handshake.len().saturating_sub(STEPS);

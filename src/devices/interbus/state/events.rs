@@ -1,4 +1,4 @@
-//! Events of the line to an encoder: results of jobs, live words, and loss.
+//! Events from the line: results of jobs, live words, and loss of the connection.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;

@@ -1,4 +1,4 @@
-//! Texts of an INTERBUS encoder: the errors of its jobs, and messages of its session.
+//! Texts for an INTERBUS encoder: job errors and session messages.
 
 mod check;
 mod entry;
@@ -133,7 +133,6 @@ pub fn refusal(error: ErrorWord) -> Text {
     })
 }
 
-/// Returns the text of implausible data.
 pub fn implausible(why: Implausible) -> Text {
     match why {
         Implausible::Gear(GearError::Turns { turns }) => TEXTS.text("interbus.implausible_turns").with("turns", turns),
@@ -172,7 +171,6 @@ pub fn step_text(job_step: &JobStep) -> Text {
     }
 }
 
-/// Returns a word in the usual form.
 fn word(word: u32) -> String {
     format!("0x{word:08X}")
 }

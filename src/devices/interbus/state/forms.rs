@@ -1,4 +1,4 @@
-//! Numbers entered by the user, and the changes that they mean.
+//! Parsing of numbers entered by the user into changes.
 
 use super::staged::Edit;
 use super::words;

@@ -1,11 +1,10 @@
-//! Texts of the jobs, and which of them disturb a running machine.
+//! Job names, and which jobs disturb a running machine.
 
 use crate::app::Text;
 use crate::devices::interbus::jobs::InterbusJob;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
 
-/// Returns its name in the list of jobs.
 pub(super) fn words(job: &InterbusJob) -> Text {
     match job {
         InterbusJob::Hello | InterbusJob::Position => TEXTS.text("ib_job.word"),

@@ -1,4 +1,4 @@
-//! The INTERBUS tab: the known data of an encoder, the user's edits, and its cams as a chart. Complete without a window.
+//! State of the INTERBUS tab: data known about an encoder, edits, and its cams as a chart. Complete without a window.
 
 mod act;
 mod action;
@@ -41,7 +41,6 @@ use crate::store::FileError;
 pub use staged::{Edit, EditError, EditedValues, Mark, Staged, ValueId};
 pub use table::Import;
 
-/// The results of tasks.
 pub enum Done {
     /// A table of cams was read, or not.
     Read(PathBuf, Result<String, FileError>),

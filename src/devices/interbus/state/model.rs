@@ -1,4 +1,4 @@
-//! An INTERBUS encoder among the devices of the studio.
+//! Implementation of the studio's device traits for INTERBUS encoders.
 
 use super::trace::Meaning;
 use super::{Done, Encoder, InterbusAction, TEXTS};

@@ -1,4 +1,4 @@
-//! The cams in an encoder, prepared for checking every word: whether its outputs match them.
+//! Cams of the encoder, compiled to check whether the outputs in every word match them.
 
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{Compiled, Program, ProgramNumber, StartupMode, Value};
@@ -10,7 +10,6 @@ pub struct Preview {
     compiled: Compiled,
     /// Words whose outputs match the program at their position.
     pub same: u64,
-    /// Words whose outputs differ.
     pub other: u64,
     /// The last of those.
     pub last: Option<Differing>,
@@ -22,7 +21,6 @@ pub struct Differing {
     pub position: u32,
     /// Reported by the encoder: bit i for cam i.
     pub own: u8,
-    /// By the program.
     pub expected: u8,
 }
 

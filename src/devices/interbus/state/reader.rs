@@ -1,4 +1,4 @@
-//! The reader of typed words, from a controller's monitor or a note: the meaning of each, without a device.
+//! Decoder for words typed by the user, for example from a PLC monitor or a note. Requires no device.
 
 use super::word_meaning::{self, WordContext};
 use crate::app::Text;
@@ -31,7 +31,6 @@ impl WordSource {
         }
     }
 
-    /// Returns whether its meaning depends on the mode.
     pub const fn has_mode(self) -> bool {
         matches!(self, WordSource::In | WordSource::Out)
     }
@@ -47,13 +46,10 @@ impl WordSource {
 /// The context in which typed words are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
-    /// Direction of the words.
     pub source: WordSource,
-    /// The mode of the encoder.
     pub mode: Mode,
     /// The value being read out, if any.
     pub read_out: Option<ReadOut>,
-    /// Shift of the position under its window.
     pub shift: WindowShift,
 }
 
@@ -63,14 +59,12 @@ impl Default for Reading {
     }
 }
 
-/// Word with its meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecodedWord {
     /// As entered.
     pub word: String,
     /// The meaning, or why it is not a word.
     pub meaning: Result<Text, Text>,
-    /// A problem.
     pub warning: Option<Text>,
 }
 

@@ -1,4 +1,4 @@
-//! The recording of an INTERBUS encoder while its IN word is read: positions by its gear, its reported speed, and its cam
+//! Recording of an INTERBUS encoder while its IN word is read: positions according to its gear, reported speed, and cam
 //! outputs.
 
 use crate::devices::interbus::state::TEXTS;
@@ -15,9 +15,7 @@ use crate::units::Moment;
 /// Data that an encoder sends instead of its position, or in addition to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RecordedValue {
-    /// Reported speed, in velocity mode.
     Speed,
-    /// The output of a cam.
     Cam(CamNumber),
 }
 
@@ -29,7 +27,6 @@ pub struct Record {
 }
 
 impl Record {
-    /// Begins a session; earlier recordings stay.
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.last = None;
         self.track.begin(began);
@@ -87,7 +84,6 @@ impl Record {
         self.track.add_watched(&what, &Watching { at, value, is_warned: false, never: None });
     }
 
-    /// Returns the latest word.
     pub fn last(&self) -> Option<&WordReading> {
         self.last.as_ref()
     }
@@ -99,7 +95,6 @@ impl Record {
     }
 }
 
-/// Returns the meaning of positions.
 fn meaning(gear: Option<Gear>) -> Meaning {
     match gear {
         Some(gear) => Meaning::of_turns(Some(gear.steps().into()), f64::from(gear.steps()) / f64::from(gear.turns())),

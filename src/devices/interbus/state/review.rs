@@ -1,4 +1,4 @@
-//! The review of a write to an INTERBUS encoder: the permissions, warnings and costs of its plan.
+//! Review of a write to an INTERBUS encoder: permits, warnings and cost of its plan.
 
 use crate::app::explain::plain;
 use crate::app::review::{self, OpWords, Permit, Reviewed};
@@ -9,7 +9,6 @@ use crate::devices::interbus::profile::Op;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
 
-/// Review of a write.
 pub type Review = review::Review<Interbus>;
 pub type ReviewState = review::ReviewState<Interbus>;
 

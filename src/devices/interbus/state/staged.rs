@@ -1,10 +1,10 @@
-//! The values of a K3 encoder or a profile, and the edited ones. Nothing is written to an encoder here; a plan is made from
+//! Values of a K3 encoder or a profile, and the edited ones. Nothing is written to an encoder here; a plan is made from
 //! the difference.
 //!
-//! Every edit creates a complete new state, to which an undo returns. Edits survive a new reading: edited values stay,
-//! whatever the encoder has now, and all others follow the encoder, in earlier states as well. A cam program that was not
-//! read cannot be edited, since the cost of a change is not known; earlier edits of it wait until it is read. A profile can
-//! gain values that it does not have.
+//! Every edit creates a complete new state, to which undo can return. Edits survive a new reading: edited values stay,
+//! whatever the encoder now contains, and all others follow the encoder, in earlier states as well. A cam program that
+//! was not read cannot be edited, since the cost of a change is unknown; earlier edits of it wait until it is read. A
+//! profile can gain values that it did not have.
 //!
 //! Positions are steps, from 0 to one below the measuring range.
 
@@ -29,7 +29,6 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 /// All values that can be edited, in their edited state.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct EditedValues {
-    /// The values written to an encoder.
     pub image: Image,
     /// Names of programs and cams, which no encoder stores. Two cams of a program with the same name are pulses on one
     /// track.
@@ -74,7 +73,6 @@ impl EditedValues {
         self.image.program(program)?.cams.get(usize::from(cam.get())).copied().flatten()
     }
 
-    /// Returns whether a cam is active.
     pub fn is_on(&self, program: ProgramNumber, cam: CamNumber) -> bool {
         self.image.program(program).is_some_and(|own| own.is_on(cam))
     }
@@ -117,7 +115,6 @@ impl Staged {
         self.rebase(EditedValues { image, names });
     }
 
-    /// Takes the parameters that were read.
     pub fn refresh_parameters(&mut self, parameters: Parameters) {
         self.refresh(Image::of(parameters));
     }

@@ -1,4 +1,4 @@
-//! Tables of cams: read from a file or pasted text, shown, and only then taken into the edits; and written.
+//! Cam tables: reading from a file or pasted text, preview before adoption, and writing.
 
 use std::path::PathBuf;
 

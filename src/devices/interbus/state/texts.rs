@@ -1,4 +1,4 @@
-//! The texts of INTERBUS.
+//! Text catalogue of INTERBUS.
 
 use crate::app::Catalogue;
 

@@ -1,5 +1,4 @@
-//! The meaning of the frames in the trace: the words in them. It depends on the mode of the encoder, which the OUT
-//! words before have selected.
+//! Meaning of frames in the trace. It depends on the mode of the encoder, which preceding OUT words have selected.
 
 use super::word_meaning::{self, WordContext};
 use crate::app::{Explained, Text, TraceFault};

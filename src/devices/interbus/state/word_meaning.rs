@@ -1,4 +1,4 @@
-//! The meaning of the words on the process data: OUT words as commands, IN words in their mode.
+//! Meaning of process data words: OUT words as commands, IN words according to the mode.
 
 use super::words;
 use crate::app::Text;
@@ -13,9 +13,7 @@ use crate::devices::interbus::state::explain as explained;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordContext {
     pub mode: Mode,
-    /// The value being read out.
     pub read_out: Option<ReadOut>,
-    /// Shift of the position under its window.
     pub shift: Option<WindowShift>,
 }
 
@@ -73,7 +71,6 @@ pub fn mode_of(command: Command) -> Mode {
     if command.is_legal_in(Mode::Position) || !command.is_legal_in(Mode::Cam) { Mode::Position } else { Mode::Cam }
 }
 
-/// Returns the meaning of an IN word.
 pub fn word_text(word: u32, known: &WordContext) -> Text {
     let reply = Reply::parse(word);
     match reply {

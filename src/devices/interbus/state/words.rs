@@ -1,4 +1,4 @@
-//! The names of parameters, values, modes, LEDs and jobs of an INTERBUS encoder.
+//! Names of parameters, values, modes, LEDs and jobs of an INTERBUS encoder.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -18,7 +18,6 @@ pub fn parameter(parameter: Parameter) -> Text {
     })
 }
 
-/// Returns the text for a parameter's number.
 pub fn setting(parameter: Parameter, number: u32) -> Text {
     match (parameter, Direction::of_code(number)) {
         (Parameter::Direction, Some(own)) => direction(own),
@@ -81,7 +80,6 @@ pub fn lamps(row: &LedRow) -> (Text, Text) {
     (TEXTS.text(meaning), TEXTS.text(remedy))
 }
 
-/// Returns the name of an interface.
 pub fn interface(interface: Interface) -> Text {
     TEXTS.text(match interface {
         Interface::Standard => "ib_id.standard",
@@ -90,7 +88,6 @@ pub fn interface(interface: Interface) -> Text {
     })
 }
 
-/// Returns the text for a measuring range.
 pub fn range(steps: u32, turns: u32) -> Text {
     let id = if turns == 1 { "ib_card.range_one" } else { "ib_card.range_of" };
     TEXTS.text(id).with("steps", steps).with("turns", turns)

@@ -1,4 +1,4 @@
-//! Writing to an encoder: the edits or a profile as a request, its jobs, and what is read again afterwards.
+//! Writing to an encoder: edits or a profile as a request, its jobs, and what is read again afterwards.
 
 use super::cams::words;
 use super::encoder::Encoder;

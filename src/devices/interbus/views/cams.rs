@@ -1,4 +1,4 @@
-//! Eight programs of eight cams: the open one as lanes, as a ring and as a table, and the cam output word of an encoder.
+//! The cams page: the open program of eight cams as lanes, ring and table, and the cam output word of the encoder.
 
 mod bar;
 mod chart;
@@ -17,7 +17,6 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, empty, enabled_button, paragraph, two_columns};
 use crate::ui::{Theme, icons};
 
-/// Selection and entered text.
 #[derive(Default)]
 pub(super) struct CamsUiState {
     program: Option<ProgramNumber>,
@@ -28,7 +27,6 @@ pub(super) struct CamsUiState {
 }
 
 impl CamsUiState {
-    /// Returns the program that is open.
     pub(super) fn shown(&self) -> ProgramNumber {
         self.program.unwrap_or(ProgramNumber::FIRST)
     }

@@ -1,4 +1,4 @@
-//! The connection form of an INTERBUS encoder: behind a gateway, or virtual.
+//! Connection form of an INTERBUS encoder, behind a gateway or virtual.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! The encoder page: identity, present word, wiring.
+//! The encoder page: identity, present word and wiring.
 
 use egui::{RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! The meaning of the LEDs at the encoder, and the identification codes of its interfaces.
+//! Meaning of the LEDs on the encoder, and identification codes of its interfaces.
 
 use egui::{RichText, Ui};
 

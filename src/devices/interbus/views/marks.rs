@@ -1,5 +1,5 @@
-//! The problems of the edited values, below every page, where they move nothing that can be clicked: a smaller measuring range
-//! leaves cams beyond it, which are edited on another page.
+//! Problems of the edited values, shown below every page, where they do not move anything clickable: a smaller
+//! measuring range leaves cams beyond it, which are edited on another page.
 
 use egui::{RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! The INTERBUS tab: its pages, one per task.
+//! The INTERBUS tab: one page per task.
 
 mod cams;
 mod connect_form;
@@ -22,16 +22,12 @@ use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// Identity and present word.
     #[default]
     Encoder,
     /// Parameters of the position, and the words that set them.
     Parameters,
-    /// Eight programs of eight cams.
     Cams,
-    /// Values, LEDs and words.
     Diagnosis,
-    /// Profiles, backups and the logbook.
     Backups,
 }
 

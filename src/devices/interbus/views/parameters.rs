@@ -1,4 +1,4 @@
-//! The parameters and their edits, the preset, the memory's wear, and the words of the handshake.
+//! Parameters and their edits, preset, EEPROM wear, and the words of the handshake.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The values that can be read from an encoder, and the registers of its chip.
+//! Read-outs of an encoder, and the registers of its OPC chip.
 
 use egui::Ui;
 

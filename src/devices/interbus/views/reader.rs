@@ -1,4 +1,4 @@
-//! The reader of typed words.
+//! The decoder for typed words.
 
 use egui::{RichText, Ui};
 

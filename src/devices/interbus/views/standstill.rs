@@ -1,4 +1,4 @@
-//! The confirmation that the machine stands still, before anything that would disturb a running machine.
+//! Confirmation that the machine is at standstill, required before anything that would disturb a running machine.
 
 use egui::{RichText, Ui};
 

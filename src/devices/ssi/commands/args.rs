@@ -1,4 +1,4 @@
-//! The arguments of `ssi`, and the option of the shared commands that only SSI encoders have.
+//! Arguments of `ssi`, and the option of shared commands that is specific to SSI encoders.
 
 use std::path::PathBuf;
 

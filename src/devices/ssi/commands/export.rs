@@ -1,4 +1,4 @@
-//! `ssi export`: a layout for other programs, and as a profile.
+//! `ssi export`: exports a layout for other programs, or as a profile.
 
 use std::time::Duration;
 

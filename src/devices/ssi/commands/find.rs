@@ -1,4 +1,4 @@
-//! `ssi find`: layouts that fit recorded frames, best first, and what would distinguish them.
+//! `ssi find`: lists the layouts that fit recorded frames, best first, and what would distinguish them.
 
 use serde_json::{Value as Json, json};
 
@@ -88,7 +88,6 @@ fn spec(class: &Class, families: &Families) -> String {
     class.members.first().map_or_else(String::new, |member| member.spec(families))
 }
 
-/// Returns the evidence for a class.
 fn why(class: &Class) -> String {
     let frame = class.members.first().map(|member| words::frame(&member.layout).terminal());
     let evidence = words::evidence(&class.evidence).terminal();

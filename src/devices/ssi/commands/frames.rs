@@ -1,4 +1,4 @@
-//! `ssi decode` and `ssi encode`: decoding and encoding frames.
+//! `ssi decode` and `ssi encode`: decoding and encoding of frames.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -22,7 +22,6 @@ pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDe
     Ok(Done::Well)
 }
 
-/// Frame with its meaning.
 pub(super) struct DecodedFrame<'a> {
     pub(super) layout: &'a Layout,
     pub(super) frame: u64,
@@ -116,7 +115,6 @@ fn fields(layout: &Layout, frame: u64) -> String {
     words.join("  ")
 }
 
-/// Returns the name of a finding in JSON.
 pub(super) fn name(finding: &FrameFinding) -> String {
     match finding {
         FrameFinding::Error { name, .. } | FrameFinding::Pattern { name, .. } => name.clone(),

@@ -1,5 +1,5 @@
-//! The layout named by `--layout`: a profile in a file, a family with its settings, any frame in one word, or a format
-//! string of LinuxCNC.
+//! The layout given by `--layout`: a profile file, a family with its settings, an arbitrary frame in one word, or a
+//! LinuxCNC format string.
 
 use std::path::Path;
 
@@ -19,9 +19,7 @@ use crate::store::Store;
 
 /// A layout to work with.
 pub(crate) struct Chosen {
-    /// Everything known about it.
     pub(crate) profile: SsiProfile,
-    /// Its frame, checked.
     pub(crate) layout: Layout,
     /// The times of its family; `None` if it has none, or an unknown one.
     pub(crate) times: Option<Times>,
@@ -61,7 +59,6 @@ fn is_file(spec: &str, families: &Families) -> bool {
     is_path || ends || (families.named(&key.to_ascii_lowercase()).is_none() && Path::new(spec).is_file())
 }
 
-/// Returns any frame in one word.
 fn of_frame(spec: &str, frame: std::result::Result<Descriptor, SpecError>) -> Result<Chosen> {
     let frame = frame.map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;

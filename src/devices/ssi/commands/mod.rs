@@ -1,4 +1,4 @@
-//! The commands for SSI encoders: `ssi` without an encoder, and the commands with one or its profile.
+//! Commands for SSI encoders: `ssi` without an encoder, and commands for an encoder or its profile.
 
 mod args;
 mod export;

@@ -1,4 +1,4 @@
-//! Profiles of SSI encoders: made from a layout, since the encoder does not report its own, and compared.
+//! Profiles of SSI encoders: created from a layout, since the encoder does not report its own, and compared.
 
 use std::path::Path;
 

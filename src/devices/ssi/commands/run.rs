@@ -57,7 +57,6 @@ pub(super) fn begin(common: &Common, output: &Output, chosen: &Chosen) -> Result
     Ok(runner)
 }
 
-/// Returns the word that a job gave.
 pub(super) fn words(came: SsiOutput) -> Result<Words> {
     Ok(result_of!(came, SsiOutput::Read(words) => words))
 }

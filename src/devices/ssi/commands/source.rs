@@ -1,4 +1,4 @@
-//! Frames of a command: as arguments, in a file, or on standard input.
+//! Input frames of a command: arguments, a file, or standard input.
 
 use std::io::Read;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! The families of encoders: the user's own, and the built-in ones.
+//! Families of encoders: user-defined ones first, then the built-in ones.
 
 use crate::devices::ssi::protocol::{Families, KIND};
 use crate::profile::Cause;

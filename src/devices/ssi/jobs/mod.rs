@@ -1,5 +1,5 @@
-//! An SSI encoder behind an adapter as seen by a session, and its jobs. The encoder has no memory: nothing is ever written
-//! to it.
+//! The SSI encoder behind an adapter as a device of a session, and its jobs. The encoder has no memory: nothing is ever
+//! written to it.
 
 mod families;
 mod open;
@@ -24,7 +24,6 @@ use crate::worker::{Device, EndedEarly, JobReport, Progress, Session, SessionCon
 pub struct Ssi {
     wire: Box<dyn ByteLink>,
     station: Station,
-    /// Motor of a virtual encoder.
     motor: Option<Motor>,
     /// Interval of the words in a stream, in microseconds, if it is shorter than single requests allow.
     streamed_us: Option<u32>,
@@ -37,7 +36,6 @@ pub enum SsiJob {
     Hello,
     /// Reads words this way from now on; a requested stream continues with it.
     Set(Asking),
-    /// One word.
     Read,
     /// Runs the device check, which also compares words with the layout.
     Check(Box<Layout>),
@@ -46,13 +44,9 @@ pub enum SsiJob {
 /// The result of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SsiOutput {
-    /// The identity of the adapter.
     Hello(Box<Identity>),
-    /// Identity with the new way of reading words.
     Set(Box<Identity>),
-    /// The word, a run of one.
     Read(Words),
-    /// The results of the device check.
     Check(Vec<check::SsiStepResult>),
 }
 
@@ -79,7 +73,6 @@ impl fmt::Debug for Ssi {
 }
 
 impl Ssi {
-    /// Returns the host's side of the line.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
@@ -98,7 +91,6 @@ impl Session<Ssi> {
         Session::with(Ssi { wire, station, motor, streamed_us: None }, clock, store, is_virtual)
     }
 
-    /// Changes how words are read, from the beginning.
     pub fn ask_like(&mut self, asking: Asking) {
         self.device.station.asking = asking;
     }

@@ -1,5 +1,5 @@
-//! The device check: the adapter, the encoder's supply, and consecutive words compared with the layout, with one verdict
-//! per item. Nothing is written: the encoder has no memory.
+//! Device check: adapter, encoder supply, and consecutive words compared with the layout, with a verdict for each item.
+//! Nothing is written: the encoder has no memory.
 
 use std::collections::BTreeSet;
 
@@ -19,13 +19,9 @@ pub type SsiStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
-    /// The adapter, and its clock.
     Adapter,
-    /// The supply of the encoder.
     Supply,
-    /// The data line moves.
     Line,
-    /// Words are frames of the layout.
     Layout,
     /// Error bits and patterns.
     Errors,
@@ -36,10 +32,12 @@ pub enum CheckStep {
 /// One fact that the check found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
-    /// The adapter's name and firmware.
     Adapter(String, String),
     /// The requested and the actual clock in hertz.
-    Clock { asked: u32, got: u32 },
+    Clock {
+        asked: u32,
+        got: u32,
+    },
     /// Millivolts requested and measured, and milliamperes.
     Supply {
         /// Millivolts requested.
@@ -49,21 +47,16 @@ pub enum CheckFinding {
         /// Milliamperes measured.
         milliampere: u16,
     },
-    /// The encoder is supplied from elsewhere.
     SuppliedElsewhere,
-    /// Number of words read, and of different ones.
     Words {
-        /// Number of words.
         taken: u64,
         different: usize,
     },
     /// Finding about words, and the number of words with it.
     Said {
         finding: Said,
-        /// Number of words.
         count: u64,
     },
-    /// Every word is a frame of the layout.
     Fits,
     /// No error bit is active.
     Silent,
@@ -99,7 +92,6 @@ pub fn check(
     Ok(judge(&identity, layout, &words))
 }
 
-/// Judges an adapter and consecutive words.
 fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResult> {
     let mut counted: Vec<(Said, u64)> = Vec::new();
     let mut positions = Vec::new();

@@ -7,12 +7,10 @@ use crate::link::line::LineError;
 /// Why no words arrive.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
-    /// The wire to the adapter.
     #[error(transparent)]
     Link(#[from] LinkError),
     #[error(transparent)]
     Adapter(#[from] AdapterError),
-    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
 }

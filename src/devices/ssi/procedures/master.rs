@@ -1,8 +1,9 @@
-//! The host's side of the adapter: its identity, its settings, and the words. While a stream runs, the adapter cannot do
-//! anything else, so any other request ends it first.
+//! Host side of the adapter: its identity, its settings and the words. The adapter cannot do anything else during a
+//! stream, so any other request ends the stream first.
 //!
-//! Reading a word changes nothing but error bits that a transfer clears, so it may be repeated: an adapter that has replied
-//! before is asked five times, within eight seconds; one that has never replied is asked twice, by the reference.
+//! Reading a word changes nothing except error bits that a transfer clears, so it may be repeated: an adapter that has
+//! replied before is asked up to five times within eight seconds, one that has never replied twice, as specified by the
+//! reference.
 
 use std::time::Duration;
 

@@ -1,6 +1,6 @@
-//! Words of an SSI encoder behind an adapter of the bridge protocol. The encoder has no memory and no commands: there is
-//! nothing to identify or write, and no waiting time. The layout (`protocol/ssi`) gives words their meaning; here they are
-//! only read, one by one or as a stream.
+//! Words of an SSI encoder behind an adapter with the bridge protocol. The encoder has no memory and no commands: there
+//! is nothing to identify or write, and no waiting time. The layout (`protocol/ssi`) gives the words their meaning;
+//! here they are only read, individually or as a stream.
 
 pub mod check;
 mod error;

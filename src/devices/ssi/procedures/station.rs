@@ -1,4 +1,4 @@
-//! The state of a session's adapter and how it reads words, kept between jobs.
+//! State of a session's adapter and its reading settings, kept between jobs.
 
 use std::fmt;
 use std::time::Duration;
@@ -25,12 +25,10 @@ parameters! {
         pub pause_us: u16 = 200, "pause" => Whole(Quantity::Microseconds, 1..=u16::MAX);
         /// Supply of the encoder by the adapter; `None` for none.
         pub millivolt: Option<u16> = None, "voltage" => Maybe(Millivolts(Supply::RANGE)), "connect.voltage" like "";
-        /// State of the supply at the end.
         pub after: SupplyAfter = SupplyAfter::AsFound, "leave-supply" => SupplyAfter::WORDS;
     }
 }
 
-/// How words are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Asking {
     /// Bits of a word, 1…64.
@@ -53,9 +51,7 @@ impl Default for Asking {
 /// The adapter, and how it actually reads words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// The adapter.
     pub hello: Hello,
-    /// How words are read.
     pub asking: Asking,
     /// The clock in hertz, as the adapter has set it.
     pub clock_hz: u32,
@@ -66,16 +62,13 @@ pub struct Identity {
 /// The state of a session's adapter and how it reads words.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// Silence and damage on the line.
     pub line: LineState,
     pub adapter: AdapterState,
-    /// How words are read.
     pub asking: Asking,
     /// The encoder's supply, if the adapter is to switch it.
     pub supply: Option<Supply>,
     /// The adapter's setting and its actual clock; `None` before, and after a possible reset.
     pub(super) set: Option<(Asking, u32)>,
-    /// The stream that the adapter sends.
     pub(super) flow: Option<Flow>,
     /// The last word of the streams before.
     pub(super) streamed_until: Option<Time>,

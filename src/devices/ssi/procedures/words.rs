@@ -1,4 +1,4 @@
-//! Words as received: the bits of one burst of clocks each.
+//! Words as received, each consisting of the bits of one clock burst.
 
 use std::time::Duration;
 
@@ -29,7 +29,6 @@ pub struct Words {
 }
 
 impl Words {
-    /// Creates a single requested word.
     pub(super) fn one(at: Moment, word: u64, asking: Asking, clock_hz: u32) -> Self {
         Words {
             first: 0,
@@ -64,7 +63,6 @@ impl Words {
         self.first == self.lost
     }
 
-    /// Returns whether the words were streamed.
     pub const fn is_streamed(&self) -> bool {
         self.period_ns > 0
     }

@@ -1,4 +1,4 @@
-//! The differences between two SSI encoders: one item for each entry of their profiles, named as in the file.
+//! Differences between two SSI encoders: one item for each profile entry, named as in the file.
 
 use super::SsiProfile;
 use crate::devices::ssi::protocol::{Range, Word};

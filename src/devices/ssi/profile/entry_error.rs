@@ -1,22 +1,22 @@
-//! Why an SSI profile is refused.
+//! Reasons why an SSI profile is refused.
 
 use crate::devices::ssi::protocol::LayoutError;
 
-/// Why an entry of a profile is refused.
+/// The reason why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
-    /// A frame that cannot work.
+    /// The frame is impossible.
     #[error(transparent)]
     Layout(#[from] LayoutError),
-    /// A position that the frame does not have.
+    /// The preset exceeds the range of the frame.
     #[error("{preset} is not within 0 to {last}")]
     Preset {
-        /// As in the profile.
+        /// Preset in the profile.
         preset: u64,
-        /// The last position.
+        /// Last position of the frame.
         last: u64,
     },
-    /// Entries that exclude one another.
+    /// The entry cannot be combined with the other one.
     #[error("not together with {0}")]
     NotWith(&'static str),
     /// The range of positions is missing.

@@ -1,5 +1,5 @@
-//! The profile of an SSI encoder: its frame, its counting direction and offset, and how it is read. The encoder itself has
-//! no memory: a profile is never written to one, so there is no plan and no backup.
+//! Profiles of SSI encoders: frame, counting direction, offset and reading settings. The encoder has no memory: a
+//! profile is never written to one, so there is no plan and no backup.
 
 #![warn(missing_docs)]
 

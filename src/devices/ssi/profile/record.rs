@@ -1,26 +1,26 @@
-//! The saved content of an SSI encoder. Its text is in [`text`](super::text).
+//! Saved content of an SSI encoder. [`text`](super::text) defines the file format.
 
 use std::time::Duration;
 
 use crate::devices::ssi::protocol::{Descriptor, Direction, Family, Range, Reads, Resolved};
 use crate::profile::ron_text::Unknown;
 
-/// Profile of an SSI encoder.
+/// A profile of an SSI encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SsiProfile {
-    /// The user's name for it; may be empty.
+    /// User-defined name; may be empty.
     pub name: String,
-    /// Key of the family whose times and limits apply; `None`: they are not known.
+    /// Key of the family whose times and limits apply, or `None` if unknown.
     pub family: Option<String>,
-    /// The frame. One read from a file is known to be valid.
+    /// Frame. One read from a file has been validated.
     pub descriptor: Descriptor,
-    /// Direction in which positions grow.
+    /// Counting direction.
     pub direction: Direction,
-    /// The position at the shaft's zero, within the frame's range.
+    /// Position at the zero of the shaft, within the range of the frame.
     pub preset: u64,
-    /// How it is read.
+    /// Reading settings.
     pub reading: ReadingSettings,
-    /// Entries that this program does not know.
+    /// Unknown entries, preserved when the profile is saved.
     pub unknown: UnknownEntries,
 }
 
@@ -29,15 +29,15 @@ pub struct SsiProfile {
 pub struct ReadingSettings {
     /// Clock in hertz, 1000…20 000 000.
     pub clock_hz: u32,
-    /// From the last clock of a burst to the first of the next, in microseconds, at least 1.
+    /// Pause between the last clock of a burst and the first of the next, in microseconds, at least 1.
     pub pause_us: u16,
-    /// Cable in metres; `None`: not checked.
+    /// Cable length in metres, or `None` to skip the check.
     pub cable_metres: Option<u16>,
-    /// Positions are made when the host clocks.
+    /// Whether the encoder samples its position when the host clocks.
     pub synchronous: bool,
 }
 
-/// Unknown entries, by their structure, which are preserved.
+/// Unknown entries by structure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
     pub(super) frame: Unknown,
@@ -46,7 +46,6 @@ pub struct UnknownEntries {
     pub(super) repeat: Unknown,
     /// By the name of the error bit, to stay with it.
     pub(super) errors: Vec<(String, Unknown)>,
-    /// By the name of the pattern.
     pub(super) patterns: Vec<(String, Unknown)>,
 }
 
@@ -59,7 +58,7 @@ impl Default for ReadingSettings {
 }
 
 impl SsiProfile {
-    /// Creates the profile of a frame without a family, with the default counting.
+    /// Creates a profile for a frame without a family, with default counting.
     pub fn new(descriptor: Descriptor) -> Self {
         SsiProfile {
             name: String::new(),
@@ -72,7 +71,7 @@ impl SsiProfile {
         }
     }
 
-    /// Returns how its frame is read, for checking the times.
+    /// Returns the reading settings of the frame for checking the timing.
     pub fn reads(&self) -> Reads {
         let ReadingSettings { clock_hz, pause_us, cable_metres, synchronous } = self.reading;
         Reads {
@@ -85,7 +84,7 @@ impl SsiProfile {
         }
     }
 
-    /// Returns the settings resolved for a family.
+    /// Creates a profile with the settings resolved for a family.
     pub fn of_family(family: &Family, resolved: &Resolved) -> Self {
         SsiProfile {
             family: Some(family.key.clone()),

@@ -1,5 +1,5 @@
-//! The text of an SSI profile, written for people and edited by them. Default values are left out; an error names its
-//! entry, and an impossible frame is refused with the reason.
+//! The text format of an SSI profile, which people read and edit. Default values are omitted; errors name the entry,
+//! and an impossible frame is refused with the reason.
 
 use std::collections::VecDeque;
 use std::str::FromStr;
@@ -195,7 +195,6 @@ fn write_list(writer: &mut Writer, name: &str, lines: impl ExactSizeIterator<Ite
     }
 }
 
-/// Takes the preserved entries of this name.
 fn of_name(kept: &mut VecDeque<&(String, Unknown)>, name: &str) -> Unknown {
     let at = kept.iter().position(|(own, _)| own == name);
     at.and_then(|at| kept.remove(at)).map(|(_, unknown)| unknown.clone()).unwrap_or_default()

@@ -1,42 +1,42 @@
-//! The code of a position: binary, Gray, Gray excess, BCD (SICK SSI description 2.4; reference section 2).
+//! Position codes: binary, Gray, Gray excess and BCD (SICK SSI description 2.4; reference section 2).
 
 use serde::Deserialize;
 
-/// A code.
+/// A position code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Code {
-    /// The number itself.
+    /// Binary.
     Binary,
-    /// One bit changes from a position to the next.
+    /// Gray: one bit changes between adjacent positions.
     Gray,
-    /// Gray, cut out of the middle of the complete code, so that one bit changes at the end of the range too, although the
-    /// number of steps is no power of two. It has to be even.
+    /// Gray excess: the middle part of a complete Gray code, so that a single bit changes at the end of the range as
+    /// well, although the number of steps is not a power of two. The number of steps must be even.
     GrayExcess,
-    /// Four bits a decimal digit.
+    /// BCD: four bits per decimal digit.
     Bcd,
 }
 
-/// The reason why positions have no code words.
+/// The reason why a code cannot represent the positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CodeError {
-    /// Gray excess leaves out as many words before the positions as after them.
+    /// Gray excess requires an even number of steps, because it omits as many words before the positions as after them.
     #[error(
         "Gray excess needs an even number of steps, not {0}: with an odd number two bits would change at the end of \
          the range"
     )]
     Odd(u128),
-    /// More than 64 bits.
+    /// The code word would exceed 64 bits.
     #[error("{0} decimal digits need more than 64 bits in BCD")]
     Digits(u32),
 }
 
-/// Returns `word` in Gray: `b ^ (b >> 1)`.
+/// Converts a binary number to Gray: `b ^ (b >> 1)`.
 pub const fn gray(word: u64) -> u64 {
     word ^ word >> 1
 }
 
-/// Returns the number whose Gray code is `word`.
+/// Converts a Gray code word to binary.
 pub const fn ungray(word: u64) -> u64 {
     let word = word ^ word >> 1;
     let word = word ^ word >> 2;
@@ -46,7 +46,7 @@ pub const fn ungray(word: u64) -> u64 {
     word ^ word >> 32
 }
 
-/// A code for the positions 0 to a last one.
+/// A code for the positions from 0 to a last one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Coding {
     code: Code,
@@ -62,7 +62,7 @@ impl Coding {
     /// Creates the coding of the positions 0…`last`.
     ///
     /// # Errors
-    /// [`CodeError`] if the code has no words for this number of positions.
+    /// [`CodeError`] if the code cannot represent this number of positions.
     pub fn new(code: Code, last: u64) -> Result<Self, CodeError> {
         let binary_bits = bits_of(last);
         let (bits, offset) = match code {
@@ -83,7 +83,7 @@ impl Coding {
         self.code
     }
 
-    /// Returns the number of bits of a code word, 1…64.
+    /// Returns the width of a code word, 1…64 bits.
     pub const fn bits(&self) -> u8 {
         self.bits
     }
@@ -93,12 +93,12 @@ impl Coding {
         self.last
     }
 
-    /// Returns for Gray excess the number whose Gray code means position 0; 0 for the other codes.
+    /// Returns the number whose Gray code represents position 0 in Gray excess, or 0 for other codes.
     pub const fn offset(&self) -> u64 {
         self.offset
     }
 
-    /// Returns the code word of a position; `None` after the last one.
+    /// Returns the code word of a position, or `None` beyond the last one.
     pub fn encode(&self, position: u64) -> Option<u64> {
         if position > self.last {
             return None;
@@ -111,7 +111,7 @@ impl Coding {
         })
     }
 
-    /// Returns the position of a code word; `None` if it is invalid.
+    /// Returns the position of a code word, or `None` if the word is invalid.
     #[inline]
     pub fn decode(&self, word: u64) -> Option<u64> {
         let position = match self.code {

@@ -1,4 +1,4 @@
-//! A frame as designed: the content of each clock. Any frame can be described here; [`super::Layout`] checks whether it is
+//! Design of a frame: the content of each clock. Any frame can be described; [`super::Layout`] checks whether it is
 //! possible.
 
 use serde::Deserialize;
@@ -6,67 +6,69 @@ use serde::Deserialize;
 use super::code::Code;
 use super::range::Range;
 
-/// A frame.
+/// Description of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Descriptor {
-    /// Bits that the host clocks in, 1…64.
+    /// Number of bits that the host clocks in, 1…64.
     pub clocks: u8,
-    /// The range of positions.
+    /// Range of positions.
     pub range: Range,
-    /// Their code.
+    /// Position code.
     pub code: Code,
-    /// The coded bits.
+    /// Extent of the code word.
     pub coded: Coded,
-    /// Clocks 1…`area` belong to the position and the zeros around it. Shifting right shifts these.
+    /// Number of clocks, from the first on, that contain the position and surrounding zeros. Shifting right moves
+    /// these.
     pub area: u8,
-    /// Zeros between multiturn and singleturn, if the range has bits for each.
+    /// Number of zeros before the multiturn, if the range has separate bits for multiturn and singleturn.
     pub lead: u8,
-    /// Zeros between multiturn and singleturn, where the range has bits for each.
+    /// Number of zeros between multiturn and singleturn, if the range has separate bits for them.
     pub between: u8,
-    /// The area begins one clock later: a zero first, its last bit lost (SICK SSI description 3.4, SSI-SHIFT-RIGHT).
+    /// Whether the area is delayed by one clock: a zero comes first, and its last bit is lost (SICK SSI description
+    /// 3.4, SSI-SHIFT-RIGHT).
     pub shift_right: bool,
     /// Error and warning bits, at most 8.
     pub errors: Vec<ErrorBit>,
-    /// A parity bit.
+    /// Parity bit, if any.
     pub parity: Option<Parity>,
-    /// The same bits once more.
+    /// Repetition of the frame, if any.
     pub repeat: Option<Repeat>,
-    /// Whether the data wires are exchanged: every bit is inverted.
+    /// Whether the data wires are swapped, which inverts every bit.
     pub inverted: bool,
-    /// Words with another meaning than a position, at most 4; tested before anything is decoded.
+    /// Words with a meaning other than a position, at most 4; tested before decoding.
     pub patterns: Vec<Pattern>,
 }
 
-/// The bits that a Gray code covers; binary and BCD cover only the position.
+/// The bits that a Gray code covers; binary and BCD only cover the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coded {
-    /// The position's bits; zeros and error bits are outside the code word.
+    /// The position bits; zeros and error bits are outside the code word.
     Position,
-    /// The whole area, zeros included (reference section 2: the other reading of the manual, `U`).
+    /// The whole area including zeros (reference section 2: the alternative reading of the manual, `U`).
     Area,
-    /// The whole area and the error bits after it (known from sensors that number them among the data).
+    /// The whole area and the following error bits (known from sensors that count them among the data).
     AreaAndErrors,
 }
 
-/// A bit that is no position.
+/// A bit that is not part of the position.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorBit {
-    /// Name in its manual.
+    /// Name in the manual of the encoder.
     pub name: String,
-    /// The clock, counted from 1.
+    /// Clock number, starting at 1.
     pub clock: u8,
-    /// Its meaning for the position.
+    /// Consequence for the position.
     pub meaning: Meaning,
-    /// Whether it is active at 0.
+    /// Whether the bit is active at 0.
     #[serde(default)]
     pub active_low: bool,
-    /// Whether a transfer clears it: it is about the time since the last one.
+    /// Whether a transfer clears the bit, which then refers to the time since the previous transfer.
     #[serde(default)]
     pub cleared_by_transfer: bool,
 }
 
-/// The meaning of a bit or word, other than a position, for the position.
+/// Consequence of a bit or word for the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Meaning {
@@ -76,48 +78,48 @@ pub enum Meaning {
     Warning,
 }
 
-/// A bit over those before it.
+/// Parity over all preceding bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parity {
-    /// The clock, counted from 1; it covers all clocks before it.
+    /// Clock number of the parity bit, starting at 1.
     pub clock: u8,
-    /// The ones are even in number, the parity bit among them.
+    /// Whether the parity is even.
     pub even: bool,
 }
 
-/// The frame twice in one burst of clocks.
+/// Repetition of the frame within one clock burst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Repeat {
-    /// Clocks of the first one.
+    /// Number of clocks of the first transmission.
     pub word: u8,
-    /// Zeros between the two, usually one.
+    /// Number of zeros between the two transmissions, usually one.
     pub gap: u8,
 }
 
-/// A word with its own meaning.
+/// A word with a special meaning.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pattern {
-    /// Its name.
+    /// Name of the word.
     pub name: String,
-    /// The bits of a whole frame, as sent.
+    /// Bits of the complete frame as transmitted.
     pub word: Word,
-    /// Its meaning for the position.
+    /// Consequence for the position.
     pub meaning: Meaning,
 }
 
-/// The bits of a whole frame.
+/// Bits of a complete frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Word {
-    /// Ones alone.
+    /// All ones.
     Ones,
-    /// Just these.
+    /// Exactly these bits.
     Bits(u64),
 }
 
 impl Descriptor {
-    /// Returns only the position's bits, of this number of turns and steps, in binary.
+    /// Creates a frame of binary multiturn and singleturn bits only.
     pub const fn plain(multiturn: u8, singleturn: u8) -> Self {
         let bits = multiturn + singleturn;
         Descriptor {
@@ -137,7 +139,7 @@ impl Descriptor {
         }
     }
 
-    /// Returns the clocks of one frame, without its repetition.
+    /// Returns the number of clocks of one frame, without its repetition.
     pub fn word(&self) -> u8 {
         self.repeat.map_or(self.clocks, |repeat| repeat.word)
     }

@@ -1,45 +1,45 @@
-//! Frames of the levels of both lines, as a logic analyser records them (SICK SSI description 2.2; reference section 1): the
-//! clock rests high, each rising edge brings a bit, the host samples on the falling edge; behind the last one the line stays
-//! for half a period. Bursts are parted by pauses.
+//! Extraction of frames from the levels of both lines as recorded by a logic analyser (SICK SSI description 2.2;
+//! reference section 1). The clock idles high, each rising edge outputs a bit, and the host samples at the falling
+//! edge; after the last one the line remains for half a period. Bursts are separated by pauses.
 
-/// The levels from a moment on.
+/// Line levels from a point in time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levels {
-    /// In seconds.
+    /// Time in seconds.
     pub at: f64,
-    /// CLOCK+ is high.
+    /// Whether CLOCK+ is high.
     pub clock: bool,
-    /// DATA+ is high.
+    /// Whether DATA+ is high.
     pub data: bool,
 }
 
 /// The frames of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bursts {
-    /// Bits of each, 1…64.
+    /// Number of bits per frame, 1…64.
     pub clocks: u8,
-    /// The frames in the order of reading, right-justified.
+    /// Right-justified frames in recording order.
     pub frames: Vec<u64>,
-    /// Bursts of another number of clocks: cut off at an end of the recording, or disturbed.
+    /// Number of bursts with a different number of clocks, which are truncated by an end of the recording or disturbed.
     pub left_out: usize,
 }
 
-/// Why there are no frames in a recording.
+/// The reason why a recording contains no frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoBursts {
     /// The clock never changes.
     #[error("the clock has no edges")]
     NoClock,
-    /// The clock never rests.
+    /// The clock never pauses.
     #[error("there is no pause between bursts")]
     NoPause,
-    /// No burst is whole.
+    /// No burst is complete.
     #[error("no burst is complete")]
     Incomplete,
-    /// Bursts are longer than a frame can be.
+    /// Bursts are longer than the longest possible frame.
     #[error("bursts have {clocks} clocks, and a frame has at most 64")]
     Long {
-        /// Clocks of most of them.
+        /// Number of clocks of most bursts.
         clocks: usize,
     },
 }
@@ -59,11 +59,11 @@ struct Edge {
     rises: bool,
 }
 
-/// The frames of a recording, whose times do not go back. An exchanged clock pair (CLOCK− in place of CLOCK+) is seen by its
-/// rest.
+/// Extracts the frames of a recording with non-decreasing times. A swapped clock pair (CLOCK− in place of CLOCK+) is
+/// recognised by its idle level.
 ///
 /// # Errors
-/// [`NoBursts`] with what is missing.
+/// [`NoBursts`] states what is missing.
 pub fn bursts(levels: &[Levels]) -> Result<Bursts, NoBursts> {
     let edges = edges(levels);
     let mut halves: Vec<f64> = edges.windows(2).filter_map(|two| Some(two.last()?.at - two.first()?.at)).collect();

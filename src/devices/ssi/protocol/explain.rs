@@ -1,80 +1,80 @@
-//! The meaning of every bit of a frame, and the findings about the frame as a whole.
+//! Meaning of every bit of a frame, and findings about the frame as a whole.
 
 use super::descriptor::{Meaning, Word};
 use super::layout::{Flags, FrameReading, Layout};
 use super::range::Range;
 
-/// The content of a clock of a frame.
+/// Content of a clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// Always 0.
     Zero,
-    /// This bit of the turns.
+    /// The given multiturn bit.
     Multiturn(u8),
-    /// This bit of the steps within a turn.
+    /// The given singleturn bit.
     Singleturn(u8),
-    /// This bit of the code word, if turns and steps have no separate bits.
+    /// The given bit of the code word, if multiturn and singleturn have no separate bits.
     Position(u8),
-    /// This error bit of the descriptor.
+    /// The given error bit of the descriptor.
     Error(usize),
     /// The parity bit.
     Parity,
-    /// The same as that clock.
+    /// Repetition of the given clock.
     Again(u8),
 }
 
 /// A clock of a frame with its bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
-    /// Counted from 1.
+    /// Clock number, starting at 1.
     pub clock: u8,
-    /// The content.
+    /// Content of the clock.
     pub role: Role,
-    /// The bit as it was sent.
+    /// Transmitted bit.
     pub bit: bool,
 }
 
 /// A finding about a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FrameFinding {
-    /// An active error bit.
+    /// An error bit is active.
     Error {
-        /// Its name.
+        /// Name of the bit.
         name: String,
-        /// Its meaning for the position.
+        /// Consequence for the position.
         meaning: Meaning,
-        /// Whether it is about the time since the last transfer.
+        /// Whether the bit refers to the time since the previous transfer.
         cleared_by_transfer: bool,
     },
-    /// A word with its own meaning.
+    /// The frame is a word with a special meaning.
     Pattern {
-        /// Its name.
+        /// Name of the word.
         name: String,
-        /// Its meaning for the position.
+        /// Consequence for the position.
         meaning: Meaning,
     },
-    /// Every bit is 1.
+    /// All bits are 1.
     StuckHigh {
-        /// Whether it cannot be a position.
+        /// Whether the frame cannot be a position.
         sure: bool,
     },
-    /// Every bit is 0.
+    /// All bits are 0.
     StuckLow {
-        /// Whether it cannot be a position.
+        /// Whether the frame cannot be a position.
         sure: bool,
     },
-    /// The code word is no position.
+    /// The code word does not represent a position.
     Code,
     /// A bit that should be 0 is 1.
     Padding,
     /// The parity is wrong.
     Parity,
-    /// The repetition differs.
+    /// The repetition differs from the first transmission.
     Repeat,
 }
 
 impl FrameFinding {
-    /// Returns its meaning for the position.
+    /// Returns the consequence for the position.
     pub const fn meaning(&self) -> Meaning {
         match self {
             FrameFinding::Error { meaning, .. } | FrameFinding::Pattern { meaning, .. } => *meaning,
@@ -86,7 +86,7 @@ impl FrameFinding {
 }
 
 impl Layout {
-    /// Returns the content of each clock, from the first to the last.
+    /// Returns the content of each clock, first to last.
     pub fn roles(&self) -> Vec<Role> {
         let descriptor = self.descriptor();
         let word = descriptor.word();
@@ -124,7 +124,7 @@ impl Layout {
         roles
     }
 
-    /// Returns every bit of a frame with its content.
+    /// Returns every bit of a frame with its meaning.
     pub fn cells(&self, frame: u64) -> Vec<Cell> {
         let clocks = self.clocks();
         let numbered = (1..=clocks).zip(self.roles());

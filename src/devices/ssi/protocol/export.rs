@@ -1,5 +1,5 @@
-//! A frame for other programs: a decoder in C and in structured text, a picture, a table, the settings of a control's SSI
-//! module, the format string of LinuxCNC.
+//! Export of a frame for other programs: decoders in C and structured text, a picture, a table, settings of a PLC's SSI
+//! module, and the LinuxCNC format string.
 
 mod c;
 mod halves;

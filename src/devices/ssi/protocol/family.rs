@@ -1,6 +1,5 @@
-//! Families of SSI encoders: a description that users can write (RON, `assets/devices/ssi/`), with the frames that a family
-//! can send, its times and its further signals. It is data: nothing is opened here. [`Settings`] has the result of a
-//! family's settings.
+//! Families of SSI encoders: user-extensible descriptions (RON, `assets/devices/ssi/`) with the frames that a family
+//! can send, its timing and its additional signals. Pure data; [`Settings`] resolves the settings of a family.
 
 mod sends;
 mod setting_name;

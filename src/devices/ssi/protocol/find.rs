@@ -1,7 +1,7 @@
-//! Finds the layout of recorded frames. Every way to read them as numbers is tried; a turning shaft moves evenly, and a
-//! wrong reading of a frame causes jumps. The possible layouts are ranked by the information still needed for the frames
-//! once the layout is known, and by how usual they are. Layouts that these frames cannot distinguish are one class, with
-//! the motion that would decide.
+//! Search for the layout of recorded frames. Every way to read them as numbers is tried: a turning shaft moves evenly,
+//! and misreading a frame causes jumps. Possible layouts are ranked by the information that the frames still require
+//! once the layout is known, and by how common they are. Layouts that the frames cannot distinguish form one class,
+//! together with the motion that would decide.
 
 mod any_other;
 mod code_ends;

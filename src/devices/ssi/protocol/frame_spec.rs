@@ -1,5 +1,5 @@
-//! Any frame in one word, for the command line: `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. It cannot express
-//! the parts that need more words in a profile (names, patterns).
+//! An arbitrary frame as one word for the command line: `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. Names
+//! and patterns require a profile.
 
 use super::code::Code;
 use super::descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Repeat};
@@ -39,17 +39,17 @@ const UNKNOWN: &str = "BIT";
 const LISTS: [(&str, &str, bool); 3] = [("ones", "HIGH", true), ("err", "ERROR", false), ("unknown", UNKNOWN, false)];
 
 impl Descriptor {
-    /// Parses a frame in one word; `None`: it begins with another word. Omitted values are 0, binary, and as many clocks as
-    /// the position has bits.
+    /// Parses a frame given as one word, or returns `None` if it begins with another keyword. Omitted values default to
+    /// 0, binary, and as many clocks as the position has bits.
     ///
     /// # Errors
-    /// [`SpecError`], with the allowed values.
+    /// [`SpecError`] with the valid values.
     pub fn parse(text: &str) -> Option<Result<Self, SpecError>> {
         let mut words = text.split(',').map(str::trim);
         words.next().is_some_and(|key| key.eq_ignore_ascii_case(KEY)).then(|| parse(words))
     }
 
-    /// Returns the frame in one word, without names and meanings of error bits, and without patterns.
+    /// Returns the frame as one word, without the names and meanings of error bits, and without patterns.
     pub fn spec(&self) -> String {
         let own = Self::plain(0, 0);
         let mut words = vec![format!("clocks={}", self.clocks)];

@@ -1,30 +1,30 @@
-//! A frame as users write it: bits in the order of the clocks, or a number.
+//! Frames as written by users: bits in clock order, or a number.
 
-/// The reason why a text is not a frame.
+/// The reason why a string is not a frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameTextError {
-    /// Neither bits nor a number.
+    /// The string is neither a sequence of bits nor a number.
     #[error("{0:?} is not a frame: enter bits in clock order (0b1010 or 1010), or 0x and hexadecimal digits")]
     Form(String),
-    /// Another number of bits than the layout has clocks.
+    /// The number of bits differs from the number of clocks.
     #[error("{text} {} {bits} bits; the layout has {clocks} clocks", if *.is_number { "needs" } else { "has" })]
     Bits {
-        /// The given text.
+        /// Given string.
         text: String,
-        /// Its number of bits, or the bits that its number needs.
+        /// Number of bits given, or required by the number.
         bits: u32,
-        /// Clocks of the layout.
+        /// Number of clocks in the layout.
         clocks: u8,
-        /// Whether it is a number.
+        /// Whether the string is a number.
         is_number: bool,
     },
 }
 
-/// Parses a frame of `clocks` clocks: `0b1010…` or only 0 and 1 in the order of the clocks, as many as there are clocks; or
-/// `0x…` right-justified. Blanks and underscores between bits are ignored.
+/// Parses a frame of `clocks` clocks: `0b1010…` or only 0 and 1 in clock order, one for each clock; or `0x…`
+/// right-justified. Blanks and underscores between bits are ignored.
 ///
 /// # Errors
-/// [`FrameTextError`] with the possible forms of a frame.
+/// [`FrameTextError`] with the valid formats.
 pub fn parse_frame(text: &str, clocks: u8) -> Result<u64, FrameTextError> {
     let text = text.trim();
     let form = || FrameTextError::Form(text.to_owned());
@@ -52,7 +52,7 @@ pub fn parse_frame(text: &str, clocks: u8) -> Result<u64, FrameTextError> {
     frame.ok().filter(|_| fits).ok_or_else(|| too_long(bits))
 }
 
-/// Returns the bits of a frame in the order of the clocks.
+/// Returns the bits of a frame in clock order.
 pub fn frame_bits(frame: u64, clocks: u8) -> String {
     (0..clocks.min(64)).rev().map(|behind| if frame >> behind & 1 == 1 { '1' } else { '0' }).collect()
 }

@@ -1,4 +1,5 @@
-//! A possible frame: positions to bits and back, fast. [`super::explain`] has the meaning of each bit.
+//! A possible frame with fast conversion between positions and bits. [`super::explain`] provides the meaning of each
+//! bit.
 
 mod check;
 #[cfg(test)]
@@ -32,7 +33,6 @@ pub struct Layout {
     pub(super) low: u64,
     /// The parity bit in a word and those before it; 0 without one.
     pub(super) parity: (u64, u64),
-    /// The frames of the patterns.
     pub(super) patterns: Vec<u64>,
     pub(super) invalid: Flags,
 }

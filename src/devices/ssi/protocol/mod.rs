@@ -1,7 +1,7 @@
-//! SSI: frames of any layout, the families that the manual describes, and the limits of their times.
+//! SSI: frames of any layout, the families described in the manual, and their timing limits.
 //!
-//! Source: SICK, *SSI Schnittstellenbeschreibung* ("the manual" below; the project's reference of it where a section is
-//! named so). The manual's pictures of bits are not available; layouts follow its text, which numbers the clocks from 1.
+//! Source: SICK, *SSI Schnittstellenbeschreibung* ("the manual"); "reference" refers to the project's reference. The
+//! bit diagrams of the manual are not available; layouts follow its text, which numbers the clocks from 1.
 
 #![warn(missing_docs)]
 
@@ -20,7 +20,7 @@ mod spec;
 mod tally;
 mod timing;
 
-/// The word for this kind of device: on the command line, in profiles, and in stored data.
+/// Keyword for this kind of device on the command line, in profiles and in stored data.
 pub const KIND: &str = "ssi";
 
 pub use code::{Code, CodeError, Coding, gray, ungray};

@@ -1,4 +1,4 @@
-//! The range of positions and their meaning: turns and steps, a round axis, a length (reference section 5).
+//! Range of positions and their meaning: turns and steps, a round axis, or a length (reference section 5).
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,94 +6,96 @@ use std::str::FromStr;
 use super::code::{bits_of, ones};
 use crate::expected::Expected;
 
-/// Positions from 0 to a last one.
+/// The positions from 0 to a last one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
-    /// Whole turns in some bits, steps within one in others. Without multiturn bits: a singleturn encoder.
+    /// Separate bit fields for whole turns and steps within a turn. Singleturn encoders have no multiturn bits.
     Bits {
-        /// Bits of the revolutions, 0…32.
+        /// Width of the multiturn field, 0…32 bits.
         multiturn: u8,
-        /// Bits within one, 0…32.
+        /// Width of the singleturn field, 0…32 bits.
         singleturn: u8,
     },
-    /// Any number of steps per turn, and of turns.
+    /// Arbitrary numbers of steps per turn and of turns.
     Steps {
-        /// Steps within a turn, at least 2.
+        /// Steps per turn, at least 2.
         per_turn: u32,
-        /// Turns, at least 1.
+        /// Number of turns, at least 1.
         turns: u32,
     },
-    /// Steps spread evenly over a fractional number of turns; then the position starts again (endless shaft).
+    /// Steps distributed evenly over a fractional number of turns, after which the position starts again (endless
+    /// shaft).
     RoundAxis {
-        /// Steps altogether, at least 2.
+        /// Total number of steps, at least 2.
         steps: u32,
-        /// Turns for them.
+        /// Number of turns.
         revolutions: Fraction,
     },
     /// A linear encoder.
     Length {
-        /// Bits of the position, 1…64.
+        /// Width of the position, 1…64 bits.
         bits: u8,
-        /// Length of a step.
+        /// Step length in nanometres.
         step_nanometres: u32,
     },
 }
 
-/// A number of turns, more than none.
+/// A positive fractional number of turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fraction {
-    /// Above the line, at least 1.
+    /// Numerator, at least 1.
     pub numerator: u32,
-    /// Below it, at least 1.
+    /// Denominator, at least 1.
     pub denominator: u32,
 }
 
-/// Direction of the shaft, seen on it, in which positions increase; for a length: its own direction, or against it.
+/// Direction in which positions increase, seen when looking at the shaft; for a linear encoder, its own direction or
+/// the opposite.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Direction {
-    /// Clockwise: the factory setting.
+    /// Clockwise, the factory setting.
     #[default]
     Clockwise,
     /// Counterclockwise.
     CounterClockwise,
 }
 
-/// The reason why a range is not possible.
+/// The reason why a range is impossible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RangeError {
-    /// A field is wider than it can be.
+    /// A field is too wide.
     #[error("{field} must have at most {limit} bits, not {bits}")]
     Wide {
         /// `multiturn`, `singleturn` or `position`.
         field: &'static str,
-        /// Bits asked for.
+        /// Requested width in bits.
         bits: u8,
-        /// Most bits.
+        /// Maximum width in bits.
         limit: u8,
     },
-    /// Only one position.
+    /// There is only one position.
     #[error("the range has only a single position: specify bits or steps")]
     Empty,
-    /// A fraction with a zero in it.
+    /// The numerator or denominator is zero.
     #[error("numerator and denominator of revolutions must be greater than 0: {0}/{1}")]
     Fraction(u32, u32),
 }
 
-/// The location of a position on the shaft or scale.
+/// Location of a position on the shaft or scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Location {
-    /// On a shaft.
+    /// A location on a shaft.
     Shaft {
         /// Whole turns.
         turns: u64,
         /// Steps within the turn.
         steps: u64,
-        /// Angle within the turn, 0…360.
+        /// Angle within the turn in degrees, 0…360.
         degrees: f64,
     },
-    /// On a scale.
+    /// A location on a scale.
     Length {
-        /// From the scale's zero.
+        /// Distance from the zero of the scale, in millimetres.
         millimetres: f64,
     },
 }
@@ -102,7 +104,7 @@ impl Range {
     /// Returns the last position.
     ///
     /// # Errors
-    /// [`RangeError`]: this range cannot be.
+    /// [`RangeError`] if the range is impossible.
     pub fn last(&self) -> Result<u64, RangeError> {
         match *self {
             Range::Bits { multiturn, singleturn } => {
@@ -133,7 +135,7 @@ impl Range {
         }
     }
 
-    /// Returns the location of a position. It may be beyond the last one: it is not wrapped.
+    /// Returns the location of a position, which may be beyond the last one: it is not wrapped.
     pub fn place(&self, position: u64) -> Location {
         match *self {
             Range::Bits { singleturn, .. } => {
@@ -163,8 +165,8 @@ impl Range {
         }
     }
 
-    /// Returns the position of a turn and steps within it; `None` if the range has no such turn or step, or no turns at
-    /// all.
+    /// Returns the position for a turn and steps within it, or `None` if the range has no such turn or step, or no
+    /// turns at all.
     pub fn position(&self, turns: u64, steps: u64) -> Option<u64> {
         let last = self.last().ok()?;
         let position = match *self {
@@ -185,13 +187,14 @@ impl Range {
     }
 
     /// Returns the position of a shaft that has turned by `raw` steps from its zero, with `per_turn` steps per turn, at
-    /// least 1; it starts again after its last one (reference section 5: "position = floor(…)"). A length counts the steps.
+    /// least 1; positions start again after the last one (reference section 5: "position = floor(…)"). For a length,
+    /// `raw` counts its steps.
     pub fn of_shaft(&self, raw: u64, per_turn: u64) -> u64 {
         self.counted(raw, per_turn, Direction::Clockwise)
     }
 
-    /// Returns the same for an encoder that counts in a direction and is at `preset` when the shaft is at its zero
-    /// (reference section 5: "Direction", "preset"). A preset after the last position starts again likewise.
+    /// Returns the position for a counting direction and a preset, which is the position at the zero of the shaft
+    /// (reference section 5: "Direction", "preset"). A preset beyond the last position wraps likewise.
     pub fn of_shaft_set(&self, raw: u64, per_turn: u64, direction: Direction, preset: u64) -> u64 {
         let last = self.last().unwrap_or(0);
         let position = u128::from(self.counted(raw, per_turn, direction)) + u128::from(preset);
@@ -221,7 +224,7 @@ impl Range {
         u64::try_from(around * steps / round).unwrap_or(last)
     }
 
-    /// Returns the bits of the revolutions, if they are separate bits.
+    /// Returns the width of the multiturn field, if it is separate.
     pub const fn multiturn_bits(&self) -> u8 {
         match self {
             Range::Bits { multiturn, .. } => *multiturn,
@@ -229,10 +232,10 @@ impl Range {
         }
     }
 
-    /// Returns the number of bits that the positions need in binary.
+    /// Returns the number of bits required for positions in binary.
     ///
     /// # Errors
-    /// [`RangeError`]: this range cannot be.
+    /// [`RangeError`] if the range is impossible.
     pub fn bits(&self) -> Result<u8, RangeError> {
         self.last().map(bits_of)
     }

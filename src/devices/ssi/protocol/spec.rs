@@ -1,37 +1,37 @@
-//! Layouts in one word, `KEY,name=value,…`: the common parts of a family's settings and a free frame.
+//! Layouts given as one word, `KEY,name=value,…`: the parts common to family settings and arbitrary frames.
 
 use crate::expected::Expected;
 
-/// The reason why a text is not a layout.
+/// The reason why a string is not a layout.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SpecError {
-    /// Not of the form `name=value`.
+    /// A part is not of the form `name=value`.
     #[error("\"{word}\" is not NAME=VALUE; names: {names}", names = names.join(", "))]
     Form {
-        /// The word.
+        /// The invalid part.
         word: String,
-        /// Names that there are.
+        /// Valid names.
         names: &'static [&'static str],
     },
-    /// A name that is none.
+    /// A name is unknown.
     #[error("there is no \"{name}\"; names: {names}", names = names.join(", "))]
     Name {
-        /// The name.
+        /// The unknown name.
         name: String,
-        /// Names that there are.
+        /// Valid names.
         names: &'static [&'static str],
     },
-    /// A value that is none.
+    /// A value is invalid.
     #[error("{name} must be {expected}, not \"{value}\"")]
     Value {
-        /// The name with the wrong value.
+        /// Name of the setting.
         name: String,
         /// The expected value.
         expected: Expected,
-        /// The value.
+        /// The invalid value.
         value: String,
     },
-    /// The same twice.
+    /// A setting occurs twice.
     #[error("{0} is given twice")]
     Twice(String),
 }

@@ -1,11 +1,11 @@
-//! Counts findings in frames: error bits that a transfer clears are cleared with the next frame, and would be missed by
-//! checking at intervals.
+//! Counting of findings in frames. Error bits that a transfer clears are cleared with the next frame and would be
+//! missed by checking at intervals.
 
 use super::explain::FrameFinding;
 use super::layout::{Flags, FrameReading, Layout};
 use crate::analysis::Time;
 
-/// The number of findings in frames that were noted in order.
+/// Counts of the findings in consecutive frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
     noted: Vec<Noted>,
@@ -18,20 +18,20 @@ pub struct Tally {
 pub struct Noted {
     /// The finding.
     pub finding: FrameFinding,
-    /// Its count: findings about one transfer (an error bit that it clears, parity, repetition) count with each frame,
-    /// lasting ones each time they begin.
+    /// Number of occurrences: findings about a single transfer (a clearable error bit, parity, repetition) count with
+    /// each frame, lasting ones each time they begin.
     pub count: u64,
-    /// The first frame that had it.
+    /// Time of the first frame with the finding.
     pub first: Time,
-    /// The last one.
+    /// Time of the last frame with the finding.
     pub last: Time,
-    /// The newest frame has it.
+    /// Whether the newest frame has the finding.
     pub stands: bool,
 }
 
 impl Tally {
-    /// Counts the findings of a frame; returns those that the previous frame did not have. `layout` is that of all frames
-    /// since the last [`reset`](Self::reset).
+    /// Counts the findings of a frame; returns those that the previous frame did not have. `layout` must be the layout
+    /// of all frames since the last [`reset`](Self::reset).
     pub fn note(&mut self, layout: &Layout, reading: FrameReading, at: Time) -> Vec<FrameFinding> {
         let (flags, same) = &self.before;
         if *flags == reading.flags {
@@ -66,18 +66,18 @@ impl Tally {
         begun
     }
 
-    /// Returns the findings since the last [`reset`](Self::reset), in the order of their first frames.
+    /// Returns the findings since the last [`reset`](Self::reset), ordered by their first frame.
     pub fn noted(&self) -> &[Noted] {
         &self.noted
     }
 
-    /// Renames the findings: lasting ones are counted again with the next frame.
+    /// Renames the findings; lasting ones are counted again with the next frame.
     pub fn rename(&mut self) {
         self.noted.iter_mut().for_each(|noted| noted.stands = false);
         self.before = (Flags::NONE, Vec::new());
     }
 
-    /// Starts again; lasting findings are counted again with the next frame.
+    /// Resets all counts; lasting findings are counted again with the next frame.
     pub fn reset(&mut self) {
         *self = Tally::default();
     }

@@ -1,5 +1,5 @@
-//! The limits of a transfer: duration of a burst, rate of reading, age of a position (SICK SSI description 2.2, 2.7,
-//! 2.8 and each family's section; reference sections 1 and 5).
+//! Timing limits of a transfer: burst duration, reading rate, and age of a position (SICK SSI description 2.2, 2.7, 2.8
+//! and the section of each family; reference sections 1 and 5).
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! The SSI encoder behind a virtual adapter, as in the query of a `sim:` link.
+//! The SSI encoder behind a virtual adapter, configured in the query of a `sim:` link.
 
 use super::encoder::{Encoder, Sending};
 use super::injected_fault::InjectedFault;

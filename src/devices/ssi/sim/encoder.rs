@@ -1,16 +1,13 @@
-//! A frame with the encoder's position in it.
+//! Frames of the virtual encoder with its position.
 
 use super::injected_fault::InjectedFault;
 use crate::buses::bridge::sim::SsiDevice;
 use crate::devices::ssi::protocol::{Direction, Families, Flags, Layout, Settings};
 use crate::units::Moment;
 
-/// A virtual SSI encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Encoder {
-    /// Its frame.
     pub layout: Layout,
-    /// Direction of counting.
     pub direction: Direction,
     /// Its position at the shaft's zero, within the frame's range.
     pub preset: u64,
@@ -30,7 +27,6 @@ impl Encoder {
 #[derive(Clone)]
 pub(super) struct Sending {
     pub(super) encoder: Encoder,
-    /// Faults reported in its frames.
     pub(super) troubles: Vec<InjectedFault>,
     /// The last word.
     pub(super) transferred: Option<Moment>,

@@ -1,5 +1,5 @@
 //! Injected faults in the frames of the virtual SSI encoder: active error bits, and words that report a fault instead
-//! of a position. The layout determines which exist (SICK SSI description, chapter 3).
+//! of a position. The layout determines which faults exist (SICK SSI description, chapter 3).
 
 use std::time::Duration;
 

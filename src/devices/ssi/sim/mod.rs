@@ -1,10 +1,10 @@
-//! The virtual SSI encoder: the words it sends at a position of its shaft, and its injected faults. The adapter clocks them
-//! out and turns the shaft.
+//! The virtual SSI encoder: the words that it sends at a shaft position, and its injected faults. The adapter clocks
+//! them out and turns the shaft.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
-//! | `encoder` | a frame with the encoder's position in it |
-//! | `injected_fault` | error bits, and words that stand for a fault |
+//! | `encoder` | frames with the position of the encoder |
+//! | `injected_fault` | error bits, and words that report a fault |
 //! | `at_adapter` | the settings of a `sim:` link |
 
 mod at_adapter;

@@ -1,5 +1,5 @@
-//! The user's actions on an encoder or its layout: changes take effect at once, everything else is a job of the session or
-//! a task.
+//! Actions of the user on an encoder or its layout: changes take effect at once, everything else is a job of the
+//! session or a task.
 
 use std::path::PathBuf;
 

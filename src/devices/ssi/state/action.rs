@@ -1,4 +1,4 @@
-//! The actions of the selected SSI encoder, or of its layout.
+//! Actions of the selected SSI encoder or its layout.
 
 use std::path::PathBuf;
 
@@ -10,9 +10,7 @@ use crate::app::{DeviceAction, Language};
 
 /// Something in the SSI tab.
 pub enum SsiAction {
-    /// The device check.
     Check,
-    /// Change the layout.
     Edit(Box<Edit>),
     /// Enter a value into a row of its form.
     Enter(Field, Input),
@@ -22,7 +20,6 @@ pub enum SsiAction {
     AddErrorBit,
     /// Remove the error bit of this number.
     RemoveErrorBit(usize),
-    /// Try the layout with something.
     Try(Try),
     /// Set the clocks of the words during a search; `None`: those of the layout.
     SetClocks(Option<u8>),
@@ -42,11 +39,8 @@ pub enum SsiAction {
     AskExport(Format, Language),
     /// Write the layout for other programs, in this language.
     Export(Format, Language, PathBuf),
-    /// Ask where to write the stored words.
     AskSaveFrames,
-    /// Write the words that are kept.
     SaveFrames(PathBuf),
-    /// Let the virtual encoder send this layout.
     SendLayout,
     /// Turn the virtual encoder's shaft, in revolutions per minute.
     Turn(f64),
@@ -55,7 +49,6 @@ pub enum SsiAction {
 /// A frame to try a layout with.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Try {
-    /// The frame of a position.
     Position(u64),
     /// The frame of a turn and the steps within it.
     Place(u64, u64),

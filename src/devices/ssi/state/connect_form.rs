@@ -1,4 +1,4 @@
-//! The connection form of an SSI encoder behind an adapter, and its link. Nothing is opened here.
+//! Connection form of an SSI encoder behind an adapter, and its link. Nothing is opened here.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -21,7 +21,6 @@ pub enum SsiLinkKind {
     Virtual,
     /// An adapter at a serial port or in the network.
     Adapter,
-    /// A recorded trace.
     Replay,
 }
 
@@ -32,12 +31,9 @@ pub struct SsiForm {
     pub kind: SsiLinkKind,
     /// Over a network, and not a serial port of this machine.
     pub network: bool,
-    /// Serial port of the adapter.
     pub port: String,
-    /// Its name or address.
     pub host: String,
     pub tcp_port: String,
-    /// The recording.
     pub file: String,
     /// The adapter leaves the encoder's supply on at the end.
     pub leave_supply: bool,

@@ -1,5 +1,5 @@
-//! The design of a layout: every change can be undone, and an impossible one is refused with a message and changes nothing,
-//! so that the frame is always valid.
+//! Design of a layout: every change can be undone; an impossible change is refused with a message and has no effect, so
+//! the frame is always valid.
 
 mod reshape;
 
@@ -24,7 +24,6 @@ const TO_BEGIN_WITH: &str = "ahm36";
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
     pub profile: SsiProfile,
-    /// Its frame, checked.
     pub layout: Layout,
     /// The settings with which its family sends exactly this frame; `None`: it belongs to no family, or the family cannot
     /// send it.
@@ -42,25 +41,19 @@ pub enum Edit {
     Free,
     /// The family with other settings.
     Settings(Box<Settings>),
-    /// Another frame.
     Frame(Box<Descriptor>),
     /// Set other positions or another code; the frame grows and shrinks with them.
     Position(Range, Code),
-    /// Direction of counting.
     Direction(Direction),
     /// The position at the shaft's zero.
     Preset(u64),
-    /// Set how frames are read.
     Reading(ReadingSettings),
-    /// The user's name for it.
     Name(String),
     /// Another layout as a whole.
     Whole(Box<SsiProfile>),
-    /// The layout of a format string of LinuxCNC.
     LinuxCnc(String),
 }
 
-/// The drawing board.
 #[derive(Clone, Debug)]
 pub struct Designer {
     families: Arc<Families>,
@@ -134,27 +127,22 @@ impl Designer {
         of_text(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
     }
 
-    /// Replaces the layout with a saved one.
     pub(super) fn open(&mut self, profile: SsiProfile) {
         *self = Designer::with(profile, self.families.clone());
     }
 
-    /// Returns the present design of the layout.
     pub fn design(&self) -> &Design {
         &self.now
     }
 
-    /// Its frame.
     pub fn layout(&self) -> &Layout {
         &self.now.layout
     }
 
-    /// Returns all known families.
     pub fn families(&self) -> &Families {
         &self.families
     }
 
-    /// Returns the family whose limits and times apply.
     pub fn family(&self) -> Option<&Family> {
         self.families.named(self.now.profile.family.as_deref()?)
     }
@@ -215,7 +203,6 @@ impl Designer {
         }
     }
 
-    /// Refuses an entry with a reason.
     pub(super) fn refuse(&mut self, why: Text) {
         self.problem = Some(why);
     }

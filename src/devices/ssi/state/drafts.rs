@@ -1,4 +1,5 @@
-//! Changes of a layout, kept after a crash: entry by entry, so that others' changes of the file meanwhile stay.
+//! Layout changes that survive a crash: stored entry by entry, so that changes made to the file by others are
+//! preserved.
 
 use super::design::Edit;
 use super::encoder::Encoder;

@@ -1,5 +1,5 @@
-//! An open SSI encoder, or a layout of one: the layout being designed, a trial frame, the words read, and the result of a
-//! search. The encoder has no memory; nothing is ever written to it.
+//! An open SSI encoder or a layout of one: the layout being designed, a trial frame, the words read, and the result of
+//! a search. The encoder has no memory; nothing is ever written to it.
 
 use std::sync::Arc;
 
@@ -20,25 +20,18 @@ use crate::sim::Motor;
 /// An SSI encoder, or a layout of one.
 pub struct Encoder {
     pub session: Session<Ssi>,
-    /// The layout.
     pub designer: Designer,
-    /// The trial frame.
     pub trial: Trial,
     /// Set if the trial frame follows the word read last.
     pub(super) follows: bool,
-    /// The recording of the words.
     pub record: Record,
-    /// The search for the layout.
     pub hunt: SearchState,
-    /// Searches that were begun.
     pub(super) searches: u32,
     /// The adapter and its settings for reading words, once known.
     pub identity: Option<Identity>,
     /// The last device check.
     pub check: Option<Vec<CheckLine>>,
-    /// Motor of the virtual encoder.
     pub motor: Option<Motor>,
-    /// Clocks of the words during a search.
     pub(super) clocks: Option<u8>,
     /// The settings last sent to the adapter for reading words.
     pub(super) requested: Option<Asking>,
@@ -65,7 +58,6 @@ impl Encoder {
         }
     }
 
-    /// Returns the present design of the layout.
     pub fn design(&self) -> &Design {
         self.designer.design()
     }
@@ -101,7 +93,6 @@ impl Encoder {
         self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clocks())
     }
 
-    /// Returns how the adapter is to read words.
     pub(crate) fn asking(&self) -> Asking {
         let reading = &self.design().profile.reading;
         Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
@@ -117,7 +108,6 @@ impl Encoder {
         self.design().profile.clone()
     }
 
-    /// Takes the user's own families that were read.
     pub(crate) fn take_families(&mut self, families: Arc<Families>) {
         self.designer.take_families(families);
     }
@@ -130,7 +120,6 @@ impl Encoder {
         }
     }
 
-    /// Updates everything that depends on a changed layout.
     pub(super) fn follow_layout(&mut self, before: &Layout) {
         if self.identity.is_some() {
             self.name_after_family();

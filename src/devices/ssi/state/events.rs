@@ -1,4 +1,4 @@
-//! Events of the line to an SSI encoder: identity of the adapter, words, and loss.
+//! Events from the line to an SSI encoder: identity of the adapter, words, and loss of the connection.
 
 use std::convert::Infallible;
 

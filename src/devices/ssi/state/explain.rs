@@ -1,4 +1,4 @@
-//! Texts of SSI: findings about a frame, settings that the manual does not mention, and why no words arrive.
+//! Texts for SSI: findings about a frame, settings that the manual does not mention, and reasons why no words arrive.
 
 mod check;
 mod export;
@@ -130,7 +130,6 @@ pub fn frame(layout: &Layout) -> Text {
         .fold(line, |line, more| TEXTS.text("ssi.frame_and").with_text("line", line).with_text("more", more))
 }
 
-/// Returns the unusual properties of a layout.
 fn unusual(layout: &Layout) -> Vec<Text> {
     let descriptor = layout.descriptor();
     let between = (descriptor.between > 0).then(|| TEXTS.text("ssi.frame_between").with("zeros", descriptor.between));
@@ -143,7 +142,6 @@ fn unusual(layout: &Layout) -> Vec<Text> {
     [between, over, parity, repeat, inverted].into_iter().flatten().collect()
 }
 
-/// Returns the name of a code.
 pub fn code(code: Code) -> Text {
     TEXTS.text(match code {
         Code::Binary => "ssi_form.binary",

@@ -1,4 +1,4 @@
-//! A layout for other programs, as text.
+//! Export of a layout for other programs.
 
 use super::design::Designer;
 use crate::app::{Language, Text};
@@ -17,16 +17,12 @@ pub enum Format {
     StructuredText,
     /// The same for controllers of 32 bits.
     StructuredText32,
-    /// A source file for TIA Portal.
     Scl,
     LinuxCnc,
-    /// Settings for common SSI modules of controls.
     Sheet,
     /// A row for each clock.
     Table,
-    /// A picture of the frame.
     Frame,
-    /// A picture of a burst in time.
     Timing,
 }
 
@@ -43,7 +39,6 @@ impl Format {
         Format::Timing,
     ];
 
-    /// Returns the id of its text.
     pub const fn word(self) -> &'static str {
         match self {
             Format::C => "ssi_export.c",
@@ -58,7 +53,6 @@ impl Format {
         }
     }
 
-    /// Returns the id of its explanation.
     pub const fn hint(self) -> &'static str {
         match self {
             Format::C => "ssi_export.c_hint",
@@ -73,7 +67,6 @@ impl Format {
         }
     }
 
-    /// Returns the extensions of such files.
     pub const fn endings(self) -> &'static [&'static str] {
         match self {
             Format::C => &["c"],

@@ -1,4 +1,4 @@
-//! The families of SSI encoders that all sessions know.
+//! The families of SSI encoders known to all sessions.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! The form of a layout as plain data, row by row, and the effect of an entry. A family with its settings has the rows that
-//! its encoders can be set to; any other frame has all.
+//! The form of a layout as plain data, row by row, and the effect of each entry. A family has a row for each of its
+//! settings; any other frame has all rows.
 
 mod family;
 mod free;
@@ -13,11 +13,9 @@ use crate::devices::ssi::state::explain as words;
 /// A row of the form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// The subject of the row.
     pub field: Field,
     pub name: Text,
     pub entry: Entry,
-    /// Id of its explanation.
     pub hint: Option<&'static str>,
 }
 
@@ -25,31 +23,27 @@ pub struct Row {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Entry {
     /// A whole number.
-    Number { value: u64, unit: Option<Text> },
+    Number {
+        value: u64,
+        unit: Option<Text>,
+    },
     /// A frequency in hertz, shown in the unit that suits it.
     Frequency(u32),
-    /// One of several.
     Choice {
         options: Vec<Text>,
         /// Index of the choice.
         chosen: usize,
     },
-    /// On or off.
     Switch(bool),
-    /// A name.
     Words(String),
 }
 
-/// Input into a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Input {
     /// A whole number.
     Number(u64),
-    /// The option of this number.
     Choice(usize),
-    /// On or off.
     Switch(bool),
-    /// A name.
     Words(String),
 }
 
@@ -66,9 +60,7 @@ pub enum Field {
     Steps,
     /// Turns with this number of steps each.
     Turns,
-    /// Turns of a round axis, above the line.
     RevolutionsAbove,
-    /// Turns of a round axis, below the line.
     RevolutionsBelow,
     /// Bits of a length.
     Bits,
@@ -77,31 +69,24 @@ pub enum Field {
     Code,
     /// The bits that a Gray code covers.
     Over,
-    /// The alignment of the position.
     Align,
-    /// One clock later.
     Shift,
     /// The place of the error bits.
     Errors,
-    /// Clocks of a burst.
     Clocks,
     /// Zeros before the position.
     Lead,
     /// Zeros between turns and steps.
     Between,
-    /// Clocks of the position and its zeros.
     Area,
-    /// The data wires are exchanged.
     Inverted,
     /// A parity bit, even or odd.
     Parity,
     /// The clock of the parity bit.
     ParityClock,
-    /// The frame is sent twice.
     Repeat,
     /// Zeros between both.
     Gap,
-    /// The direction of counting.
     Direction,
     /// The position at the shaft's zero.
     Preset,
@@ -113,7 +98,6 @@ pub enum Field {
     ErrorMeaning(usize),
     /// It is active when it is 0.
     ErrorLow(usize),
-    /// A transfer clears it.
     ErrorCleared(usize),
     /// Clock in hertz.
     ClockRate,
@@ -125,7 +109,6 @@ pub enum Field {
     Synchronous,
 }
 
-/// Rows that belong together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
     /// Their heading, as a row of the texts.
@@ -176,7 +159,6 @@ impl Row {
 }
 
 impl Designer {
-    /// Returns the form of the present layout.
     pub fn form(&self) -> Vec<Group> {
         let mut groups = match (self.family(), &self.design().settings) {
             (Some(family), Some(settings)) => family::groups(self, family, settings),
@@ -249,7 +231,6 @@ impl Designer {
     }
 }
 
-/// Returns the direction and preset.
 fn counting(designer: &Designer) -> Group {
     let profile = &designer.design().profile;
     let is_length = matches!(profile.descriptor.range, Range::Length { .. });
@@ -293,7 +274,6 @@ fn over_row(own: Coded) -> Row {
         .hinted("ssi_form.over_hint")
 }
 
-/// The kind of positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RangeKind {
     Bits,

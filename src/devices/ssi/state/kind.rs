@@ -1,4 +1,4 @@
-//! The kind SSI for the studio, before there is a device.
+//! SSI as a kind of device for the studio, before a device is open.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,5 @@
-//! The SSI tab: layouts being designed, encoders behind an adapter, and the search for a layout. Complete without a window;
-//! nothing is ever written to an encoder.
+//! State of the SSI tab: layouts being designed, encoders behind an adapter, and the search for a layout. Complete
+//! without a window; nothing is ever written to an encoder.
 
 mod act;
 mod action;
@@ -41,12 +41,7 @@ use std::path::PathBuf;
 
 use crate::store::FileError;
 
-/// The results of tasks.
 pub enum Done {
-    /// The search is over.
-    Found {
-        number: u32,
-        hunt: Box<SearchState>,
-    },
+    Found { number: u32, hunt: Box<SearchState> },
     Written(PathBuf, Result<(), FileError>),
 }

@@ -1,4 +1,4 @@
-//! An SSI encoder among the devices of the studio.
+//! Implementation of the studio's device traits for SSI encoders.
 
 use std::path::PathBuf;
 

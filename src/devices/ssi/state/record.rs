@@ -1,5 +1,5 @@
-//! The recording of an SSI encoder: its words as received, decoded by the layout into lines over time, and the findings of
-//! its error bits. Another layout decodes the same words again.
+//! Recording of an SSI encoder: received words, decoded by the layout into lines over time, and the findings of its
+//! error bits. A change of the layout decodes the same words again.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -35,10 +35,8 @@ pub struct Record {
     lost: u64,
 }
 
-/// Word with its meaning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadWord {
-    /// Time of reading.
     pub at: Moment,
     /// Its number of bits.
     pub clocks: u8,
@@ -48,7 +46,6 @@ pub struct ReadWord {
     pub word: u64,
 }
 
-/// The latest stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Streamed {
     next: u64,
@@ -84,7 +81,6 @@ impl Record {
         }
     }
 
-    /// Begins a session.
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.track.begin(began);
         self.kept.clear();
@@ -224,7 +220,6 @@ impl Record {
         self.stream.as_ref()
     }
 
-    /// Returns the number of recorded words.
     pub fn positions(&self) -> u64 {
         self.track.positions()
     }

@@ -1,4 +1,4 @@
-//! The search for the layout of frames: those read last, or those in a file.
+//! Search for the layout of frames: the frames read last, or those in a file.
 
 mod capture;
 #[cfg(test)]
@@ -19,9 +19,7 @@ pub(super) const MOST: usize = 8_000;
 /// The origin of the frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// Read from the encoder.
     Live,
-    /// From a file of this name.
     File(String),
 }
 
@@ -43,7 +41,6 @@ pub struct Frames {
 pub enum SearchState {
     #[default]
     Nothing,
-    /// Running, with its number.
     Running(u32),
     Found {
         origin: Origin,

@@ -1,5 +1,5 @@
-//! A frame as a row of cells, one per clock, with its movable parts: the boundaries between its fields, and single bits. It
-//! computes the frame after a move; it changes none.
+//! A frame as a row of cells, one per clock, with its movable parts: the boundaries between its fields, and single
+//! bits. Computes the frame that results from a move without applying it.
 
 mod moving;
 #[cfg(test)]
@@ -20,21 +20,17 @@ pub struct Strip {
     handles: Vec<Handle>,
 }
 
-/// A clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
     /// Counted from 1.
     pub clock: u8,
-    /// Its content.
     pub role: Role,
     /// Index of its field in the strip.
     pub field: usize,
 }
 
-/// Clocks that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Their content.
     pub kind: Kind,
     /// The first of them.
     pub first: u8,
@@ -51,7 +47,6 @@ pub enum Kind {
     Between,
     /// Zeros after the position.
     Behind,
-    /// Zeros between the frame and its repetition.
     Gap,
     /// Zeros after the repetition.
     After,
@@ -86,7 +81,6 @@ pub enum Handle {
     AreaEnd,
     /// The end of the first of two equal words.
     WordEnd,
-    /// The start of the repetition.
     GapEnd,
     FrameEnd,
     /// The whole position, by its first clock.
@@ -106,7 +100,6 @@ pub struct CellState {
 }
 
 impl Strip {
-    /// Creates a frame in cells.
     pub fn of(layout: &Layout) -> Self {
         let descriptor = layout.descriptor();
         let roles = layout.roles();
@@ -151,7 +144,6 @@ impl Strip {
         Strip { layout: layout.clone(), cells, fields, handles }
     }
 
-    /// Returns the frame.
     pub const fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -226,7 +218,6 @@ impl Strip {
 }
 
 impl Field {
-    /// Returns its number of clocks.
     pub const fn count(&self) -> u8 {
         self.last.saturating_sub(self.first) + 1
     }

@@ -1,4 +1,4 @@
-//! The texts of SSI.
+//! Text catalogue of SSI.
 
 use crate::app::Catalogue;
 

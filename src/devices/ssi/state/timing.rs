@@ -1,4 +1,4 @@
-//! A burst in time, to scale: the lines, the times, and the breaks of the time axis where nothing happens. Seconds count
+//! Timing of a burst to scale: the lines, the times, and breaks of the time axis where nothing happens. Seconds count
 //! from the first falling edge (SICK SSI description 2.2; reference sections 1 and 5).
 
 #[cfg(test)]
@@ -31,7 +31,6 @@ pub struct Piece {
 /// Time with its beginning and end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// The activity that lasts.
     pub activity: Lasting,
     /// Start in seconds.
     pub from: f64,
@@ -44,21 +43,16 @@ pub struct Span {
 /// An activity that takes time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lasting {
-    /// A clock.
     Period,
-    /// All clocks.
     Burst,
-    /// From a burst to the next.
     Pause,
     /// The data line stays low.
     Monoflop,
     /// The pause must be longer.
     LeastPause,
-    /// A position is made.
     Making,
 }
 
-/// A moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimingMark {
     pub event: TimingEvent,
@@ -69,15 +63,11 @@ pub struct TimingMark {
 /// An event at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TimingEvent {
-    /// The position that is sent is kept.
     Latched,
     /// A position is taken, which the next burst sends.
     Taken,
-    /// A position begins to be made.
     Started,
-    /// The position can be read.
     Ready,
-    /// The next burst begins.
     Next,
 }
 
@@ -136,7 +126,6 @@ impl Diagram {
         Diagram { strip: Strip::of(layout), timing, pieces, spans, marks }
     }
 
-    /// Returns the frame in cells and fields.
     pub const fn strip(&self) -> &Strip {
         &self.strip
     }
@@ -152,7 +141,6 @@ impl Diagram {
         ends.map_or(0.0, |(own, next)| next.from - own.to)
     }
 
-    /// Times with their ends.
     pub fn spans(&self) -> &[Span] {
         &self.spans
     }

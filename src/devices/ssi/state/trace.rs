@@ -1,11 +1,10 @@
-//! The meaning of the frames in the trace.
+//! Meaning of frames in the trace.
 
 use crate::app::{Explained, Text};
 use crate::buses::bridge::protocol::Request;
 use crate::buses::bridge::state::traced;
 use crate::link::{Direction, TraceEntry};
 
-/// Returns the meaning of a frame.
 pub(super) fn meaning(entry: &TraceEntry) -> Explained {
     let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
     if entry.direction == Direction::Received

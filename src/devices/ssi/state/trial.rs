@@ -1,4 +1,4 @@
-//! A frame for trying a layout: a position and its bits, converted in both directions.
+//! Trial of a layout: a position and its bits, converted in both directions.
 
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Cell, Flags, FrameFinding, FrameReading, Layout, Location, parse_frame};
@@ -12,12 +12,10 @@ pub struct Trial {
     problem: Option<Text>,
 }
 
-/// Frame with its meaning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decoded {
     /// The frame, right-justified.
     pub frame: u64,
-    /// Its position and flags.
     pub reading: FrameReading,
     /// The position, if the bits are one, and its location on the shaft or scale.
     pub place: Option<(u64, Location)>,
@@ -51,7 +49,6 @@ impl Trial {
         self.problem.as_ref()
     }
 
-    /// Returns the decoded frame.
     pub fn decoded(&self, layout: &Layout) -> Decoded {
         Decoded::of(layout, self.frame)
     }
@@ -76,7 +73,6 @@ impl Trial {
         }
     }
 
-    /// Sets a frame from its text.
     pub(super) fn set_text(&mut self, layout: &Layout, text: &str) {
         match parse_frame(text, layout.clocks()) {
             Ok(frame) => self.set(frame),
@@ -91,7 +87,6 @@ impl Trial {
         }
     }
 
-    /// Sets a frame that was read.
     pub(super) fn set(&mut self, frame: u64) {
         *self = Trial { frame, problem: None };
     }

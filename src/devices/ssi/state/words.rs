@@ -1,10 +1,9 @@
-//! Texts of the jobs on the line.
+//! Job names for display.
 
 use crate::app::Text;
 use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::state::TEXTS;
 
-/// Returns the name of a job.
 pub(super) fn job(job: &SsiJob) -> Text {
     match job {
         SsiJob::Hello => TEXTS.text("ssi_job.hello"),

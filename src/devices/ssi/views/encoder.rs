@@ -1,4 +1,4 @@
-//! The encoder behind its adapter, its reported error bits, and its wiring.
+//! The encoder page: the encoder behind its adapter, its reported error bits, and its wiring.
 
 use egui::{RichText, Ui};
 

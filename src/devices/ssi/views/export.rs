@@ -1,4 +1,4 @@
-//! The layout for other programs: text as text, pictures as pictures, to copy and save.
+//! The export page: the layout for other programs, with pictures displayed as pictures, for copying and saving.
 
 use egui::{ScrollArea, Ui};
 
@@ -9,7 +9,6 @@ use crate::devices::ssi::views::say;
 use crate::ui::controls::{button, card, card_with, enabled_button, name, paragraph, problem};
 use crate::ui::{Theme, icons};
 
-/// The selected format.
 #[derive(Default)]
 pub(super) struct ExportUiState {
     format: Option<Format>,

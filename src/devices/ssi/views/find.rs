@@ -1,5 +1,5 @@
-//! The search for the layout of frames: those read last, or those in a file. Results are ranked with their reasons; layouts
-//! that these frames cannot distinguish are one class, with what would distinguish them.
+//! The search page: the layout of frames read last, or of those in a file. Results are ranked and explained; layouts
+//! that the frames cannot distinguish form one class, together with what would distinguish them.
 
 use egui::{RichText, Ui};
 
@@ -63,7 +63,6 @@ pub(super) fn page_ui(
     }
 }
 
-/// Draws the choice of the frames to search.
 fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let mut ask = |action| actions.push(Action::device(id, action));
@@ -190,7 +189,6 @@ fn class_ui(
     });
 }
 
-/// Draws the family and its settings.
 fn title(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &Proposal) {
     let Some((key, settings)) = &proposal.family else {
         ui.label(say(theme, "ssi_find.any"));

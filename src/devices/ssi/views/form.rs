@@ -1,4 +1,4 @@
-//! The rows of a form: a number, a choice, a switch, a name. The state defines their meaning.
+//! Rows of a form: a number, a choice, a switch or a name. The state defines their meaning.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The design of a frame: its family, the strip of its bits, all settings, and a trial frame.
+//! The frame page: family, bit strip, all settings, and a trial frame.
 
 use egui::{RichText, Ui};
 
@@ -21,7 +21,6 @@ use crate::ui::{Theme, icons};
 /// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct FrameUiState {
-    /// The selected cell, by its clock.
     selected: Option<u8>,
     format: String,
     named: Option<(String, Option<Text>)>,

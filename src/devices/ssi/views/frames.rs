@@ -1,4 +1,4 @@
-//! The frames of a search in the order of reading, decoded by the layout as it is designed.
+//! The frames of a search in recording order, decoded by the current layout.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -53,7 +53,6 @@ pub(super) fn card_ui(
     });
 }
 
-/// A frame in a row, and its colour.
 fn told(theme: &Theme, number: usize, decoded: &Decoded, digits: usize) -> (String, Rgb) {
     let frame = format!("0x{:0digits$X}", decoded.frame);
     let (position, turns, steps) = match decoded.place {

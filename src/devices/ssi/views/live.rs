@@ -1,4 +1,4 @@
-//! The position of an SSI encoder, large.
+//! The large display of an SSI position.
 
 use egui::{RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! The SSI tab: its pages, one per task.
+//! The SSI tab: one page per task.
 
 mod connect_form;
 mod encoder;
@@ -28,7 +28,6 @@ pub(crate) enum Page {
     /// The frame on the drawing board, and a frame to try it with.
     #[default]
     Frame,
-    /// The times of a transfer.
     Timing,
     /// The search for the layout of frames that were read.
     Find,

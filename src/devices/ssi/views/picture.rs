@@ -1,4 +1,4 @@
-//! A picture of an export, drawn from the shapes that its file is made of.
+//! A picture of an export, drawn from the same shapes as its file.
 
 use egui::accesskit::Role;
 use egui::{
@@ -32,7 +32,6 @@ pub(super) fn picture_ui(ui: &mut Ui, theme: &Theme, picture: &Picture) {
     });
 }
 
-/// What stands in a picture.
 fn texts(picture: &Picture) -> String {
     let texts = picture.shapes.iter().filter_map(|shape| match shape {
         PictureShape::Text(label) if !label.text.is_empty() => Some(label.text.as_str()),

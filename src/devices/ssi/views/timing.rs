@@ -1,4 +1,4 @@
-//! The timing page: a burst to scale, the rate of reading, the age of a position, and violated limits.
+//! The timing page: a burst to scale, reading rate, age of a position, and violated limits.
 
 use egui::{RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! A trial frame: enter a position and see its bits, paste bits and see the position; or the word read last.
+//! A trial frame: enter a position to see its bits, or paste bits to see the position; or use the word read last.
 
 use egui::{RichText, Ui};
 
@@ -146,7 +146,6 @@ fn bits(
     }
 }
 
-/// Draws the findings of the frame.
 fn findings(ui: &mut Ui, theme: &Theme, shown: &Decoded) {
     if shown.findings.is_empty() {
         return;

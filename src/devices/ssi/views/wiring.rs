@@ -1,4 +1,4 @@
-//! The wiring card: the wires of SSI, its supply and cable, and the other outputs of the family's encoders.
+//! The wiring card: SSI wires, supply, cable, and the other outputs of the encoder family.
 
 use egui::Ui;
 

@@ -74,7 +74,6 @@ pub(crate) fn recording(ui: &mut Ui, theme: &Theme, file: &mut String, actions: 
     });
 }
 
-/// Draws the parity beside the speed.
 pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
     let parities = [Parity::Even, Parity::Odd, Parity::None];
     let parities = parities.map(|parity| (parity, theme.words(&explain::parity(parity))));
@@ -123,7 +122,6 @@ pub(crate) fn typed_in_a_row(
     }
 }
 
-/// The entry of a parameter, with its unit.
 pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: &mut Typed) {
     let mut text = typed.get(own.key).to_owned();
     // A number needs less room than a list of faults.

@@ -32,7 +32,6 @@ pub trait ConnectForm {
     fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>);
 }
 
-/// Begins the form of a kind of device.
 pub(in crate::ui) fn begun<F: TypedConnectForm>() -> Box<dyn ConnectForm> {
     Box::new(FormAdapter::<F>(F::Memory::default()))
 }

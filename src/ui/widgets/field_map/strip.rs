@@ -12,7 +12,6 @@ pub(super) struct Strip {
     /// The size of the map.
     pub(super) size: Vec2,
     pub(super) block: Vec2,
-    /// Above and below: space for the focus ring.
     margin: f32,
     gap: f32,
     columns: usize,

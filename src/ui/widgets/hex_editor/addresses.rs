@@ -1,6 +1,5 @@
 //! The addresses of the bytes in a hex editor, as text.
 
-/// How addresses are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HexAddresses {
     /// Counted from the first byte: `0x1F`.
@@ -29,7 +28,6 @@ impl HexAddresses {
         self.text(at, len).replace("0x", "")
     }
 
-    /// Returns the characters of the longest heading.
     pub(super) fn width(self, len: usize) -> usize {
         self.heading(len.saturating_sub(1), len).len()
     }

@@ -1,4 +1,4 @@
-//! The keyboard of a hex editor. Handled keys are consumed, so that nothing else acts on them.
+//! Keyboard input of a hex editor. Handled keys are consumed, so nothing else acts on them.
 
 use egui::{Event, FocusDirection, Key, Modifiers, Ui};
 
@@ -74,7 +74,6 @@ fn tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut Reaction) -> boo
     true
 }
 
-/// Keys that move the cursor.
 fn walk(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView) -> bool {
     if modifiers.alt {
         return false;
@@ -101,7 +100,6 @@ fn walk(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView
     true
 }
 
-/// Keys that do something.
 fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) -> bool {
     let history = |view: &mut HexView, reaction: &mut Reaction, edit: HexEdit| {
         change(model, view, reaction, |view, reaction| {
@@ -154,7 +152,6 @@ fn copy(bytes: &[u8], column: Column) -> String {
     }
 }
 
-/// Characters typed.
 fn write(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) {
     if view.column == Column::Text {
         match ascii_bytes(text) {

@@ -1,4 +1,4 @@
-//! The painting of a hex editor.
+//! Painting of a hex editor.
 
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Stroke, StrokeKind, Ui, Vec2};
 
@@ -8,7 +8,6 @@ use super::{HexMark, HexModel};
 use crate::bits;
 use crate::ui::Theme;
 
-/// Draws the line above: places in a line.
 pub(super) fn header(ui: &Ui, theme: &Theme, grid: &Grid, rect: Rect, model: &HexModel<'_>, view: &HexView) {
     let font = FontId::monospace(theme.sizes.caption);
     let painter = ui.painter();
@@ -38,7 +37,6 @@ struct Brush<'a> {
     hovered: Option<usize>,
 }
 
-/// Draws the visible lines.
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
 pub(super) fn lines(
     ui: &Ui,

@@ -1,4 +1,4 @@
-//! The tooltip of a byte in a hex editor.
+//! Tooltip of a byte in a hex editor.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! The cursor and the selection of a hex editor. It knows the number of bytes, not their values.
+//! Cursor and selection of a hex editor, independent of the byte values.
 
 use std::ops::Range;
 
@@ -15,9 +15,7 @@ pub struct HexView {
     pub(super) pending: Option<u8>,
     pub(super) column: Column,
     pub(super) problem: Option<Text>,
-    /// The cursor moved and has to be seen.
     pub(super) reveal: bool,
-    /// Lines of a page.
     pub(super) page: usize,
     /// The bytes as they were before a step was undone or done again.
     before: Option<Vec<u8>>,
@@ -32,7 +30,6 @@ pub(super) enum Column {
 }
 
 impl HexView {
-    /// Address of the cursor.
     pub fn cursor(&self) -> usize {
         self.cursor
     }

@@ -1,4 +1,5 @@
-//! The columns of a table: the least important ones are hidden if they do not fit, and two share the rest of the width.
+//! Columns of a register table: the least important ones are hidden if they do not fit, and two share the remaining
+//! width.
 
 use egui::Rangef;
 
@@ -82,7 +83,6 @@ impl Columns {
         Columns(shown.into_iter().map(place).collect())
     }
 
-    /// Returns whether columns are hidden.
     pub(super) fn hides(&self, kind: RegisterKind) -> bool {
         self.0.len() < all(kind).len()
     }

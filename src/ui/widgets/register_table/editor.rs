@@ -1,5 +1,5 @@
-//! The editor of a register value: it takes effect with Enter or when it loses focus, unless it is refused; it then
-//! stays open with the reason.
+//! Editor of a register value. The entry takes effect with Enter or when the editor loses focus, unless it is refused;
+//! the editor then remains open with the reason.
 
 use egui::{FontId, Id, Key, Margin, Rect, TextEdit, Ui, Vec2, WidgetInfo};
 
@@ -7,7 +7,6 @@ use super::{RegisterLocation, RegisterTable, RegisterView, keys};
 use crate::app::Text;
 use crate::ui::Theme;
 
-/// Draws the entry in its cell.
 pub(super) fn editor_ui(
     ui: &mut Ui,
     theme: &Theme,

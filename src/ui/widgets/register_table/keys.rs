@@ -1,4 +1,4 @@
-//! The keyboard of a register table. Handled keys are consumed, so that nothing else acts on them.
+//! Keyboard input of a register table. Handled keys are consumed, so nothing else acts on them.
 
 use egui::{Event, EventFilter, FocusDirection, Id, Key, Modifiers, Ui};
 
@@ -76,7 +76,6 @@ fn is_typed(event: &Event) -> bool {
     }
 }
 
-/// Handles the keys of this frame.
 pub(super) fn listen(
     ui: &Ui,
     table: &RegisterTable<'_>,
@@ -114,7 +113,6 @@ pub(super) fn listen(
     event
 }
 
-/// Keys that go from line to line.
 fn walk(key: Key, modifiers: Modifiers, lines: &Lines, view: &mut RegisterView) -> bool {
     if modifiers.alt || modifiers.shift {
         return false;

@@ -1,4 +1,4 @@
-//! The lines of the table: headings of groups, registers, and the bit fields of unfolded ones. Lines are not stored;
+//! Lines of a register table: group headings, registers, and the bit fields of unfolded ones. Lines are not stored;
 //! thousands of registers cost no more than their groups.
 
 use super::view::Selected;
@@ -18,11 +18,9 @@ pub(super) struct Lines {
     total: usize,
 }
 
-/// A group.
 #[derive(Clone, Debug)]
 struct Section {
     start: usize,
-    /// Registers that are shown.
     rows: usize,
     /// The unfolded ones, with their numbers of bit fields.
     open: Vec<(usize, usize)>,

@@ -1,4 +1,4 @@
-//! The painting of a register table.
+//! Painting of a register table.
 
 use egui::{
     Align2, Color32, FontId, Pos2, Rangef, Rect, Response, Sense, Stroke, TextStyle, TextWrapMode, Ui, Vec2, pos2,
@@ -55,7 +55,6 @@ const fn title(kind: RegisterKind, column: Column) -> &'static str {
     }
 }
 
-/// Draws the names of the columns.
 pub(super) fn header(ui: &mut Ui, theme: &Theme, kind: RegisterKind, columns: &Columns) {
     let (rect, _) = ui.allocate_exact_size(Vec2::new(columns.width(), HEADER), Sense::hover());
     let middle = rect.top() + HEADER / 2.0 - 2.0;

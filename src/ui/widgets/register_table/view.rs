@@ -1,4 +1,4 @@
-//! The state of a register table: selection, folding, and the value being edited.
+//! State of a register table: selection, folding, and the value being edited.
 
 use std::collections::BTreeSet;
 
@@ -17,13 +17,11 @@ pub struct RegisterView {
     /// Registers with visible bit fields.
     pub(super) open: BTreeSet<RegisterLocation>,
     pub(super) edit: Option<Edit>,
-    /// The register that was pressed to be edited.
     pub(super) wanted: Option<RegisterLocation>,
     /// Why the value cannot be edited.
     pub(super) refused: Option<String>,
     /// The selection has moved and has to be scrolled into view.
     pub(super) reveal: bool,
-    /// Lines of a page.
     pub(super) page: usize,
     /// What was typed in the last frame behind a key with which the keyboard goes to the editor or back from it: only the
     /// next frame has whom it is for.
@@ -37,12 +35,10 @@ pub(super) enum Selected {
     Row(RegisterLocation),
 }
 
-/// The value being edited.
 #[derive(Clone, Debug)]
 pub(super) struct Edit {
     pub(super) place: RegisterLocation,
     pub(super) text: String,
-    /// Why it was refused.
     pub(super) problem: Option<Text>,
     /// It must get the keyboard focus now.
     pub(super) begins: bool,
@@ -88,7 +84,6 @@ impl RegisterView {
         self.go(Selected::Row(place));
     }
 
-    /// Shows or hides the registers of a group.
     pub fn fold(&mut self, group: usize, folded: bool) {
         if folded {
             self.folded.insert(group);

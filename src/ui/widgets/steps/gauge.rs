@@ -1,4 +1,4 @@
-//! A value on a scale with the band that is allowed.
+//! A gauge: a value on a scale with the allowed band.
 
 use egui::accesskit::Role;
 use egui::{Color32, FontId, Rect, RichText, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2};

@@ -1,4 +1,4 @@
-//! Arbitrary input: packets of any content are preserved, and no bytes make a parser panic.
+//! Property tests with arbitrary input: packets of any content survive a round trip, and no input makes a parser panic.
 
 use proptest::prelude::*;
 
@@ -27,7 +27,6 @@ fn good() -> Vec<Vec<u8>> {
     vec![frame.emit(), frame.data.clone(), open().request().emit(), open().request().data, packet.emit()]
 }
 
-/// Cut at every length, a packet is refused.
 #[test]
 fn truncated_packets_are_refused() {
     let [frame, _, _, forward, packet] = good().try_into().unwrap();

@@ -1,4 +1,4 @@
-//! Packets of the bridge protocol, each ended by 00.
+//! Packets of the bridge protocol, each terminated by 00.
 
 use serde_json::Map;
 

@@ -1,5 +1,5 @@
-//! A position frame of the kit encoder: 16 bits of turns, 17 of steps, error, warning, CRC-6. A position word consists of
-//! turns and steps only.
+//! Position frames of the kit encoder: 16 multiturn bits, 17 singleturn bits, error, warning, CRC-6. A position word
+//! consists of the multiturn and singleturn bits only.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -29,7 +29,6 @@ pub(super) fn explain(raw: u64, shown: String) -> Explained {
     Explained { compact: shown.clone(), shown, meaning, more }
 }
 
-/// Decodes a position word.
 pub(super) fn explain_word(raw: u64, shown: String) -> Explained {
     let layout = Layout::default();
     let mut more = form("position word");

@@ -1,4 +1,4 @@
-//! Consecutive UBICOM frames. Register numbers are taken low byte first.
+//! Sequences of UBICOM frames. Register numbers are interpreted low byte first.
 
 use super::form;
 use crate::bits::{ByteOrder, hex, hex_compact};

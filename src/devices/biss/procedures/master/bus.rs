@@ -1,5 +1,5 @@
-//! One exchange over an adapter on the bus: a frame, or a register by bank and address. The selected bank is remembered as
-//! long as the encoder cannot have restarted unnoticed, and forgotten after every failure.
+//! Single exchanges over an adapter on the bus: a frame, or a register by bank and address. The selected bank is cached
+//! as long as the encoder cannot have restarted unnoticed, and discarded after every failure.
 
 use std::time::Duration;
 
@@ -110,7 +110,6 @@ impl<'a> Master<'a> {
         Ok(Ok(value))
     }
 
-    /// The bank has to be selected.
     pub(super) fn bus_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
         Ok(match self.register_write(address, value)? {
             Ok(reads) if reads == value => Ok(WriteReaction::Yes),
@@ -191,7 +190,6 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads a frame unchecked, with its time.
     pub(super) fn frame_once(&mut self) -> Attempt<(u64, Moment)> {
         let answered = self.adapter().ask(&Request::BissRead);
         let answered = answered.inspect_err(|failure| self.may_be_reset(failure))?;

@@ -1,4 +1,5 @@
-//! Frames without requests. While a stream runs, the adapter cannot do anything else, so any other request ends it first.
+//! Streaming of frames. The adapter cannot do anything else during a stream, so any other request ends the stream
+//! first.
 
 use std::sync::Arc;
 use std::time::Duration;

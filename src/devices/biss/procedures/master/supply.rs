@@ -1,4 +1,4 @@
-//! The encoder's supply over an adapter: switched on if requested, and restored at the end of the session.
+//! Encoder supply over an adapter: switched on if requested, and restored at the end of the session.
 
 use std::time::Duration;
 

@@ -1,6 +1,6 @@
-//! One exchange over the configuration pin (reference UBICOM 1 and 2): the request, and the bytes received until the reply
-//! is complete or its time is up. Bytes that are not a frame are skipped, and a frame that pauses for 20 ms is over. The
-//! echo is recognised by its length, which no reply has.
+//! Single exchanges over the configuration pin (reference UBICOM 1 and 2): a request, and the bytes received until the
+//! reply is complete or has timed out. Bytes that are not part of a frame are skipped, and a frame that pauses for 20
+//! ms is abandoned. The echo is recognised by its length, which no reply has.
 
 use std::time::Duration;
 
@@ -179,7 +179,6 @@ impl Master<'_> {
         }
     }
 
-    /// The time is up.
     fn give_up(&mut self, received: ReceivedBytes) -> ExchangeError {
         let broken = received.raw.strip_prefix(&*received.sent).unwrap_or(&received.raw);
         let echo = if received.echo_heard { received.sent.len() } else { 0 };

@@ -1,4 +1,4 @@
-//! The calibration of the singleturn (manual 6.4): counterclockwise, then clockwise, about five seconds each, during which
+//! Calibration of the singleturn (manual 6.4): counterclockwise, then clockwise, about five seconds each, during which
 //! the encoder may not reply.
 
 use std::time::Duration;

@@ -1,5 +1,5 @@
-//! Writing motor and OEM data (manual 6.5). The manual never selects the bank that is written; here the target bank is
-//! selected after the area was opened, and bank 0 before its status is looked at, which [`Master`] does by itself.
+//! Writing motor and OEM data (manual 6.5). The manual never mentions selecting the bank to write. This implementation
+//! selects the target bank after opening the area, and bank 0 before reading the status, as [`Master`] always does.
 //!
 //! [`Master`]: crate::devices::biss::procedures::Master
 

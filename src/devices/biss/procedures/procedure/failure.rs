@@ -1,54 +1,37 @@
-//! Why a procedure failed.
+//! Reasons why a procedure fails.
 
 use super::{Blocker, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{CalibrationStatus, DeviceMode, ProcedureKind, WiegandStatus};
 use crate::profile::OperationError;
 
-/// Why a procedure failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// An error of the exchange, the encoder's refusal, or cancellation.
     #[error(transparent)]
     Device(#[from] Error),
-    /// Failure reported by the calibration.
     #[error("the calibration ended with {status}")]
     Calibration {
         /// In the clockwise run the table is lost as well.
         run: Run,
-        /// The encoder's status.
         status: CalibrationStatus,
     },
-    /// Failure reported by the Wiegand test.
     #[error("the Wiegand test ended with {status}, error code 0x{code:02X}")]
     Wiegand {
         run: Run,
-        /// The encoder's status.
         status: WiegandStatus,
         /// Its error code, whose meaning is not published.
         code: u8,
     },
     /// The filter in force is not the balanced one.
     #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
-    NotBalanced {
-        /// The filter's code.
-        code: u8,
-    },
+    NotBalanced { code: u8 },
     /// The device mode that was written does not read back.
     #[error("device mode {wanted} was written and {found} is there")]
-    Mode {
-        wanted: DeviceMode,
-        /// The mode read back.
-        found: DeviceMode,
-    },
+    Mode { wanted: DeviceMode, found: DeviceMode },
     /// A status register never reached the required value.
     #[error("the status of the procedure is 0x{found:02X} where 0x{expected:02X} is needed")]
-    Status {
-        kind: ProcedureKind,
-        expected: u8,
-        /// The reported status.
-        found: u8,
-    },
+    Status { kind: ProcedureKind, expected: u8, found: u8 },
     /// A run has no end.
     #[error("the run has not ended after {seconds} s")]
     TooLong {
@@ -58,19 +41,10 @@ pub enum Failure {
     },
     /// The user did not fulfil the task in the time allowed.
     #[error("the conditions are not met: {blockers:?}")]
-    NotReady {
-        task: Task,
-        /// What prevents the start.
-        blockers: Vec<Blocker>,
-    },
+    NotReady { task: Task, blockers: Vec<Blocker> },
     /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
-    NotVerified {
-        item: String,
-        /// Expected value.
-        expected: String,
-        got: String,
-    },
+    NotVerified { item: String, expected: String, got: String },
     /// The description of this encoder lacks what the plan needs.
     #[error("no description of this procedure for this encoder")]
     NotDescribed { kind: ProcedureKind },
@@ -92,7 +66,6 @@ impl OperationError for Failure {
 }
 
 impl Failure {
-    /// Returns whether the user cancelled it.
     pub fn is_cancelled(&self) -> bool {
         *self == Failure::Device(Error::Cancelled)
     }

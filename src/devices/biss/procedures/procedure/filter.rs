@@ -1,4 +1,4 @@
-//! The choice of a filter (manual 6.6), at the end of which the encoder restarts.
+//! Selection of a filter (manual 6.6), after which the encoder restarts.
 
 use super::guide::Guide;
 use super::{Activity, Failure, Outcome, ProcedureStep};

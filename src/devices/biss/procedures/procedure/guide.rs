@@ -1,5 +1,6 @@
-//! Shared parts of all procedures: device modes, commands, statuses, the operator at the motor, restarts, and the return to
-//! operation. The possible states of the encoder are tracked meanwhile, so that they can be reported after a lost link.
+//! Parts shared by all procedures: device modes, commands, statuses, the operator at the motor, restarts, and the
+//! return to operation. The possible states of the encoder are tracked, so that they can be reported after the link is
+//! lost.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -50,7 +51,6 @@ pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
 
 pub(super) struct RunCourse {
     pub(super) run: Run,
-    /// The command that starts it.
     pub(super) command: u8,
     /// The status before the command, which may be from an earlier run.
     pub(super) was: u8,
@@ -58,7 +58,6 @@ pub(super) struct RunCourse {
     pub(super) before: u8,
     pub(super) active: u8,
     pub(super) done: u8,
-    /// Interval of reading its status.
     pub(super) every: Duration,
     pub(super) expected: Duration,
     pub(super) limit: Duration,
@@ -67,7 +66,6 @@ pub(super) struct RunCourse {
 /// The operator's answer, with the measurement at that time.
 pub(super) enum Attended {
     Go(Option<Motion>),
-    /// Leave it out.
     Skip,
 }
 
@@ -82,7 +80,6 @@ impl<'g, 'm> Guide<'g, 'm> {
         Guide { master, description, operator, tell, standing, op: 0, step: ProcedureStep::LeadBack, cycles: 0 }
     }
 
-    /// Returns the host's side of the line.
     pub(in crate::devices::biss::procedures) fn master(&mut self) -> &mut Master<'m> {
         self.master
     }
@@ -92,7 +89,6 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.standing = LeftState::in_operation(password);
     }
 
-    /// Returns the known state of the encoder.
     pub(in crate::devices::biss::procedures) fn standing(&self) -> &LeftState {
         &self.standing
     }
@@ -106,7 +102,6 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.step
     }
 
-    /// Begins the operation with this number.
     pub(in crate::devices::biss::procedures) fn begin(&mut self, op: usize) {
         self.op = op;
     }
@@ -152,7 +147,6 @@ impl<'g, 'm> Guide<'g, 'm> {
         ended.map(drop)
     }
 
-    /// Password and device mode.
     pub(super) fn enter(&mut self, procedure: &Procedure) -> Result<(), Failure> {
         let mode = DeviceMode::new(procedure.mode);
         self.step(ProcedureStep::Enter(mode));
@@ -194,7 +188,6 @@ impl<'g, 'm> Guide<'g, 'm> {
         ended
     }
 
-    /// Reads a register that was written.
     pub(super) fn read_back(&mut self, address: RegisterAddress, expected: u8) -> Result<(), Failure> {
         let got = self.master.read(address)?;
         if got == expected {
@@ -345,7 +338,6 @@ impl<'g, 'm> Guide<'g, 'm> {
     }
 }
 
-/// Reads mode and password; returns the mode.
 fn look(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result<DeviceMode, Error> {
     let mode = DeviceMode::new(master.read(lock.mode_at)?);
     let password = master.read(lock.password_at)? != 0;

@@ -1,4 +1,4 @@
-//! The state of an encoder as far as it is known from its replies, to be reported if the link is lost during a procedure.
+//! State of an encoder as far as its replies reveal it, reported if the link is lost during a procedure.
 
 use super::Run;
 use crate::devices::biss::procedures::Error;
@@ -22,18 +22,15 @@ pub struct LeftState {
 pub enum Activity {
     /// Nothing that a loss of the link would cut off.
     Nothing,
-    /// A run of a procedure.
     Running(Run),
     /// Values were entered and not saved: leaving the mode, or a loss of power, discards them.
     Entered,
     /// The flash was written, or was about to be: the old or the new values are stored.
     Saving,
-    /// It restarts, or was about to.
     Restarting,
 }
 
 impl<T: Copy + PartialEq> Possible<T> {
-    /// Creates a value that is certain.
     pub fn known(value: T) -> Self {
         Possible(vec![value])
     }

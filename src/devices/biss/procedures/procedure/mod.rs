@@ -1,16 +1,16 @@
-//! The guided procedures (manual 6.3 to 6.7), each straight-line code from entering its device mode to operation again.
-//! They ask the operator at the motor through an [`Operator`], report every [`ProcedureStep`], and always end in operation
-//! mode with the password cleared. If the encoder can no longer be reached, the known [`LeftState`] is reported instead,
-//! and [`lead_back`] completes the return later.
+//! The guided procedures (manual 6.3 to 6.7). Each is straight-line code from entering its device mode to returning to
+//! operation. A procedure instructs the operator at the motor through an [`Operator`], reports every [`ProcedureStep`],
+//! and always ends in operation mode with the password cleared. If the encoder is out of reach, the known [`LeftState`]
+//! is reported instead, and [`lead_back`] completes the return later.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
-//! | `guide` | what all share: modes, commands, statuses, restarts, the person, the way back |
+//! | `guide` | the shared parts: modes, commands, statuses, restarts, operator, return to operation |
 //! | `speed_monitor` | direction and speed of the shaft |
-//! | `operator` | who stands at the motor: what is asked, why a start is not possible |
-//! | `left_state` | the state that an encoder may be left in |
+//! | `operator` | the operator at the motor: tasks, and reasons why a start is not possible |
+//! | `left_state` | the state in which an encoder may be left |
 //! | `steps` | the steps of each operation |
-//! | `data`, `filter`, `preset`, `wiegand`, `calibration` | the five of the manual |
+//! | `data`, `filter`, `preset`, `wiegand`, `calibration` | the five procedures of the manual |
 
 mod calibration;
 mod data;
@@ -42,15 +42,12 @@ use crate::devices::biss::protocol::{Descriptions, DeviceMode, Filter, PresetVal
 pub enum Outcome {
     /// The operator skipped it, or the part after its first run.
     Skipped {
-        /// The run that was done.
         after: Option<Run>,
     },
     /// Registers were written, saved if required, and read back.
     Stored {
-        /// Number of registers.
         registers: u64,
     },
-    /// A preset value was stored.
     PresetStored {
         value: PresetValue,
         /// Number of bits of the steps per turn.
@@ -58,18 +55,14 @@ pub enum Outcome {
     },
     /// A preset was carried out.
     PresetFired {
-        /// Parts of the position.
         parts: PresetParts,
         /// Before.
         from: PositionReading,
         /// After.
         to: PositionReading,
     },
-    /// Another filter is in force.
     FilterSelected(Filter),
-    /// The singleturn is calibrated.
     Calibrated(CalibrationReport),
-    /// The Wiegand sensor was tested.
     Tested(WiegandReport),
 }
 

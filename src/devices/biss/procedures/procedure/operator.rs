@@ -1,5 +1,5 @@
-//! The operator at the motor while a procedure runs: the tasks, the measurement meanwhile, and the answers. In a window it
-//! is a user at a button, on a production line there is none, in a test it is a script.
+//! The operator at the motor during a procedure: tasks, concurrent measurements and confirmations. In the window the
+//! operator is a user at a button, in a test a script; on a production line there is none.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -22,9 +22,7 @@ pub enum Run {
 /// Speeds in revolutions per minute, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedRange {
-    /// The slowest.
     pub least: f64,
-    /// The fastest.
     pub greatest: f64,
 }
 
@@ -51,12 +49,10 @@ impl SpeedRange {
 }
 
 impl Run {
-    /// Returns whether it needs rising positions.
     pub const fn is_clockwise(self) -> bool {
         matches!(self, Run::CalibrationClockwise | Run::WiegandClockwise)
     }
 
-    /// Returns whether it is part of the calibration.
     pub const fn calibrates(self) -> bool {
         matches!(self, Run::CalibrationCounterclockwise | Run::CalibrationClockwise)
     }
@@ -89,7 +85,6 @@ impl Run {
     const UNSTEADY: f64 = 0.05;
 }
 
-/// Task of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Task {
     /// Turn the motor as this run needs it.
@@ -100,7 +95,6 @@ pub enum Task {
     StandAtPlace,
 }
 
-/// Obstacle to a start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Blocker {
     /// There are not enough positions yet.
@@ -128,10 +122,7 @@ pub enum Blocker {
         spread: f64,
     },
     /// Manual 6.4: 25…40 °C.
-    Temperature {
-        /// The encoder's temperature.
-        celsius: i16,
-    },
+    Temperature { celsius: i16 },
 }
 
 /// Advice before the start, which is possible regardless.
@@ -167,7 +158,6 @@ impl Demand {
     /// The lowest speed that counts as turning, in revolutions per minute.
     const SLOWEST: f64 = 1.0;
 
-    /// Evaluates a measurement.
     pub(super) fn new(task: Task, measured: Measured, waited: Duration) -> Self {
         let Measured { motion, celsius, marked, unreadable } = measured;
         let mut blockers = Vec::new();
@@ -228,7 +218,6 @@ pub(super) struct Measured {
     pub(super) unreadable: bool,
 }
 
-/// Answer of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
     /// Nothing yet.
@@ -237,13 +226,11 @@ pub enum Answer {
     Go,
     /// Skip this part of the run and continue with the next.
     Skip,
-    /// End the run.
     Cancel,
     /// No operator will come: end, with the obstacles to the start.
     GiveUp,
 }
 
-/// Operator at the motor.
 pub trait Operator {
     /// Prepares for a new task: earlier answers belong to another task.
     fn on_task_start(&mut self) {}

@@ -1,5 +1,5 @@
-//! The preset (manual 6.7): its value is stored, or the shaft's present position becomes that value. The encoder restarts
-//! after either.
+//! Preset (manual 6.7): the value is stored, or becomes the present position of the shaft. The encoder restarts after
+//! either.
 
 use super::guide::{Attended, Guide};
 use super::{Activity, Failure, Outcome, ProcedureStep, Task};

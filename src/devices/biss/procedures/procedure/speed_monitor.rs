@@ -1,4 +1,5 @@
-//! The motion of the shaft, measured from positions: direction, speed, variation, and standstill. It reads nothing itself.
+//! Motion of the shaft, derived from positions: direction, speed, variation and standstill. The monitor itself reads
+//! nothing.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -24,7 +25,6 @@ pub struct Motion {
     pub rpm: f64,
     /// Largest deviation of the speed of a quarter of the measurement, in revolutions per minute.
     pub spread: f64,
-    /// Revolutions between the farthest places.
     pub travel: f64,
 }
 
@@ -42,7 +42,6 @@ impl SpeedMonitor {
     /// Number of parts of the window in which the speed is evaluated separately.
     const PARTS: i32 = 4;
 
-    /// Measures over this stretch of time.
     pub(super) fn over(window: Duration) -> Self {
         let window = i64::try_from(window.as_nanos()).unwrap_or(i64::MAX).max(1);
         SpeedMonitor { window, unwrap: None, steps_per_turn: 1.0, places: VecDeque::new() }

@@ -1,4 +1,4 @@
-//! The steps of each operation, in order: a view lists them beforehand and marks them as they are reported.
+//! The steps of each operation in order. A view lists them in advance and marks them as they are reported.
 
 use std::time::Duration;
 
@@ -13,23 +13,16 @@ pub enum ProcedureStep {
     Conditions,
     /// Waits for the operator at the motor.
     Await(Task),
-    /// Password and device mode.
     Enter(DeviceMode),
-    /// The encoder is asked to take something.
     Open,
-    /// Registers are written.
     Write,
     Run(Run),
     Results,
-    /// The flash is written.
     Save,
     /// The preset is carried out.
     Fire,
-    /// The encoder restarts.
     Restart,
-    /// Back to operation, and the password cleared.
     LeadBack,
-    /// Reads back the values written.
     ReadBack,
 }
 
@@ -48,7 +41,6 @@ pub struct ProcedureProgress {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Detail {
     Begins,
-    /// Registers done, and their total.
     Count {
         done: u64,
         total: u64,
@@ -60,7 +52,6 @@ pub enum Detail {
         /// Expected duration, if known.
         expected: Option<Duration>,
     },
-    /// The task of the operator, and the measurement.
     Demand(Demand),
 }
 

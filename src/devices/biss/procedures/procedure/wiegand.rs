@@ -1,4 +1,4 @@
-//! The test of the Wiegand sensor (manual 6.3): pulses of 515 revolutions clockwise, then counterclockwise.
+//! Test of the Wiegand sensor (manual 6.3): pulses over 515 revolutions clockwise, then counterclockwise.
 
 use std::time::Duration;
 
@@ -46,7 +46,6 @@ impl Guide<'_, '_> {
         Ok(Outcome::Tested(WiegandReport { result, saved: save, clockwise, counterclockwise }))
     }
 
-    /// Measures one direction.
     fn collect(&mut self, run: Run, procedure: &Procedure, motion: Option<Motion>) -> Result<(), Failure> {
         self.step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;

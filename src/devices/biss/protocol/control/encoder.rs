@@ -3,8 +3,8 @@
 use super::super::crc::crc4;
 use super::{REGISTERS, REST_CYCLES, with_crc};
 
-/// An encoder's control channel, cycle by cycle: [`cds`](Self::cds) at the start of a cycle, [`cdm`](Self::cdm) at its
-/// end.
+/// An encoder's control channel, driven cycle by cycle: call [`cds`](Self::cds) at the start of a cycle and
+/// [`cdm`](Self::cdm) at its end.
 #[derive(Clone, Debug)]
 pub struct Encoder {
     slave: u8,
@@ -12,60 +12,60 @@ pub struct Encoder {
     state: State,
 }
 
-/// The request of a cycle to the encoder.
+/// A register access requested by the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// A register has to be read; [`Encoder::answer`] supplies the value. Until then the host waits.
+    /// The host reads a register and waits until [`Encoder::answer`] supplies its value.
     Read {
-        /// 00h…7Fh.
+        /// Register address, 00h to 7Fh.
         address: u8,
     },
-    /// A register is to be written.
+    /// The host writes a register.
     Write {
-        /// 00h…7Fh.
+        /// Register address, 00h to 7Fh.
         address: u8,
-        /// The new value.
+        /// Value to write.
         value: u8,
     },
-    /// The frame is damaged: it has no effect.
+    /// The frame is damaged and has no effect.
     Damaged,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// The zeros before a start bit are still to come, or are there.
+    /// Waiting for a start bit, or for the zeros that must precede it.
     Rest,
-    /// A frame that is not for this encoder, or cannot be understood.
+    /// Ignoring a frame that is unintelligible or addressed to another encoder.
     Ignoring,
-    /// `cycle` bits have come, the first is the highest.
+    /// Receiving the head: `cycle` bits have arrived in `bits`, the first one highest.
     Head { bits: u32, cycle: u8 },
-    /// The host has sent its S and waits for that of this side.
+    /// The host has sent its S and is waiting for the encoder's.
     Start { address: u8, access: Access },
-    /// This side has sent its S and then `sent` bits of `word`, which is DATA and CRC4. In a write, `word` grows with the
-    /// received bits.
+    /// The encoder has sent its S and then `sent` bits of `word`, which consists of DATA and CRC4. In a write, `word`
+    /// grows with the received bits.
     Data { address: u8, access: Access, word: u16, sent: u8 },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Access {
-    /// With DATA and CRC4, once they are known.
+    /// Read access, with DATA and CRC4 once they are known.
     Read(Option<u16>),
     Write,
 }
 
 impl Encoder {
-    /// S, CTS, ID, ADR, CRC4.
+    /// Number of bits in the header: S, CTS, ID, ADR and CRC4.
     const HEADER_BITS: u8 = 16;
-    /// The header, R, W.
+    /// Number of bits in the head: the header, R and W.
     const HEAD_BITS: u8 = 18;
     const WORD_BITS: u8 = 12;
 
-    /// Creates the control channel of the encoder with this number on its line, 0…7; the kit encoder is 0.
+    /// Creates the control channel of an encoder with the given number on its line, 0 to 7; a kit encoder is number 0.
     pub fn new(slave: u8) -> Self {
         Encoder { slave: slave & 7, zeros: 0, state: State::Rest }
     }
 
-    /// Returns CDS of the cycle that begins.
+    /// Returns the CDS bit of the cycle that begins.
     pub fn cds(&mut self) -> bool {
         match self.state {
             State::Rest | State::Ignoring | State::Start { access: Access::Read(None), .. } => false,
@@ -88,7 +88,7 @@ impl Encoder {
         }
     }
 
-    /// Returns CDM of the cycle that ends.
+    /// Receives the CDM bit of the cycle that ends, and returns the resulting event, if any.
     pub fn cdm(&mut self, bit: bool) -> Option<Event> {
         let rested = self.zeros >= REST_CYCLES;
         self.zeros = if bit { 0 } else { self.zeros.saturating_add(1) };
@@ -111,7 +111,7 @@ impl Encoder {
         event
     }
 
-    /// Supplies the value of the register that was requested last. Without a request it has no effect.
+    /// Supplies the value of the last register requested. Has no effect without a pending request.
     pub fn answer(&mut self, value: u8) {
         if let State::Start { access: access @ Access::Read(None), .. } = &mut self.state {
             *access = Access::Read(Some(with_crc(value)));
@@ -143,7 +143,6 @@ impl Encoder {
     }
 }
 
-/// The host has sent S for a register.
 fn begin(address: u8, access: Access) -> (State, Option<Event>) {
     match access {
         Access::Read(_) => (State::Start { address, access: Access::Read(None) }, Some(Event::Read { address })),
@@ -151,7 +150,7 @@ fn begin(address: u8, access: Access) -> (State, Option<Event>) {
     }
 }
 
-/// Handles a bit of DATA and CRC4; `sent` counts it.
+/// Handles one bit of DATA and CRC4; `sent` counts the bits, including the current one.
 fn transfer(address: u8, access: Access, word: u16, bit: bool, sent: u8) -> (State, Option<Event>) {
     if access != Access::Write {
         return (State::Data { address, access, word, sent }, None);

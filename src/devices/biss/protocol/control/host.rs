@@ -3,39 +3,39 @@
 use super::super::crc::crc4;
 use super::{ControlError, MAX_WAIT_CYCLES, REST_CYCLES, Request};
 
-/// A host, cycle by cycle. It has one request at a time and is at rest in between.
+/// A host's control channel, driven cycle by cycle. Only one request runs at a time, and the line rests in between.
 #[derive(Clone, Debug)]
 pub struct Host {
-    /// Cycles of CDM = 0 in a row, so far as they matter.
+    /// Number of consecutive cycles with CDM = 0, as far as it matters.
     zeros: u8,
     waiting: Option<Request>,
     state: State,
 }
 
-/// The result of a cycle.
+/// The result of one cycle.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// CDM of this cycle. The level of the clock line during the time-out is its inverse.
+    /// CDM bit of the cycle. During the time-out, the clock line carries its inverse.
     pub cdm: bool,
-    /// The end of the request in this cycle: the values read, or for a write those that the encoder repeated.
+    /// Outcome if the request ended in this cycle: the values read, or those that the encoder echoed after a write.
     pub outcome: Option<Result<Vec<u8>, ControlError>>,
 }
 
 #[derive(Clone, Debug)]
 enum State {
     Rest,
-    /// Cycles 0…18: `bits` holds those of CDM, the first in bit 18.
+    /// Cycles 0 to 18: `bits` contains the CDM bits, the first one in bit 18.
     Head {
         request: Request,
         bits: u32,
         cycle: u8,
     },
-    /// S is sent, the encoder's is awaited.
+    /// S has been sent, and the encoder's S is awaited.
     Start {
         transfer: Transfer,
         cycles: u8,
     },
-    /// `received` bits of DATA and CRC4 have come.
+    /// `received` bits of DATA and CRC4 have arrived.
     Data {
         transfer: Transfer,
         word: u16,
@@ -50,12 +50,12 @@ struct Transfer {
 }
 
 impl Transfer {
-    /// Returns the current register. The request's addresses end at 7Fh.
+    /// Returns the address of the current register. The request's addresses end at 7Fh.
     fn address(&self) -> u8 {
         self.request.address.saturating_add(u8::try_from(self.values.len()).unwrap_or(u8::MAX))
     }
 
-    /// Returns bit number `at` of DATA and CRC4 that the host sends.
+    /// Returns bit `at` of the DATA and CRC4 bits that the host sends, counted from the first.
     fn bit(&self, at: u8) -> bool {
         self.request.data(self.values.len()) << at & 0x800 != 0
     }
@@ -68,11 +68,11 @@ impl Default for Host {
 }
 
 impl Host {
-    /// The last cycle of a request's head; in the next one the encoder may send its S.
+    /// Last cycle of a request's head; in the next one the encoder may send its S.
     const LAST_OF_HEAD: u8 = 18;
     const WORD_BITS: u8 = 12;
 
-    /// Asks for something as soon as the line is at rest.
+    /// Submits a request, which is sent as soon as the line is at rest.
     ///
     /// # Errors
     /// Returns the request if another one is in progress.
@@ -89,13 +89,13 @@ impl Host {
         self.waiting.is_some() || !matches!(self.state, State::Rest)
     }
 
-    /// Abandons a request. The encoder discards it during the zeros that precede the next.
+    /// Abandons the request. The encoder discards it during the zeros that precede the next one.
     pub fn abort(&mut self) {
         self.waiting = None;
         self.rest();
     }
 
-    /// Runs one cycle: takes the CDS received in it and returns the CDM to end it with.
+    /// Runs one cycle: takes the CDS bit received and returns the CDM bit that ends the cycle.
     pub fn cycle(&mut self, cds: bool) -> Step {
         let step = match std::mem::replace(&mut self.state, State::Rest) {
             State::Rest => self.begin(),
@@ -122,7 +122,7 @@ impl Host {
     }
 
     fn head(&mut self, request: Request, bits: u32, cycle: u8, cds: bool) -> Step {
-        // The bit that the encoder has to send now, if it is known.
+        // Bit that the encoder must send in this cycle, if known.
         let expected = match cycle {
             17 => Some(request.reads()),
             18 => Some(!request.reads()),
@@ -181,14 +181,14 @@ impl Host {
         Step { cdm: false, outcome: Some(Err(error)) }
     }
 
-    /// Counts the zeros before the next request from here: within a frame they may have been data.
+    /// Restarts the count of zeros before the next request, since zeros within a frame may have been data.
     fn rest(&mut self) {
         self.state = State::Rest;
         self.zeros = 0;
     }
 }
 
-/// Returns S, CTS, ID, ADR, CRC4, R, W, S.
+/// Returns the head of a request: S, CTS, ID, ADR, CRC4, R, W, S.
 fn head(request: &Request) -> u32 {
     let header = 1 << 10 | u16::from(request.slave) << 7 | u16::from(request.address);
     let access = if request.reads() { 0b10 } else { 0b01 };

@@ -1,4 +1,4 @@
-//! The tables of codes that a description can name.
+//! Built-in code tables that a description can refer to.
 
 use super::super::procedure::{
     CalibrationCommand, CalibrationStatus, DataCommand, DataStatus, FilterCommand, FilterStatus, PresetCommand,
@@ -6,36 +6,35 @@ use super::super::procedure::{
 };
 use super::super::status::DeviceMode;
 
-/// A register whose codes are the program's, named by a description in place of a list of values.
+/// A built-in code table, which a description can name in place of a list of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum CodeTable {
-    /// [`DeviceMode`].
+    /// Codes of [`DeviceMode`].
     DeviceMode,
-    /// [`WiegandCommand`].
+    /// Codes of [`WiegandCommand`].
     WiegandCommand,
-    /// [`WiegandStatus`].
+    /// Codes of [`WiegandStatus`].
     WiegandStatus,
-    /// [`CalibrationCommand`].
+    /// Codes of [`CalibrationCommand`].
     CalibrationCommand,
-    /// [`CalibrationStatus`].
+    /// Codes of [`CalibrationStatus`].
     CalibrationStatus,
-    /// [`DataCommand`].
+    /// Codes of [`DataCommand`].
     DataCommand,
-    /// [`DataStatus`].
+    /// Codes of [`DataStatus`].
     DataStatus,
-    /// [`FilterCommand`].
+    /// Codes of [`FilterCommand`].
     FilterCommand,
-    /// [`FilterStatus`].
+    /// Codes of [`FilterStatus`].
     FilterStatus,
-    /// [`PresetCommand`].
+    /// Codes of [`PresetCommand`].
     PresetCommand,
-    /// [`PresetStatus`].
+    /// Codes of [`PresetStatus`].
     PresetStatus,
 }
 
 impl CodeTable {
-    /// Returns the codes with their names.
     pub(super) const fn rows(self) -> &'static [(u8, &'static str)] {
         match self {
             CodeTable::DeviceMode => DeviceMode::TABLE,

@@ -1,5 +1,5 @@
-//! A description as written in its file. Errors are reported with their position, because rows are checked while they are
-//! read.
+//! The file format of a description. Rows are checked while they are read, so that errors can be reported with their
+//! position.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -21,8 +21,10 @@ use super::register::{Access, Area, Decoding, Register, Role};
 use super::{Description, Identity, Lock, Procedure};
 use crate::bits::ByteOrder;
 
+/// Parses a description file.
+///
 /// # Errors
-/// The flaw, and where it is.
+/// Returns the flaw and its position.
 pub(super) fn parse(text: &str) -> Result<Description, (Position, Flaw)> {
     flaw::take();
     let read: Result<File, SpannedError> = ron::from_str(text);
@@ -65,7 +67,7 @@ struct File {
 }
 
 impl File {
-    /// Returns everything that has a name of its own.
+    /// Returns all names in the file, for translation.
     fn names(&mut self) -> impl Iterator<Item = &mut Name> {
         let registers = self.registers.0.iter_mut().flat_map(|register| {
             let values: Box<dyn Iterator<Item = &mut Name>> = match &mut register.decoding {
@@ -80,7 +82,7 @@ impl File {
     }
 }
 
-/// `direct(0x66)` or `bank(0x24, 0x10)`.
+/// A register location, written as `direct(0x66)` or `bank(0x24, 0x10)`.
 #[derive(Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum RegisterLocation {
@@ -197,7 +199,7 @@ impl TryFrom<RegisterLocation> for RegisterAddress {
     }
 }
 
-/// Defines a type that is checked while it is read from the file, so that an error has its position.
+/// Implements deserialization with a check of each row, so that an error has the position of the row.
 macro_rules! checked {
     ($($row:ident => $own:ty,)*) => {$(
         impl<'de> Deserialize<'de> for $own {
@@ -313,9 +315,9 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
     Firmware::new(major, minor, patch)
 }
 
-/// A row that must not be duplicated.
+/// A row that claims items which no other row may claim.
 trait Row {
-    /// Returns what it takes for itself.
+    /// Returns the items that the row claims exclusively.
     fn claims(&self) -> Vec<Claim>;
 }
 
@@ -345,7 +347,7 @@ impl Row for Procedure {
     }
 }
 
-/// A list of rows without conflicts.
+/// A list of rows without conflicting claims.
 struct Rows<T>(Vec<T>);
 
 impl<T> Default for Rows<T> {

@@ -1,5 +1,5 @@
-//! Mistakes in a description's file, as facts. The reader of RON passes on sentences alone, so that a flaw waits here until
-//! it has told where it was.
+//! Mistakes in a description file. The RON parser only passes on error messages, so a flaw is kept in this module until
+//! the parser has reported its position.
 
 use std::cell::Cell;
 
@@ -10,107 +10,107 @@ use super::super::procedure::ProcedureKind;
 use super::super::single_cycle::LayoutError;
 use super::register::{Register, Role};
 
-/// A mistake in a description.
+/// A mistake in a description file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Flaw {
-    /// Not the form of a description, as the reader of RON says.
+    /// The file does not have the form of a description; contains the RON parser's message.
     #[error("{0}")]
     Form(String),
-    /// No direct register.
+    /// The address is not that of a direct register.
     #[error("direct(0x{0:02X}): a direct register is from 0x40 to 0x7F")]
     Direct(u8),
-    /// No register of a bank.
+    /// The offset is not that of a register in a bank.
     #[error("bank(0x{bank:02X}, 0x{offset:02X}): a bank has registers from 0x00 to 0x3F")]
     Banked {
-        /// The bank.
+        /// Number of the bank.
         bank: u8,
-        /// The place in it.
+        /// Offset within the bank.
         offset: u8,
     },
-    /// A register that is too wide, or has no byte.
+    /// The register is too wide, or has no bytes.
     #[error("\"{name}\": a register has 1 to {} bytes, not {width}", Register::MAX_WIDTH)]
     Width {
-        /// The register's name.
+        /// Name of the register.
         name: String,
-        /// Its bytes.
+        /// Register width in bytes.
         width: u8,
     },
-    /// A register that leaves its bank.
+    /// The register extends beyond its bank.
     #[error("\"{name}\": {width} bytes from {address} on do not fit into the bank")]
     BeyondBank {
-        /// The register's name.
+        /// Name of the register.
         name: String,
-        /// Its bytes.
+        /// Register width in bytes.
         width: u8,
-        /// Its first byte.
+        /// Address of the register's first byte.
         address: RegisterAddress,
     },
-    /// Not as many default bytes as the register is wide.
+    /// The number of default bytes differs from the width of the register.
     #[error("\"{name}\": {bytes} default bytes for a width of {width}")]
     Default {
-        /// The register's name.
+        /// Name of the register.
         name: String,
-        /// Bytes as delivered.
+        /// Number of default bytes.
         bytes: usize,
-        /// Its bytes.
+        /// Register width in bytes.
         width: u8,
     },
-    /// A bit that the register does not have.
+    /// The bit is outside the register.
     #[error("\"{name}\": there is no bit {bit} in a width of {width}")]
     Bit {
-        /// The register's name.
+        /// Name of the register.
         name: String,
-        /// The bit.
+        /// Number of the bit.
         bit: u8,
-        /// Its bytes.
+        /// Register width in bytes.
         width: u8,
     },
-    /// A factor or an offset that is no number.
+    /// The factor or offset is not a finite number.
     #[error("\"{0}\": factor and offset must be finite numbers")]
     Endless(String),
-    /// Values that save something in a register that is not written.
+    /// Values are declared to save something, but the register cannot be written.
     #[error("\"{0}\": a register that is not written saves nothing")]
     SavesNothing(String),
-    /// Banks of an area in the wrong order.
+    /// The first bank of an area comes after its last.
     #[error("\"{name}\": bank 0x{first:02X} comes after bank 0x{last:02X}")]
     Banks {
-        /// The area's name.
+        /// Name of the area.
         name: String,
-        /// The first bank.
+        /// First bank of the area.
         first: u8,
-        /// The last bank.
+        /// Last bank of the area.
         last: u8,
     },
-    /// A frame that cannot be.
+    /// The frame layout is impossible.
     #[error(transparent)]
     Layout(#[from] LayoutError),
-    /// Something that only one row may have.
+    /// An item is claimed by more than one row.
     #[error("{0} stands here for the second time")]
     Twice(Claim),
-    /// A name without a German text.
+    /// The German name is empty.
     #[error("\"{0}\": the German name is empty")]
     GermanEmpty(String),
-    /// A German text for what has no such name.
+    /// A German name is given for an English name that is not used.
     #[error("german: nothing is called \"{0}\" here")]
     GermanNeedless(String),
 }
 
-/// Something that only one row may have.
+/// An item that only one row of a description may claim.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
 pub enum Claim {
-    /// A byte.
+    /// A register byte.
     #[error("register {0}")]
     Register(RegisterAddress),
-    /// A role.
+    /// A register role.
     #[error("role {0:?}")]
     Role(Role),
-    /// A bank.
+    /// A bank number.
     #[error("bank 0x{0:02X}")]
     Bank(u8),
-    /// A procedure.
+    /// A procedure kind.
     #[error("procedure {0:?}")]
     Procedure(ProcedureKind),
-    /// A name in the list of German ones.
+    /// A name in the list of German names.
     #[error("\"{0}\"")]
     Name(String),
 }
@@ -119,7 +119,7 @@ thread_local! {
     static FOUND: Cell<Option<Flaw>> = const { Cell::new(None) };
 }
 
-/// Tells the reader of RON about a flaw: it adds where that is.
+/// Reports a flaw to the RON parser, which adds its position.
 pub(super) fn found<E: Error>(flaw: impl Into<Flaw>) -> E {
     let flaw = flaw.into();
     let words = E::custom(&flaw);
@@ -127,7 +127,7 @@ pub(super) fn found<E: Error>(flaw: impl Into<Flaw>) -> E {
     words
 }
 
-/// Takes the flaw that was found last on this thread.
+/// Takes the last flaw found on the current thread.
 pub(super) fn take() -> Option<Flaw> {
     FOUND.take()
 }

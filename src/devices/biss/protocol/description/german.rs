@@ -1,5 +1,6 @@
-//! The German names of a description: a list separate from its English ones, so that a name in many rows is translated
-//! once. An entry for a name that the description does not use is an error, reported with its position.
+//! The German names of a description. They are listed separately from the English ones, so that a name used in many
+//! rows is translated once. An entry for a name that the description does not use is an error, reported with its
+//! position.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -11,12 +12,12 @@ use serde::{Deserialize, Deserializer};
 use super::flaw::{self, Claim, Flaw};
 use super::name::Name;
 
-/// English names with their German ones.
+/// A map from English names to German ones.
 #[derive(Default)]
 pub(super) struct GermanTexts(BTreeMap<String, String>);
 
 impl GermanTexts {
-    /// Adds the German names; `text` is the file, in which the position of a superfluous entry is searched.
+    /// Adds the German names; `text` is the file content, which is searched for the position of a superfluous entry.
     pub(super) fn translate<'a>(
         mut self,
         names: impl Iterator<Item = &'a mut Name>,
@@ -38,7 +39,7 @@ impl GermanTexts {
     }
 }
 
-/// Returns the position of an entry, counted from 1; the start of the file if it is written in another way.
+/// Returns the position of an entry, counted from 1; the start of the file if the entry is written in an unusual form.
 fn place_of(english: &str, text: &str) -> Position {
     let key = format!("\"{english}\"");
     let is_entry = |line: &str| line.find(&key).filter(|at| line.get(at + key.len()..).is_some_and(is_behind_key));

@@ -1,8 +1,8 @@
-//! A name in English, and in German if the description has it.
+//! A name in English, and in German if the description provides one.
 
 use std::fmt;
 
-/// A name. It is shown in English unless another language is requested.
+/// A name from a description, shown in English unless another language is requested.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(from = "String")]
 pub struct Name {
@@ -11,7 +11,7 @@ pub struct Name {
 }
 
 impl Name {
-    /// Creates a name in English; empty for a part without a name.
+    /// Creates an English name; an empty one for a part without a name.
     pub fn new(english: impl Into<String>) -> Self {
         Name { english: english.into(), german: None }
     }
@@ -21,12 +21,12 @@ impl Name {
         &self.english
     }
 
-    /// Returns the German name; the English one if the description has none.
+    /// Returns the German name, or the English one if the description provides none.
     pub fn german(&self) -> &str {
         self.german.as_deref().unwrap_or(&self.english)
     }
 
-    /// Returns whether there is no name.
+    /// Returns whether the name is empty.
     pub fn is_empty(&self) -> bool {
         self.english.is_empty()
     }

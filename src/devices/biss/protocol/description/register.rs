@@ -1,163 +1,163 @@
-//! A register of a description: its place, width, meaning and write cost.
+//! A described register: its address, width, meaning and write cost.
 
 use super::super::address::RegisterAddress;
 use super::super::status::Firmware;
 use super::name::Name;
 use crate::bits::ByteOrder;
 
-/// One row of a description.
+/// A register as defined by one row of a description.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Register {
-    /// First byte.
+    /// Address of the first byte.
     pub address: RegisterAddress,
-    /// Bytes, 1…8.
+    /// Width in bytes, 1 to 8.
     pub width: u8,
-    /// The manual's name.
+    /// Name in the manual.
     pub name: Name,
-    /// The role, if the program needs to know it.
+    /// Role of the register, if the program needs to know it.
     pub role: Option<Role>,
-    /// The access.
+    /// Permitted access.
     pub access: Access,
-    /// Order of the bytes.
+    /// Byte order of the value.
     pub order: ByteOrder,
-    /// Bytes with factory settings, as many as its width; empty if not known.
+    /// Factory setting, one entry per byte of the width; empty if unknown.
     pub default: Vec<u8>,
-    /// Decoding of the number.
+    /// How the value is decoded.
     pub decoding: Decoding,
-    /// The symbol of its unit; may be empty.
+    /// Unit symbol; may be empty.
     pub unit: String,
-    /// Values the writing of which spends a write cycle of the flash.
+    /// Values that spend a flash write cycle when written.
     pub saves: Vec<u8>,
-    /// Older firmware has no such register.
+    /// First firmware that has the register.
     pub since: Firmware,
 }
 
-/// The role of a register.
+/// The purpose of a register that the program relies on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// Selects the bank of 00h…3Fh.
+    /// Selection of the bank visible at 00h to 3Fh.
     BankSelect,
-    /// The first bank of the data sheet.
+    /// First bank of the electronic data sheet.
     EdsBank,
-    /// The profile identification.
+    /// Profile ID.
     Profile,
-    /// The serial number.
+    /// Serial number of the encoder.
     SerialNumber,
-    /// The temperature.
+    /// Temperature of the encoder.
     Temperature,
-    /// Errors, a bit each.
+    /// Error flags, one bit each.
     Errors,
-    /// Warnings, a bit each.
+    /// Warning flags, one bit each.
     Warnings,
-    /// The device mode.
+    /// Current device mode.
     Mode,
-    /// The password of the device mode.
+    /// Password that unlocks the device mode.
     Password,
-    /// The filter in force.
+    /// Filter in use.
     Filter,
-    /// The firmware's release.
+    /// Firmware version.
     Firmware,
-    /// The device ID.
+    /// Device ID of the encoder.
     DeviceId,
-    /// The manufacturer.
+    /// Manufacturer ID.
     Manufacturer,
 }
 
-/// The access to a register.
+/// The kind of access that a register permits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Access {
-    /// Read only.
+    /// Read-only.
     R,
-    /// Write only.
+    /// Write-only.
     W,
-    /// Read and write.
+    /// Readable and writable.
     Rw,
 }
 
-/// The decoding of a register's number.
+/// The way in which a register value is decoded.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Decoding {
-    /// Itself.
+    /// Plain number.
     #[default]
     Number,
-    /// A code without order.
+    /// Code shown in hexadecimal, without numerical meaning.
     Hex,
-    /// `factor` times the number, and `offset`.
+    /// Linear scaling: `factor` times the number, plus `offset`.
     Scaled {
-        /// The value of one step.
+        /// Value of one step.
         factor: f64,
-        /// The value at 0.
+        /// Value at 0.
         offset: f64,
     },
-    /// Bits with their names, the lowest bit 0.
+    /// Named bits, where the lowest bit is 0.
     Bits(Vec<(u8, Name)>),
-    /// Values with their names.
+    /// Named values.
     Choice(Vec<(u64, Name)>),
-    /// Bytes in their order, separated by dots: 1.6.0.
+    /// Version: bytes in order, separated by dots, such as 1.6.0.
     Version,
-    /// Characters in the order of their addresses.
+    /// Characters in order of their addresses.
     Text,
 }
 
-/// The decoded bytes of a register.
+/// The decoded value of a register.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Decoded<'a> {
-    /// A number.
+    /// Plain number.
     Number(u64),
-    /// A code.
+    /// Code without numerical meaning.
     Hex(u64),
-    /// A quantity in the register's unit.
+    /// Quantity in the register's unit.
     Scaled(f64),
-    /// The bits that are set; one without a name is unknown.
+    /// Set bits; one without a name is unknown.
     Bits(Vec<(u8, Option<&'a Name>)>),
-    /// The value's name; `None` if it has none.
+    /// Value with its name, or `None` if it has no name.
     Choice(u64, Option<&'a Name>),
-    /// A text or a version.
+    /// Character string or version.
     Text(String),
 }
 
-/// Banks of plain data, each byte for itself.
+/// A range of plain data banks, in which each byte stands on its own.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Area {
-    /// The manual's name.
+    /// Name in the manual.
     pub name: Name,
-    /// First bank.
+    /// First bank of the area.
     pub first: u8,
-    /// Last bank.
+    /// Last bank of the area.
     pub last: u8,
-    /// The access.
+    /// Permitted access.
     pub access: Access,
-    /// The command that opens it for writing, in the procedure for data.
+    /// Command that opens the area for writing, in the data procedure.
     pub open: Option<u8>,
 }
 
 impl Access {
-    /// Returns whether it can be read.
+    /// Returns whether reading is permitted.
     pub const fn reads(self) -> bool {
         matches!(self, Access::R | Access::Rw)
     }
 
-    /// Returns whether it can be written.
+    /// Returns whether writing is permitted.
     pub const fn writes(self) -> bool {
         matches!(self, Access::W | Access::Rw)
     }
 }
 
 impl Register {
-    /// Widest register.
+    /// Maximum width of a register in bytes.
     pub const MAX_WIDTH: u8 = 8;
 
-    /// Returns whether it contains a byte at this address.
+    /// Returns whether the register contains the byte at the given address.
     pub fn contains(&self, address: RegisterAddress) -> bool {
         // Global addresses of a bank are consecutive, and a register does not leave its bank.
         let first = self.address.global();
         (first..first + u16::from(self.width)).contains(&address.global())
     }
 
-    /// Returns the bytes as a number; `None` unless there are as many as the register has.
+    /// Returns the number encoded by the bytes, or `None` if there are not as many as the register has.
     pub fn number(&self, bytes: &[u8]) -> Option<u64> {
         let join = |number: u64, byte: &u8| number << 8 | u64::from(*byte);
         (bytes.len() == usize::from(self.width)).then(|| match self.order {
@@ -166,7 +166,7 @@ impl Register {
         })
     }
 
-    /// Returns the bytes for a number; `None` if it needs more than there are.
+    /// Returns the bytes that encode a number, or `None` if the number does not fit the register.
     pub fn bytes(&self, number: u64) -> Option<Vec<u8>> {
         let bytes = number.to_be_bytes();
         let (above, own) = bytes.split_at(bytes.len().checked_sub(usize::from(self.width))?);
@@ -179,7 +179,7 @@ impl Register {
         })
     }
 
-    /// Decodes its bytes; `None` unless their number equals the width.
+    /// Decodes the bytes of the register, or returns `None` if their number differs from the width.
     pub fn decode(&self, bytes: &[u8]) -> Option<Decoded<'_>> {
         let number = self.number(bytes)?;
         Some(match &self.decoding {
@@ -200,24 +200,24 @@ impl Register {
         })
     }
 
-    /// Returns whether writing this value spends a write cycle of the flash.
+    /// Returns whether writing the given value spends a flash write cycle.
     pub fn is_save(&self, value: u8) -> bool {
         self.saves.contains(&value)
     }
 }
 
 impl Area {
-    /// Returns whether the bank belongs to it.
+    /// Returns whether the area contains the given bank.
     pub const fn contains(&self, bank: u8) -> bool {
         self.first <= bank && bank <= self.last
     }
 
-    /// Returns its banks.
+    /// Returns the banks of the area.
     pub fn banks(&self) -> std::ops::RangeInclusive<u8> {
         self.first..=self.last
     }
 
-    /// Returns the number of its bytes.
+    /// Returns the size of the area in bytes.
     pub fn size(&self) -> usize {
         (usize::from(self.last) + 1).saturating_sub(self.first.into()) * usize::from(RegisterAddress::BANK_SIZE)
     }

@@ -5,7 +5,6 @@ use crate::devices::biss::profile::EntryError;
 use crate::devices::biss::state::TEXTS;
 use crate::profile::Cause;
 
-/// Returns why a profile is refused.
 pub fn entry(cause: &Cause) -> Option<Text> {
     let hex = |bank: &u8| format!("0x{bank:02X}");
     Some(match cause.get()? {

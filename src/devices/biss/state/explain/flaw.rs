@@ -5,7 +5,6 @@ use crate::app::{Text, explain as general};
 use crate::devices::biss::protocol::{Claim, Flaw, Register};
 use crate::devices::biss::state::TEXTS;
 
-/// A mistake in a description.
 pub(super) fn flaw(flaw: &Flaw) -> Text {
     match flaw {
         Flaw::Form(words) => general::plain(words),

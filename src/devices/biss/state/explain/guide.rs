@@ -8,7 +8,6 @@ use crate::devices::biss::profile::{Op, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, PulseVoltage, WiegandResult};
 use crate::devices::biss::state::TEXTS;
 
-/// Returns the heading of an operation.
 pub fn procedure(op: &Op) -> Text {
     TEXTS.text(match op {
         Op::Calibrate => "guide.calibration",
@@ -72,7 +71,6 @@ pub fn task(task: Task) -> Text {
     }
 }
 
-/// Returns what prevents a start.
 pub fn blocker(blocker: Blocker) -> Text {
     match blocker {
         Blocker::Measuring => TEXTS.text("guide.measuring"),
@@ -116,12 +114,10 @@ fn revolutions(text: Text) -> Text {
     text.with("revolutions", WiegandResult::REVOLUTIONS)
 }
 
-/// Adds the temperatures of a calibration.
 pub(super) fn temperatures(text: Text) -> Text {
     text.with("coldest", Demand::CELSIUS.start()).with("warmest", Demand::CELSIUS.end())
 }
 
-/// Adds the slowest and the fastest speed.
 pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {
     text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
 }

@@ -184,7 +184,6 @@ fn left(standing: &LeftState) -> Vec<Text> {
     texts
 }
 
-/// Returns why a procedure failed.
 pub fn failure(failure: &Failure) -> Text {
     match failure {
         Failure::Device(error) => encoder(error),

@@ -1,4 +1,4 @@
-//! Packets of a cyclic connection: numbered and timed when sent, checked when received (reference 7).
+//! Packets of a cyclic connection: numbered and timed when sent, verified when received (reference 7).
 
 use std::time::Duration;
 
@@ -22,7 +22,6 @@ pub struct Connection {
     arrivals: Arrivals,
     /// Time of the last valid packet, or of the opening.
     last_received: Moment,
-    /// Start of the present period of uninterrupted listening.
     awake: Moment,
     /// Until the target gives us up.
     timeout: Duration,
@@ -61,12 +60,10 @@ impl Connection {
         }
     }
 
-    /// Returns the measured figures.
     pub const fn figures(&self) -> &LinkFigures {
         &self.figures
     }
 
-    /// Returns the layout of the process data.
     pub const fn layout(&self) -> Layout {
         self.layout
     }

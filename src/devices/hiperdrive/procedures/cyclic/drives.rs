@@ -15,7 +15,6 @@ pub struct Drives {
     controlled: Vec<ControlledDrive>,
     /// If the connection has parameter words.
     words: Option<ParameterWords>,
-    /// Further places of the image.
     places: usize,
     lost: Option<CyclicLost>,
     ending: Option<Ending>,
@@ -32,7 +31,6 @@ struct ControlledDrive {
 #[derive(Clone, Copy, Debug)]
 struct Ending {
     since: Moment,
-    /// Packets sent with the drives off.
     off: u32,
 }
 
@@ -62,7 +60,6 @@ impl Drives {
         self.controlled.iter().map(|man| &man.dead_man)
     }
 
-    /// Returns the measured figures.
     pub const fn figures(&self) -> &LinkFigures {
         self.connection.figures()
     }
@@ -111,7 +108,6 @@ impl Drives {
         self.close(now);
     }
 
-    /// Handles a packet. Returns whether it counted.
     pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> bool {
         let Some(image) = self.connection.on_packet(now, bytes) else { return false };
         for man in &mut self.controlled {

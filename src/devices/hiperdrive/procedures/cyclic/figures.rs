@@ -1,4 +1,4 @@
-//! The figures of a cyclic connection.
+//! Statistics of a cyclic connection.
 
 use std::time::Duration;
 
@@ -10,9 +10,7 @@ use crate::link::LinkError;
 pub struct LinkFigures {
     /// Interval between packets as agreed by the target, in both directions.
     pub interval: Duration,
-    /// Packets to the target.
     pub sent: u64,
-    /// Packets that counted.
     pub received: u64,
     /// Packets that did not arrive before a later one.
     pub missed: u64,
@@ -20,7 +18,6 @@ pub struct LinkFigures {
     pub stale: u64,
     /// Packets that were none of this connection, or broken.
     pub malformed: u64,
-    /// Intervals between received packets.
     pub intervals: Histogram,
 }
 
@@ -38,7 +35,6 @@ pub enum CyclicLost {
     /// Nothing has come for three intervals.
     #[error("nothing has come for {} ms", after.as_millis())]
     Silent { after: Duration },
-    /// The port failed.
     #[error(transparent)]
     Port(#[from] LinkError),
     /// The drive does not stop, whatever is sent: the connection was closed so that the target stops it.
@@ -47,7 +43,6 @@ pub enum CyclicLost {
     /// The session's own TCP connection is lost.
     #[error("the connection for parameters is gone")]
     Session,
-    /// The program has failed.
     #[error("its thread has failed")]
     Failed,
 }
@@ -62,7 +57,6 @@ pub struct Bucket {
     pub from_us: Option<i64>,
     /// Upper bound of the deviation in microseconds; `None` without a bound.
     pub below_us: Option<i64>,
-    /// Number of intervals.
     pub count: u64,
 }
 
@@ -92,7 +86,6 @@ impl Histogram {
         self.least.zip(self.greatest)
     }
 
-    /// Returns the number of intervals.
     pub fn total(&self) -> u64 {
         self.counts.iter().sum()
     }

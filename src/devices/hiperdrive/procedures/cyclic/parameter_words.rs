@@ -1,5 +1,5 @@
-//! Parameters read through the parameter words of a cyclic connection, one at a time and again and again (reference 6). They
-//! are only read: values are written by explicit messages, through a plan.
+//! Parameters read cyclically through the parameter words of a connection, one at a time (reference 6). Values are only
+//! read this way; writing requires explicit messages and a plan.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -33,9 +33,7 @@ pub struct ParameterReading {
 /// Result of a request in the parameter words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterResult {
-    /// The value, in the unit of the parameter.
     Number(i64),
-    /// The device refused the request.
     Refused(PkwError),
     /// The device did not reply within the time limit.
     NoReply,
@@ -47,11 +45,15 @@ enum Phase {
     #[default]
     Clear,
     /// The same since that moment, with a parameter to read.
-    Clearing { since: Moment },
+    Clearing {
+        since: Moment,
+    },
     /// Nothing is requested, and the device shows this.
     Ready,
-    /// A parameter is requested.
-    Reading { number: ParameterNumber, since: Moment },
+    Reading {
+        number: ParameterNumber,
+        since: Moment,
+    },
 }
 
 /// Time limit for a reply; the manual states none (`U`).
@@ -66,12 +68,10 @@ impl ParameterWords {
         }
     }
 
-    /// Returns the latest readings.
     pub const fn readings(&self) -> &ParameterReadings {
         &self.readings
     }
 
-    /// Returns the words of the next packet.
     pub fn request(&mut self, now: Moment) -> Pkw {
         match self.phase {
             Phase::Clear if !self.watched.is_empty() => self.phase = Phase::Clearing { since: now },
@@ -98,7 +98,6 @@ impl ParameterWords {
         }
     }
 
-    /// Handles the words of a received packet.
     pub fn receive(&mut self, now: Moment, words: Pkw) {
         match self.phase {
             Phase::Clearing { .. } if words.answer_to(Pkw::default()).is_some() => self.phase = Phase::Ready,

@@ -1,4 +1,4 @@
-//! Motion requests to a drive, its permit, and how an act ended.
+//! Motion requests to a drive, its permit, and the outcome of an act.
 
 use std::time::Duration;
 
@@ -8,7 +8,6 @@ use crate::units::Moment;
 /// A motion request to a drive, and when it was last refreshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Intent {
-    /// The drive to move. The others rest.
     pub drive: DriveNumber,
     pub request: MotionRequest,
     /// Number of the user's act: each has its own, higher than those before.
@@ -22,27 +21,20 @@ pub struct Intent {
 pub enum MotionRequest {
     /// No request: a motion stops, and the drive's state is held.
     Rest,
-    /// Leads the drive to another state.
     Lead(Goal),
-    /// Acknowledges a fault; the drive is then ready.
     Acknowledge,
     /// Moves to a position in scaled steps.
     Move {
-        /// Target position.
         target: i32,
-        /// Speed and torque.
         effort: Effort,
     },
     /// A number of scaled steps from the present position: a positioning job, which a stop ends.
     Step {
         /// Signed number of steps.
         by: i32,
-        /// Speed and torque.
         effort: Effort,
     },
-    /// Pauses the running job.
     Pause,
-    /// Resumes the paused job.
     Resume,
     /// Turns as long as the button is held, to the end of the range at most.
     Jog {
@@ -52,11 +44,9 @@ pub enum MotionRequest {
         /// If set, it may lead further out from outside the limits: with a wrong reference that can be the only way back.
         outward: bool,
     },
-    /// Turning in speed mode.
     Run {
         direction: Direction,
         end: RunEnd,
-        /// Speed and torque.
         effort: Effort,
     },
     Stop,
@@ -80,7 +70,6 @@ pub enum Goal {
 pub struct Effort {
     /// Percentage of the maximum speed (parameter 166).
     pub speed: Percent,
-    /// Percentage of the nominal torque.
     pub torque: Percent,
 }
 
@@ -89,7 +78,6 @@ pub struct Effort {
 pub struct Permit {
     /// Parameters 158 and 160; `None` if they were not read.
     pub limits: Option<(i32, i32)>,
-    /// The locks that prevent motion.
     pub locks: Vec<Lock>,
     /// If set, it may run past its limits.
     pub endless: bool,
@@ -119,36 +107,29 @@ pub enum Lock {
 /// The phase of a drive's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Its state is held.
     Idle,
-    /// It is being led to this state.
     Leading(Goal),
-    /// A motion is about to begin.
     Starting(MotionKind),
     Moving(MotionKind),
-    /// Its job is paused.
-    Paused {
-        target: i32,
-    },
-    /// It is being stopped.
+    Paused { target: i32 },
     Stopping(StopLevel),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionKind {
-    /// A positioning job.
     Job {
         /// In scaled steps.
         target: i32,
     },
-    /// A run in speed mode.
-    Run { direction: Direction, end: RunEnd },
+    Run {
+        direction: Direction,
+        end: RunEnd,
+    },
 }
 
 /// A level of the ladder with which a drive is stopped (reference 3, *STOP ladder*).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopLevel {
-    /// The stop of its mode. Torque stays on.
     Mode,
     /// 0401h: operation is disabled.
     Operational,
@@ -158,17 +139,12 @@ pub enum StopLevel {
     Close,
 }
 
-/// How an act ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// The drive has reached the requested state.
     Done,
-    /// It is at its target.
     Arrived,
     RangeEnd,
-    /// Released or stopped.
     Stopped,
-    /// Replaced by another act.
     Replaced,
     /// Not refreshed in time.
     Stale,
@@ -190,7 +166,6 @@ pub enum Ended {
     Left(State),
     /// The drive stands still, but has not reached its target.
     Short,
-    /// The drive is beyond its limits.
     Beyond {
         /// In scaled steps.
         position: i32,
@@ -205,11 +180,9 @@ pub enum Ended {
 /// Why an act was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The drive is locked.
     Locked(Lock),
     /// 0 % of speed or torque.
     NoEffort,
-    /// The target is beyond the limits.
     Outside {
         /// In scaled steps.
         target: i32,
@@ -328,7 +301,6 @@ impl Effort {
     /// the torque that an axis may need.
     pub const MOVE: Effort = Effort { speed: percent(25), torque: Percent::FULL };
 
-    /// Limits the effort to another one.
     pub fn at_most(self, other: Effort) -> Self {
         Effort { speed: self.speed.min(other.speed), torque: self.torque.min(other.torque) }
     }

@@ -1,4 +1,4 @@
-//! Why a running act ends early.
+//! Reasons why a running act ends early.
 
 use super::{CONTACT_TIMEOUT, DeadMan, Ended, Intent, Lock, MotionKind, MotionRequest, Permit, Refusal, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, StatusBit};

@@ -1,5 +1,5 @@
-//! Leading a drive through its states: one word after the other, each until the drive has followed or a time limit ends
-//! (reference 3, and the recipes of `devices/hiperdrive/protocol/recipe`).
+//! Leading a drive through its states: one control word after another, each until the drive has followed or a time
+//! limit expires (reference 3, and the recipes in `devices/hiperdrive/protocol/recipe`).
 
 use super::{Act, DeadMan, Ended, Goal, Mark, MotionKind, Refusal, SETTLE, STEP, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, State, StatusBit, StatusWord};
@@ -23,7 +23,6 @@ enum LeadStep {
 }
 
 impl Goal {
-    /// Returns how far up a word leads.
     pub(super) const fn of_word(word: ControlWord) -> Goal {
         if !word.has(ControlBit::Control) {
             Goal::Off
@@ -36,7 +35,6 @@ impl Goal {
         }
     }
 
-    /// Returns the word that holds this goal.
     pub(super) const fn word(self) -> ControlWord {
         match self {
             Goal::Off => ControlWord::OFF,

@@ -1,4 +1,4 @@
-//! The stages of the dead-man: at rest, leading, armed, started, moving, paused, stopping; and their control words.
+//! Stages of the dead-man and their control words: at rest, leading, armed, started, moving, paused, stopping.
 
 use std::time::Duration;
 
@@ -7,15 +7,12 @@ use super::{DeadMan, Effort, Ended, Goal, LEVEL_TIME, Motion, MotionKind, SETTLE
 use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, Setpoint, State, StatusBit};
 use crate::units::Moment;
 
-/// Stage of the dead-man.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stage {
-    /// The level is held.
     Rest {
         /// Since when the drive moves although it should rest.
         moves: Option<Moment>,
     },
-    /// It is led to another state.
     Lead(Lead),
     /// It has the setpoints of a motion, and the word from which the motion can start.
     Arm {
@@ -23,24 +20,24 @@ pub(super) enum Stage {
         /// Status bit 12 as reported before.
         acknowledged: bool,
     },
-    /// The motion starts.
-    Start { since: Mark, acknowledged: bool },
-    /// The motion is running.
+    Start {
+        since: Mark,
+        acknowledged: bool,
+    },
     Go {
         since: Mark,
         acknowledged: bool,
         /// Since when the drive stands still.
         standing_since: Option<Mark>,
     },
-    /// A job is paused.
-    Paused { since: Mark, acknowledged: bool },
-    /// The drive is being stopped.
+    Paused {
+        since: Mark,
+        acknowledged: bool,
+    },
     Stop {
         level: StopLevel,
-        /// Start of this level.
         since: Moment,
         begun: Mark,
-        /// The stop of its mode.
         word: ControlWord,
     },
 }
@@ -63,12 +60,10 @@ impl Mark {
 }
 
 impl Stage {
-    /// Returns whether a motion is requested.
     pub(super) const fn moves(&self) -> bool {
         matches!(self, Stage::Arm { .. } | Stage::Start { .. } | Stage::Go { .. })
     }
 
-    /// Returns whether a motion is requested or paused.
     pub(super) const fn has_motion(&self) -> bool {
         self.moves() || matches!(self, Stage::Paused { .. })
     }
@@ -85,7 +80,6 @@ impl StopLevel {
 }
 
 impl DeadMan {
-    /// Advances by the drive's reports, and by time.
     pub(super) fn advance(&mut self, now: Moment, actual: Actual) {
         let mark = self.mark(now);
         let has = |bit| actual.status.has(bit);
@@ -152,7 +146,6 @@ impl DeadMan {
         self.act.and_then(|act| act.motion).is_some_and(|motion| matches!(motion.kind, MotionKind::Run { .. }))
     }
 
-    /// Ends the act, and stops its motion.
     pub(super) fn stop(&mut self, now: Moment, how: Ended) {
         let moved = self.stage.has_motion();
         self.end(how);
@@ -207,7 +200,6 @@ impl DeadMan {
         }
     }
 
-    /// Returns the setpoint of the stage.
     pub(super) fn setpoint(&self, actual: Actual) -> Setpoint {
         let motion = self.act.and_then(|act| act.motion);
         let control = match (&self.stage, motion) {

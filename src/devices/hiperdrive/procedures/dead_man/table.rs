@@ -1,5 +1,5 @@
-//! The table of phases and events in docs/motion.md, which says how a motion ends, is read and played here (issue 21, *What
-//! must hold*).
+//! Executes the table of phases and events in docs/motion.md, which specifies how a motion ends (issue 21, *What must
+//! hold*).
 
 use std::time::Duration;
 
@@ -17,7 +17,6 @@ struct Bench {
     permit: Permit,
     status: u16,
     position: i32,
-    /// The request is refreshed in every interval.
     refreshes: bool,
     is_connected: bool,
 }

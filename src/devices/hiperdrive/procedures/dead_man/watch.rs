@@ -1,16 +1,16 @@
-//! The watch over a motion: the position in every report is compared with the limits and the target, so that a drive that
-//! ignores its limits or turns the wrong way is stopped with the very next packet.
+//! Supervision of a motion: the position in every report is compared with the limits and the target, so that a drive
+//! that ignores its limits or turns the wrong way is stopped with the very next packet.
 //!
-//! | case | what holds |
+//! | case | rule |
 //! |---|---|
-//! | endless run | an expert's run without an end is held against its direction alone: there is no limit that it obeys |
-//! | unread limits | nothing moves, and what moves is stopped: the permit says so |
-//! | already outside | the way back in is free; further out only where that was freed for this press |
-//! | outside by status bit 15 alone, more than a degree inside or near both limits | nothing moves but what was freed for this press: the way in is not known |
-//! | overrun while braking | a stop that is under way goes on; its reason stays |
+//! | endless run | only the direction of an expert's endless run is supervised, since no limit applies |
+//! | unread limits | nothing may move, and a moving drive is stopped, as the permit states |
+//! | already outside | the way back in is free; further out only if enabled for this press |
+//! | outside by status bit 15 alone, more than a degree inside or near both limits | only the direction enabled for this press, since the way in is unknown |
+//! | overrun while braking | a stop in progress continues and keeps its reason |
 //!
-//! Within one degree beyond a limit, a run has ended at the end of its range: a drive repeats a position no better than ±1°
-//! (manual, technical data; reference 5).
+//! A run that ends within one degree beyond a limit counts as having reached the end of its range: the repeatability of
+//! a drive is ±1° (manual, technical data; reference 5).
 
 use super::{DeadMan, Ended, Lock, Motion, MotionKind, MotionRequest, Permit, Refusal, SHORT, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, RunEnd, State, StatusBit};
@@ -19,9 +19,7 @@ use crate::units::Moment;
 /// A side of the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Below the lower limit.
     Below,
-    /// Above the upper limit.
     Above,
 }
 

@@ -1,7 +1,7 @@
 //! Opening and closing the cyclic connection over explicit messages (reference 7). Its packets are in `cyclic`.
 //!
-//! The sizes and kinds of connection that a device accepts would be in its description (`U`). Tried in this order: with
-//! parameter words, point to point; then multicast; then without parameter words.
+//! The connection sizes and types that a device accepts would be in its description (`U`). They are tried in this
+//! order: with parameter words, point to point; then multicast; then without parameter words.
 
 use core::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -18,23 +18,16 @@ use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout, Topology};
 /// A cyclic connection that was opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Opened {
-    /// Connection id of packets to the target.
     pub to_target_id: u32,
-    /// Connection id of packets to the originator.
     pub to_originator_id: u32,
-    /// Interval of packets to the target.
     pub to_target_interval: Duration,
-    /// Interval of packets from the target.
     pub to_originator_interval: Duration,
     /// Time without a packet after which the target ends the connection and the drives stop.
     pub timeout: Duration,
-    /// Layout of the process data.
     pub layout: Layout,
-    /// Port for packets to the target.
     pub port: u16,
     /// Multicast group of its packets, if it uses one.
     pub group: Option<SocketAddrV4>,
-    /// The request that closes it.
     pub close: ForwardClose,
 }
 
@@ -175,7 +168,6 @@ impl Master<'_> {
     }
 }
 
-/// Returns the multicast group to listen to.
 fn group(to: SocketAddress) -> Option<SocketAddrV4> {
     to.address.is_multicast().then(|| SocketAddrV4::new(to.address, to.port))
 }

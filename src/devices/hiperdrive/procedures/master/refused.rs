@@ -1,5 +1,5 @@
-//! Finds out why a parameter was refused, as far as possible: whether the drive exists, whether it is requested, and
-//! the present range of the value.
+//! Diagnosis of a refused parameter: whether the drive exists, whether it is requested, and the present range of the
+//! value, as far as can be determined.
 
 use super::{Master, Repeats, settable};
 use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};

@@ -1,5 +1,5 @@
-//! Issue 21.10: compares the parameter table, row by row, with a second transcription of the manual's
-//! (`hiperdrive_parameters.txt`), and the limits that result from the turns of a family.
+//! Comparison of the parameter table, row by row, with a second transcription of the manual's
+//! (`hiperdrive_parameters.txt`), and of the limits that result from the turns of a family (issue 21.10).
 
 use std::collections::BTreeMap;
 use std::time::Duration;

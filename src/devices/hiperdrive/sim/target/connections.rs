@@ -1,8 +1,8 @@
 //! The connection manager: opening and closing cyclic and explicit connections, and unwrapping requests.
 //!
-//! Chosen here (`U`): one cyclic connection, to one master; sizes with and without parameter words, intervals from 5 to 100
-//! ms, no configuration data and no multicast. Explicit connections (class 3) are available, and end with their session. A
-//! ForwardOpen with long fields (5Bh) is not supported.
+//! Assumptions (`U`): one cyclic connection, to one master; sizes with and without parameter words, intervals from 5 to
+//! 100 ms, no configuration data and no multicast. Explicit connections (class 3) are available, and end with their
+//! session. A ForwardOpen with long fields (5Bh) is not supported.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -76,7 +76,6 @@ impl Connections {
         self.cyclic.as_ref().map(Cyclic::due)
     }
 
-    /// Ends the explicit connections of a session.
     pub(super) fn end(&mut self, session: u32) {
         self.explicit.retain(|explicit| explicit.session != session);
     }
@@ -235,7 +234,6 @@ impl Plant {
         if usize::from(open.to_originator.size()) == back { Ok(layout) } else { Err(TO_ORIGINATOR_SIZE) }
     }
 
-    /// Opens an explicit connection to the message router.
     fn open_explicit(&mut self, session: u32, open: &ForwardOpen) -> Result<u32, Refusal> {
         let connections = &mut self.connections;
         if connections.explicit.iter().any(|explicit| explicit.owner == open.owner) {

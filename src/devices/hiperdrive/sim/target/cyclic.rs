@@ -1,8 +1,8 @@
 //! The cyclic connection of class 1: packets received and sent, each at its time.
 //!
-//! Chosen here (`U`): the first packet is sent an interval after the connection was opened; every packet in sequence
-//! counts, whatever its data count; a packet that is old, of a wrong length or of another connection is dropped and
-//! counted, and does not keep the connection alive.
+//! Assumptions (`U`): the first packet is sent one interval after the connection was opened; every packet in sequence
+//! counts, whatever its data count; a packet that is old, has a wrong length or belongs to another connection is
+//! dropped and counted, and does not keep the connection alive.
 
 use std::net::SocketAddrV4;
 use std::time::Duration;
@@ -14,7 +14,6 @@ use crate::buses::ethernet_ip::protocol::{
 use crate::devices::hiperdrive::protocol::{Layout, OutImage};
 use crate::units::Moment;
 
-/// A cyclic connection.
 #[derive(Debug)]
 pub(super) struct Cyclic {
     pub(super) owner: Owner,
@@ -80,7 +79,6 @@ impl Plant {
         }
     }
 
-    /// Handles a received datagram.
     pub(super) fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]) {
         self.advance(now);
         if !self.hears() || !self.arrives() {

@@ -103,7 +103,6 @@ impl Plant {
         }
     }
 
-    /// Handles SendRRData.
     fn unconnected(&mut self, from: Originator, frame: &Frame) -> Result<Body, Refusal> {
         let items = self.items(from, frame)?;
         let (Some(Item::Null), Some(message)) = (items.0.first(), items.unconnected_data()) else {

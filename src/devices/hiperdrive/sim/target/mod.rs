@@ -1,16 +1,16 @@
 //! An EtherNet/IP target in front of a station (reference 7): TCP connections, and the datagrams of all of them.
 //!
-//! Chosen here (`U`): a session ends with its TCP connection; a cyclic connection does not, and ends by its own time-out,
-//! since its packets show that the master is alive. Bytes that are not frames, and UnRegisterSession, end the TCP
-//! connection. A target that lost its supply answers again after the next connection.
+//! Assumptions (`U`): a session ends with its TCP connection; a cyclic connection does not, and ends by its own
+//! time-out, since its packets show that the master is alive. Bytes that are not frames, and UnRegisterSession, end the
+//! TCP connection. A target that lost its supply replies again after the next connection.
 //!
-//! | file | what it is |
+//! | file | content |
 //! |---|---|
-//! | `plant` | what all connections have in common: time, sessions, faults |
-//! | `frames` | a frame and its reply |
-//! | `objects` | identity, parameters, what CIP asks of them |
+//! | `plant` | state shared by all connections: time, sessions, faults |
+//! | `frames` | frames and their replies |
+//! | `objects` | the CIP objects for identity and parameters |
 //! | `network` | the TCP/IP and Ethernet objects |
-//! | `connections` | the connection manager: who opens and closes what |
+//! | `connections` | the connection manager |
 //! | `cyclic` | the cyclic connection, packet by packet |
 
 mod connections;
@@ -51,7 +51,6 @@ pub struct Figures {
     pub frames: u64,
     /// Streams that were no frames.
     pub broken: u64,
-    /// Packets of the cyclic connection that counted.
     pub packets: u64,
     /// Packets of the connection that were older than an earlier one, or repeated.
     pub stale: u64,
@@ -102,7 +101,6 @@ impl Target {
         self.lock().figures
     }
 
-    /// Returns whether it has closed this TCP connection.
     pub const fn has_ended(&self) -> bool {
         self.ended
     }

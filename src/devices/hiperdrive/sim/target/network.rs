@@ -1,7 +1,7 @@
-//! The TCP/IP object (class F5h) and the Ethernet link (F6h), as ODVA has them (`P`).
+//! TCP/IP object (class F5h) and Ethernet link object (F6h) as specified by ODVA (`P`).
 //!
-//! Chosen here (`U`): attribute 5 can be set only while attribute 3 is stored addresses, and takes effect at once; the
-//! virtual device stays reachable at its old address.
+//! Assumptions (`U`): attribute 5 can be set only while attribute 3 selects stored addresses, and takes effect at once;
+//! the virtual device remains reachable at its old address.
 
 use std::net::Ipv4Addr;
 
@@ -71,7 +71,6 @@ impl Network {
         (self.control, self.stored) = (dhcp(), NONE);
     }
 
-    /// Returns an attribute of the TCP/IP object.
     pub(super) fn interface(&self, attribute: u16) -> Option<Vec<u8>> {
         let bytes = match attribute {
             1 => CONFIGURED.to_le_bytes().to_vec(),
@@ -95,7 +94,6 @@ impl Network {
         (1..=6).filter_map(|attribute| self.interface(attribute)).flatten().collect()
     }
 
-    /// Sets an attribute of the TCP/IP object.
     pub(super) fn set(&mut self, attribute: u16, data: &[u8]) -> Result<Vec<u8>, GeneralStatus> {
         match attribute {
             ConfigurationControl::ATTRIBUTE => {
@@ -122,7 +120,6 @@ impl Network {
         Ok(Vec::new())
     }
 
-    /// Returns an attribute of the Ethernet link.
     pub(super) fn link(&self, attribute: u16) -> Option<Vec<u8>> {
         match attribute {
             1 => Some(MEGABITS.to_le_bytes().to_vec()),

@@ -1,4 +1,4 @@
-//! The state shared by all connections to a target: its time, the sessions, its injected faults.
+//! State shared by all connections to a target: time, sessions and injected faults.
 
 use std::collections::BTreeMap;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -26,16 +26,13 @@ pub(super) struct Plant {
     pub(super) order: ByteOrder,
     pub(super) counted_texts: bool,
     pub(super) listens: SocketAddrV4,
-    /// Port of cyclic data.
     pub(super) udp: u16,
     pub(super) figures: Figures,
     pub(super) now: Moment,
-    /// Originators by session number.
     pub(super) sessions: BTreeMap<u32, Originator>,
     pub(super) datagrams: Queue<(SocketAddrV4, Vec<u8>)>,
     pub(super) rng: Rng,
     faults: Faults,
-    /// Frames and datagrams.
     heard: u32,
     originators: u64,
 }
@@ -152,7 +149,6 @@ impl Plant {
         !self.station.is_cut_off() && self.faults.silent_after().is_none_or(|count| self.heard < count)
     }
 
-    /// Returns whether a datagram gets through to it.
     pub(super) fn arrives(&mut self) -> bool {
         self.faults.passage(&mut self.rng, 0).carried.is_some()
     }

@@ -1,4 +1,4 @@
-//! The user's actions in the set-up of an axis, and the requests to the device that follow.
+//! Actions of the user during axis set-up, and the resulting requests to the device.
 
 use std::path::PathBuf;
 
@@ -12,23 +12,16 @@ pub enum DriveRequest {
     Try(Vec<(u16, i64)>),
     /// Set the position at the present place of the drive, without saving it.
     SetPosition(i32),
-    /// Confirm the limits for the user.
     ConfirmLimits,
-    /// Move the drive slowly.
     Move(i32),
-    /// Open the cyclic connection.
     Take,
-    /// Close the cyclic connection.
     Give,
-    /// Save everything.
     Save,
     /// Write the previous values back, without saving them.
     Restore(Vec<(u16, i64)>),
-    /// Acknowledge a fault.
     Acknowledge,
     /// Note that the supply was off, as stated by the user.
     BelieveRestart,
-    /// Switch the virtual device's supply off and on.
     PowerCycle,
 }
 
@@ -37,23 +30,15 @@ pub enum DriveRequest {
 pub enum Button {
     /// The task of the step: request, write, save.
     Do,
-    /// Confirm the limits.
     Confirm,
     /// Widen the limits to the travel of the drive.
     Widen,
-    /// Start a test move.
     Go(TestTarget),
-    /// Take control over the cyclic connection.
     Take,
-    /// Give up control.
     Give,
-    /// Switch the virtual supply off and on.
     PowerCycle,
-    /// State that the supply was off.
     Restarted,
-    /// Acknowledge the fault of the drive.
     Acknowledge,
-    /// Restore the saved values.
     Recall,
 }
 
@@ -62,7 +47,6 @@ pub enum Button {
 pub enum AxisAction {
     /// Begin it, or begin it again.
     Begin,
-    /// Something was typed.
     Edit(Box<Entries>),
     Press(Button),
     /// Take the present position as the limit of the step.
@@ -73,7 +57,6 @@ pub enum AxisAction {
     Skip,
     /// Go to the previous step.
     Back,
-    /// Cancel: the drive stops.
     Cancel,
     /// Ask where to save the report of a finished run.
     AskReport,

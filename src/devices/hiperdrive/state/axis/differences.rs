@@ -1,4 +1,5 @@
-//! Values of a drive that are known to differ from the saved ones: after an interrupted run, and to be written back.
+//! Values of a drive that are known to differ from the saved ones after an interrupted run, and that must be written
+//! back.
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
@@ -6,9 +7,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 /// A parameter, by the number of drive 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// The parameter.
     pub number: u16,
-    /// Saved value.
     pub saved: i64,
     pub now: i64,
 }

@@ -1,4 +1,4 @@
-//! The known facts of a drive while its axis is set up.
+//! Known facts about a drive during its axis set-up.
 
 use std::collections::BTreeMap;
 
@@ -10,16 +10,13 @@ use crate::units::Moment;
 /// Known facts of the drive at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveFacts {
-    /// The device answers.
     pub connected: bool,
     /// A job is running, or a review is open.
     pub busy: bool,
     /// Its parameters may differ from those that were read.
     pub stale: bool,
     pub is_virtual: bool,
-    /// The cyclic connection is open.
     pub controlled: bool,
-    /// Something moves, or is about to.
     pub moves: bool,
     /// The act of a held jog button, and its direction.
     pub held: Option<(u64, Direction)>,
@@ -43,7 +40,6 @@ pub struct DriveFacts {
     pub pitch: Option<Length>,
     /// Parameters 158 and 160.
     pub limits: Option<(i32, i32)>,
-    /// Its family, which determines the travel.
     pub family: Option<Family>,
     /// Why it may not move.
     pub locks: Vec<Lock>,
@@ -54,7 +50,6 @@ pub struct DriveFacts {
 }
 
 impl DriveFacts {
-    /// Returns whether its data are reliable.
     pub(super) fn is_settled(&self) -> bool {
         self.connected && !self.busy && !self.stale
     }

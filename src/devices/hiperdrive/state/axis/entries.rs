@@ -1,4 +1,4 @@
-//! The entries of the set-up of an axis: pitch and resolution, the position of a place, both limits; and their results.
+//! Entries of the axis set-up: pitch and resolution, the reference position and both limits, with their results.
 
 use super::{DriveFacts, words};
 use crate::app::number::within;
@@ -15,11 +15,8 @@ pub struct Entries {
     pub pitch: String,
     /// Length of a step.
     pub resolution: String,
-    /// Position of the axis at its present place.
     pub reference: String,
-    /// The lower limit.
     pub lower: String,
-    /// The upper limit.
     pub upper: String,
 }
 

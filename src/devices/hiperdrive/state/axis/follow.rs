@@ -1,4 +1,4 @@
-//! The progress of the run: by the user's buttons, by completed writes, by the drive's data.
+//! Progress of the run through buttons, completed writes and data from the drive.
 
 use super::entries::{Entries, typed};
 use super::standstill::PositionChange;
@@ -9,7 +9,6 @@ use super::{
 use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, REFERENCE, UPPER};
 
 impl Axis {
-    /// Changes the entries.
     pub(crate) fn edit(&mut self, entries: Entries) {
         if self.over.is_none() {
             self.entries = entries;
@@ -83,7 +82,6 @@ impl Axis {
         }
     }
 
-    /// Ends it early. The caller stops the drive.
     pub(crate) fn cancel(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() {
             self.going = None;
@@ -95,7 +93,6 @@ impl Axis {
         self.over = Some(RunSummary { end, when: when.to_owned(), seen: Box::new(seen.clone()) });
     }
 
-    /// Records that a request is in progress.
     pub(crate) fn begin(&mut self, ask: DriveRequest, seen: &DriveFacts) {
         match ask {
             DriveRequest::Try(_) | DriveRequest::SetPosition(_) | DriveRequest::Save | DriveRequest::Restore(_) => {
@@ -180,7 +177,6 @@ impl Axis {
         }
     }
 
-    /// Notes that the device has stopped answering.
     pub(crate) fn lose(&mut self) {
         self.not_written(true);
         self.going = None;

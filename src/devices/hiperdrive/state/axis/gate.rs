@@ -1,4 +1,4 @@
-//! The buttons of the set-up of an axis: what each requests, and what is missing before the next step.
+//! Buttons of the axis set-up: the request of each, and the conditions for the next step.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! The report of a finished run, to be saved and printed: plain text that fits a page, lengths in millimetres.
+//! Report of a finished run for saving and printing: plain text that fits a page, lengths in millimetres.
 
 use super::{Axis, AxisStep, DriveFacts, End, Reached, TestTarget, words};
 use crate::app::{Language, Text};
@@ -7,7 +7,6 @@ use crate::devices::hiperdrive::state::TEXTS;
 /// The device of the axis, for a report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Device {
-    /// The name of the adapter or hub.
     pub name: String,
     /// The variant, if known.
     pub variant: Option<Text>,

@@ -1,6 +1,6 @@
-//! The position of an axis at a standstill. Parameter 198 is the number written last, and no parameter shows the place
-//! where that was (manual, 198 and 107): a reference set again to the same number elsewhere shows only as a position that
-//! jumps without motion. So two readings of an axis at a standstill are compared.
+//! Comparison of two positions of an axis at standstill. Parameter 198 is the number written last, and no parameter
+//! reveals where it was written (manual, 198 and 107): a reference set again to the same number elsewhere is visible
+//! only as a position that jumps without motion.
 
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! The results of the set-up, step by step. Each keeps the facts of the drive that it depends on. If one of them
-//! changes, whoever changed it, the result is void, and with it all later ones.
+//! Results of the axis set-up, step by step. Each records the facts of the drive on which it depends. If one of them
+//! changes, whoever changed it, the result becomes void together with all later ones.
 
 use super::{AxisStep, DriveFacts};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
@@ -96,7 +96,6 @@ fn is_unchanged(step: AxisStep, on: &Preconditions, now: &Preconditions) -> bool
     }
 }
 
-/// Returns whether a result equals the previous one.
 fn is_same(step: AxisStep, before: &Preconditions, now: &Preconditions) -> bool {
     is_unchanged(step, before, now) && (step != AxisStep::Lower || before.lower == now.lower)
 }

@@ -1,5 +1,5 @@
-//! The check of the supply: the state before it was lost, the state after it returned, and the proof that it was off at
-//! all. A connection that was lost and restored proves nothing.
+//! Power-cycle check: the state before the supply was lost, the state after it returned, and the proof that it was off
+//! at all. A connection that was lost and restored proves nothing.
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
@@ -27,7 +27,6 @@ pub struct StateBeforePowerOff {
 pub enum Restart {
     /// By reading: parameter 182 has its factory setting again.
     Read,
-    /// The virtual supply was switched from here.
     Switched,
     /// By the user's statement; no reading proves it.
     Said,
@@ -47,13 +46,11 @@ pub enum Power {
     Back {
         /// State before.
         before: StateBeforePowerOff,
-        /// The saved values are present.
         kept: bool,
         /// Steps between the positions before and after; `None` if one of them is not known.
         moved: Option<i64>,
         /// Allowed deviation in steps.
         allowed: i64,
-        /// The evidence that the supply was off.
         restart: Restart,
     },
 }
@@ -83,7 +80,6 @@ impl Power {
         }
     }
 
-    /// Notes that the drive has stopped answering.
     pub(super) const fn gone(self) -> Self {
         match self {
             Power::On(before) | Power::Gone(before) | Power::Back { before, .. } => Power::Gone(before),

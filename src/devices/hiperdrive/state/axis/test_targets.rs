@@ -1,4 +1,4 @@
-//! The distance that an axis was moved by jogging, and the three targets of the test.
+//! Distance by which the axis was jogged, and the three targets of the test.
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
@@ -8,11 +8,8 @@ use crate::devices::hiperdrive::protocol::Direction;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum TestTarget {
-    /// The middle of the range.
     Middle,
-    /// The lower limit.
     Lower,
-    /// The upper limit.
     Upper,
 }
 
@@ -20,7 +17,6 @@ pub enum TestTarget {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
     pub target: i32,
-    /// The position of the drive at its end.
     pub position: i32,
     pub ended: Ended,
     /// Allowed deviation from the target: 1° in steps (reference 5, repeatability).
@@ -32,7 +28,6 @@ pub struct Outcome {
 pub struct Travel {
     /// Farthest distance upward in one jog; 0 until it is significant.
     pub up: i64,
-    /// The farthest down.
     pub down: i64,
     /// Turning clockwise counts up; `None`: not observed yet.
     pub clockwise_is_up: Option<bool>,

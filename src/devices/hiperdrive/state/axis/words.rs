@@ -1,4 +1,4 @@
-//! The texts of the steps of an axis set-up: names, tasks, findings.
+//! Texts for the steps of the axis set-up: names, tasks, findings.
 
 use super::{Axis, AxisChange, AxisStep, DriveFacts, Outcome, Power, Reached, Restart, TestTarget};
 use crate::app::Text;
@@ -41,7 +41,6 @@ pub fn todo(step: AxisStep, seen: &DriveFacts) -> Text {
     })
 }
 
-/// Returns the progress in a word.
 pub fn reached(own: Reached) -> Text {
     TEXTS.text(match own {
         Reached::Done => "guide.done",
@@ -52,7 +51,6 @@ pub fn reached(own: Reached) -> Text {
     })
 }
 
-/// Returns the label of its button.
 pub fn button(step: AxisStep) -> Text {
     TEXTS.text(match step {
         AxisStep::Request => "hd_axis.request",

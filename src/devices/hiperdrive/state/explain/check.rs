@@ -1,4 +1,4 @@
-//! Texts of the device check.
+//! Texts for the device check.
 
 use super::names::{error, state, variant};
 use crate::app::Text;

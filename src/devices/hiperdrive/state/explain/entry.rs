@@ -1,4 +1,4 @@
-//! Reasons for refusing a profile.
+//! Messages about refused profiles.
 
 use super::error::out_of_range;
 use super::names::parameter;
@@ -7,7 +7,6 @@ use crate::devices::hiperdrive::profile::{EntryError, ItemError};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::profile::Cause;
 
-/// Returns why a profile is refused.
 pub fn entry(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::DriveTwice(drive) => TEXTS.text("hd_wrong.drive_twice").with("drive", drive.get()),

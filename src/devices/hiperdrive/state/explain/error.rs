@@ -1,4 +1,4 @@
-//! Errors of an adapter, a hub or a drive as text: what happened, and what to do.
+//! Messages for errors of an adapter, a hub or a drive: what happened and what to do.
 
 use super::names::parameter;
 use super::status;

@@ -1,4 +1,4 @@
-//! Motion as text: why a drive may not move, why an act was refused, how one ended.
+//! Messages about motion: why a drive may not move, why an act was refused, how one ended.
 
 use super::names::{parameter, state};
 use crate::app::explain::link;

@@ -110,7 +110,6 @@ pub fn parameter(number: ParameterNumber) -> Text {
     }
 }
 
-/// Returns the name of a variant.
 pub fn variant(variant: Variant) -> Text {
     match variant.row() {
         Some(row) => plain(row.name),

@@ -1,4 +1,4 @@
-//! The names of EtherNet/IP statuses, and why a packet or a value cannot be used.
+//! Names of EtherNet/IP status codes, and messages about invalid packets or values.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -120,7 +120,6 @@ pub(super) fn packet(error: &PacketError) -> Text {
     }
 }
 
-/// The name of a structure of EtherNet/IP.
 fn structure(structure: Structure) -> Text {
     TEXTS.text(match structure {
         Structure::ConfigurationControl => "hd_structure.configuration_control",

@@ -1,4 +1,4 @@
-//! Writes as text: changes, operations of a plan, why there is no plan, warnings, results, and why a write ended early.
+//! Messages about writes: changes, operations of a plan, planning errors, warnings, results, and early ends.
 
 use std::path::Path;
 
@@ -30,7 +30,6 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// Returns the name of a service.
 pub fn service(service: Service) -> Text {
     match service {
         Service::Save => TEXTS.text("hd_service.save"),
@@ -139,7 +138,6 @@ fn about(id: &'static str, item: Item) -> Text {
     TEXTS.text(id).with("number", item).with_text("name", parameter(item.0))
 }
 
-/// Returns a warning of a plan.
 pub fn warning(warning: &Warning) -> Text {
     match warning {
         Warning::LimitsMove { drive, now, then } => TEXTS

@@ -1,4 +1,4 @@
-//! The edits: the effect of each on the edited values, and why one is refused.
+//! Edits: the effect of each on the edited values, and the reasons for refusing one.
 
 use super::{BaseSource, Families, is_editable, travel};
 use crate::devices::hiperdrive::profile::Image;
@@ -12,22 +12,18 @@ pub enum Edit {
     Set(ParameterNumber, i64),
     /// Return a parameter to the value of the device or the profile.
     Revert(ParameterNumber),
-    /// Remove a parameter from the profile.
     Leave(ParameterNumber),
     /// Set both limits of a drive at once, if they cannot be set one after the other.
     Limits {
         drive: DriveNumber,
         /// In steps of the edited scale.
         lower: i64,
-        /// Likewise.
         upper: i64,
     },
-    /// Another scale of a drive's positions.
     Scale {
         drive: DriveNumber,
         /// Steps per turn.
         scale: PositionScale,
-        /// How its limits change.
         limits: LimitsPolicy,
     },
 }
@@ -35,9 +31,7 @@ pub enum Edit {
 /// How limits change with the size of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitsPolicy {
-    /// They keep their positions: their numbers change.
     InPlace,
-    /// They keep their numbers: their positions change.
     AsNumbers,
 }
 

@@ -1,4 +1,4 @@
-//! The problems of the edited values, with their location.
+//! Problems of the edited values with their locations.
 
 use super::{Staged, travel};
 use crate::devices::hiperdrive::profile::Image;
@@ -15,7 +15,6 @@ pub enum Mark {
     OutOfRange(OutOfRange),
     /// The upper limit is not above the lower one.
     Crossed {
-        /// Drive of the limits.
         drive: DriveNumber,
         /// As edited.
         lower: i64,
@@ -24,9 +23,7 @@ pub enum Mark {
     },
     /// The drive is outside its edited limits, which it would refuse.
     Outside {
-        /// Drive of the limits.
         drive: DriveNumber,
-        /// Its position in the new scale.
         position: i64,
         /// As edited.
         lower: i64,
@@ -34,18 +31,9 @@ pub enum Mark {
         upper: i64,
     },
     /// The scale has changed and the limits have the same numbers: they mean other positions.
-    LimitsMove {
-        drive: DriveNumber,
-        /// Turns, from and to.
-        lower: (f64, f64),
-        /// Likewise.
-        upper: (f64, f64),
-    },
+    LimitsMove { drive: DriveNumber, lower: (f64, f64), upper: (f64, f64) },
     /// Parameter 186 is 255: the drive would continue after a lost connection, so it is not moved by this program.
-    NoTimeout {
-        /// Drive of the parameter.
-        drive: DriveNumber,
-    },
+    NoTimeout { drive: DriveNumber },
 }
 
 impl Mark {

@@ -1,4 +1,4 @@
-//! The contents of the steps of the set-up of an axis: entries, their results, jog buttons.
+//! Contents of the axis set-up steps: entries, results and jog buttons.
 
 use egui::{RichText, Ui, vec2};
 
@@ -214,7 +214,6 @@ fn reference(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entr
     }
 }
 
-/// Draws three places, and whether they were reached.
 fn test(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| theme.words(&words::millimetres(shown.seen.ruler(), steps.into()));
     for own in TestTarget::ALL {

@@ -1,4 +1,4 @@
-//! The queue of status codes. 50h removes a code from the encoder, so a lost reply may have contained one: late replies are
+//! The status code queue. 50h removes a code from the encoder, so a lost reply may have contained one: late replies are
 //! accepted as well, and possibly lost codes are counted.
 
 use super::Master;

@@ -1,7 +1,8 @@
-//! One exchange, with the timing of the protocol (manual, "Dialog Timing"): dead time, request, reply, dead time.
+//! Single exchanges with the timing of the protocol (manual, "Dialog Timing"): dead time, request, reply, dead time.
 //!
-//! A reply ends with its last byte if its length is known, else with silence. The host listens during the dead time after
-//! it: a byte there means that the frame was longer than expected, and none of it is shown.
+//! A reply ends with its last byte if its length is known, otherwise with silence. The host listens during the
+//! following dead time: a byte received then means that the frame was longer than expected, and the whole frame is
+//! discarded.
 
 use std::time::Duration;
 
@@ -23,14 +24,12 @@ pub(in super::super) enum ExchangeFailure {
         /// The sent bytes came back.
         echo_heard: bool,
     },
-    /// A reply arrived damaged.
     Damage(Damage),
 }
 
 /// An answer and when it began.
 pub(in super::super) struct ReceivedAnswer {
     pub(in super::super) answer: Answer,
-    /// Address of the sender.
     pub(in super::super) sender: u8,
     pub(super) at: Moment,
 }

@@ -1,9 +1,9 @@
-//! Checks whether an encoder is the one that a profile was read from.
+//! Comparison of an encoder with the one from which a profile was read.
 
 use super::{PlanError, RestoreOptions};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 
-/// Refuses an encoder that the profile was not read from. Encoders without a serial number are never the same one.
+/// Refuses an encoder other than that of the profile. Encoders without a serial number never match.
 ///
 /// # Errors
 /// [`PlanError::OtherDevice`], [`PlanError::OtherType`].
@@ -21,7 +21,7 @@ pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_typ
     Ok(())
 }
 
-/// Refuses an encoder that the profile was not read from, as far as that is not allowed.
+/// Refuses an encoder other than that of the profile, unless the options allow it.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].

@@ -1,108 +1,108 @@
-//! Why a profile cannot be restored, or an edit cannot be planned.
+//! Reasons why a profile cannot be restored, or an edit cannot be planned.
 
 use crate::devices::hiperface::protocol::CodeNumber;
 
-/// Why a profile cannot be restored.
+/// The reason why a profile cannot be restored or an edit cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another encoder.
     #[error("the profile is of serial number {profile:?}, the encoder has {device:?}")]
     OtherDevice {
-        /// In the profile.
+        /// Serial number in the profile.
         profile: String,
-        /// In the encoder.
+        /// Serial number of the encoder.
         device: String,
     },
-    /// The profile is of another type of encoder.
+    /// The profile belongs to another type of encoder.
     #[error("the profile is of type {profile:02X}h, the encoder of type {device:02X}h")]
     OtherType {
-        /// In the profile.
+        /// Type code in the profile.
         profile: u8,
-        /// In the encoder.
+        /// Type code of the encoder.
         device: u8,
     },
-    /// Only the last field changes its size.
+    /// Only the last field can change its size.
     #[error("field {field} has {device} bytes in the encoder and {profile} in the profile, and is not the last")]
     SizeFixed {
-        /// The field.
+        /// Field number.
         field: u8,
-        /// Bytes in the profile.
+        /// Size in the profile, in bytes.
         profile: usize,
-        /// Bytes in the encoder.
+        /// Size in the encoder, in bytes.
         device: usize,
     },
-    /// Fields are created in ascending order.
+    /// Fields can only be created in ascending order.
     #[error("field {field} cannot be created before field {missing}")]
     Gap {
-        /// The field.
+        /// Field number.
         field: u8,
-        /// The field that neither side has.
+        /// Number of the field that exists on neither side.
         missing: u8,
     },
     /// The EEPROM is too small.
     #[error("{needed} bytes are needed and {free} are free")]
     NoMemory {
-        /// Bytes that the plan needs.
+        /// Required number of bytes.
         needed: usize,
-        /// Bytes that are free.
+        /// Number of free bytes.
         free: usize,
     },
-    /// A field must be created again and its content cannot be read.
+    /// A field must be created again, but its content cannot be read.
     #[error("field {field} has to be created again and its content cannot be read: access code {code} is not known")]
     WouldLose {
-        /// The field.
+        /// Field number.
         field: u8,
-        /// Its code.
+        /// Number of its access code.
         code: CodeNumber,
     },
-    /// Fields are created in ascending order.
+    /// Fields can only be created in ascending order.
     #[error("field {field} cannot be created: the next one is {next}")]
     NotNext {
-        /// The field asked for.
+        /// Requested field number.
         field: u8,
-        /// The only one that can be created.
+        /// The only field number that can be created.
         next: u8,
     },
-    /// Only the last field is deleted or changes its size.
+    /// Only the last field can be deleted or change its size.
     #[error("field {field} is not the last: that is {last}")]
     NotLast {
-        /// The field asked for.
+        /// Requested field number.
         field: u8,
-        /// The only one that can.
+        /// Number of the last field.
         last: u8,
     },
-    /// There is no such field.
+    /// The field does not exist.
     #[error("field {field} does not exist; the encoder has {count}")]
     NoSuchField {
-        /// The field asked for.
+        /// Requested field number.
         field: u8,
         /// Number of fields.
         count: u8,
     },
-    /// WE is 0.
+    /// The field is write-protected (WE is 0).
     #[error("field {field} is write protected")]
     WriteProtected {
-        /// The field.
+        /// Field number.
         field: u8,
     },
-    /// Bytes beyond the end of the field.
+    /// The bytes extend beyond the end of the field.
     #[error("field {field} has bytes 0 to {last}; {count} bytes at {start} do not fit")]
     OutOfField {
-        /// The field.
+        /// Field number.
         field: u8,
-        /// Its last byte.
+        /// Index of the last byte in the field.
         last: usize,
-        /// First byte to write.
+        /// Index of the first byte to write.
         start: usize,
-        /// Bytes to write.
+        /// Number of bytes to write.
         count: usize,
     },
-    /// The content of the field cannot be read.
+    /// The content of the field cannot be read because its access code is unknown.
     #[error("field {field} cannot be read: access code {code} is not known")]
     CodeUnknown {
-        /// The field.
+        /// Field number.
         field: u8,
-        /// Its code.
+        /// Number of its access code.
         code: CodeNumber,
     },
 }

@@ -1,4 +1,4 @@
-//! The fields that a write created, and how restoring its before-image removes them.
+//! Fields created by a write, which are removed when its backup is restored.
 
 use super::DeviceState;
 use crate::devices::hiperface::profile::{FieldImage, HiperfacePlan, HiperfaceProfile, Op};
@@ -37,7 +37,7 @@ pub(super) fn delete(field: &FieldImage) -> Op {
     Op::Define { field: field.number, from: Some(field.status), to: field.status.deleted() }
 }
 
-/// Returns the fields that a plan creates, as it writes them; only those of which it writes every byte.
+/// Returns the fields that a plan creates and of which it writes every byte.
 pub fn created_by(plan: &HiperfacePlan) -> Vec<FieldImage> {
     let mut created: Vec<(FieldImage, usize)> = Vec::new();
     let had = |number: u8| plan.base.fields.iter().any(|field| field.number == number);

@@ -1,28 +1,28 @@
-//! Data fields of another encoder whose bytes have no known meaning: they may contain an offset between encoder and motor.
+//! Data fields of another encoder with bytes of unknown meaning, which may contain an offset between encoder and motor.
 
 use super::{DeviceState, RestoreOptions};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile};
 use crate::profile::difference::runs;
 
-/// Data field with differing bytes of no known meaning, if profile and encoder are not of one device. They may contain an
-/// offset between encoder and motor.
+/// A data field with differing bytes of unknown meaning, if profile and encoder do not belong to the same device. The
+/// bytes may contain an offset between encoder and motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnknownField {
-    /// Number of the field.
+    /// Field number.
     pub field: u8,
-    /// Such bytes.
+    /// Number of differing bytes of unknown meaning.
     pub bytes: usize,
-    /// Copied or left out, as answered by the user; without an answer they are left out.
+    /// Decision of the user: `true` copies the bytes; without a decision they are left out.
     pub answer: Option<bool>,
 }
 
 impl UnknownField {
-    /// Returns whether its bytes are copied to the other encoder.
+    /// Returns whether the bytes are copied to the other encoder.
     pub fn is_copied(&self) -> bool {
         self.answer == Some(true)
     }
 
-    /// Returns the item as `--copy` and `--leave` take it.
+    /// Returns the item as accepted by `--copy` and `--leave`.
     pub fn item(&self) -> FieldRange {
         FieldRange { field: self.field, start: 0, count: None }
     }

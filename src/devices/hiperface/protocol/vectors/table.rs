@@ -1,4 +1,5 @@
-//! The golden vectors as typed values: the host's request, the bytes on the line, and the meaning of the encoder's bytes.
+//! The golden vectors as typed values: the request of the host, the bytes on the line, and the meaning of the encoder's
+//! reply.
 
 use super::bytes;
 use crate::devices::hiperface::protocol::*;

@@ -1,4 +1,4 @@
-//! The user's actions in the commutation assistant.
+//! Actions of the user in the commutation assistant.
 
 use super::outcome::may_read;
 use super::{CommutationAction, Slot};

@@ -1,4 +1,4 @@
-//! The form of the commutation assistant, and its meaning.
+//! The form of the commutation assistant and the interpretation of its entries.
 
 use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::Motor;
@@ -20,7 +20,6 @@ pub struct Form {
     pub current_a: String,
     /// Longest time with current in seconds, as typed.
     pub time_s: String,
-    /// The vector that is energised.
     pub vector: Vector,
     /// Its angle in electrical degrees, as entered, if it is another one.
     pub vector_deg: String,
@@ -30,7 +29,6 @@ pub struct Form {
     pub periods: String,
     /// The position falls while the electrical angle rises.
     pub reversed: bool,
-    /// Source of the position within a period.
     pub source: Source,
     /// The position in periods, as entered, if it is measured externally.
     pub phase: String,
@@ -40,7 +38,6 @@ pub struct Form {
     pub second_deg: String,
     /// Fine positions in periods, as typed, in the order of [`Slot::ALL`].
     pub typed: [String; 3],
-    /// How the offset is stored.
     pub storage: Storage,
     /// The data field for it; `None` for the proposed one.
     pub field: Option<u8>,
@@ -53,7 +50,6 @@ pub struct Form {
 /// The purpose of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
-    /// At rest, approached from one side.
     OneSide,
     /// At rest, approached from the other side.
     OtherSide,
@@ -70,7 +66,6 @@ pub enum Vector {
     UAgainstV,
     /// Into U, returning from W: 30°.
     UAgainstW,
-    /// Another one, whose angle is entered.
     Other,
 }
 
@@ -79,7 +74,6 @@ pub enum Vector {
 pub enum Source {
     /// The encoder's analogue channels, if it has them, else the absolute position.
     Signals,
-    /// Entered: measured by the drive or a voltmeter.
     Typed,
     /// The absolute position alone, 1/32 period.
     Absolute,
@@ -97,14 +91,12 @@ pub enum Storage {
 /// The numbers of a form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
-    /// The motor with the encoder on it.
     pub motor: Motor,
     /// Signal periods per revolution.
     pub periods: u32,
     pub pole_pairs: u32,
     /// The position falls while the electrical angle rises.
     pub reversed: bool,
-    /// Angle of the energised vector in electrical turns.
     pub vector_turns: f64,
     /// Allowed difference of both sides, in electrical degrees.
     pub limit_deg: f64,
@@ -268,7 +260,6 @@ fn missing(what: &'static str) -> Text {
     Text::new("entry.missing").with_text("what", TEXTS.text(what))
 }
 
-/// Returns a typed position inside a period.
 pub(super) fn phase(text: &str) -> Result<Phase, Text> {
     let periods = within(TEXTS.text("commutation.phase"), text, 0.0, 0.999_999_999)?;
     Phase::of_periods(periods).ok_or_else(|| missing("commutation.phase"))

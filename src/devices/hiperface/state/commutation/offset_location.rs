@@ -1,5 +1,5 @@
-//! The location of the offset in the memory: an empty one is proposed, and the content of another one is shown before it is
-//! replaced. Nothing here changes the memory.
+//! The location of the offset in the memory: a free location is proposed, and the content of any other is shown before
+//! it is replaced. Nothing here changes the memory.
 
 use super::{Commutation, Storage};
 use crate::app::Text;
@@ -14,7 +14,6 @@ const FILLERS: [u8; 2] = [0x00, 0xFF];
 /// A place for an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OffsetLocation {
-    /// The data field.
     pub field: u8,
     /// Its first byte there.
     pub address: usize,

@@ -1,5 +1,5 @@
-//! The result of the readings: the mean of both sides, the offset, the check with a second vector, the bytes of method
-//! 1 and the position of method 2.
+//! Result of the readings: mean of both sides, offset, verification with a second vector, the bytes for method 1 and
+//! the position for method 2.
 
 use super::{Commutation, Inputs, Kind, OffsetLocation, Slot, Source, Storage};
 use crate::analysis::arctan::Phase;
@@ -34,7 +34,6 @@ pub struct Offset {
 /// Setting the position by method 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// The position to be set.
     pub value: u32,
     /// If set, absolute position and phase do not agree now: exactly this value makes them agree.
     pub exact: bool,
@@ -47,7 +46,6 @@ pub struct Setting {
 /// Commutation offset in the edited memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stored {
-    /// The data field.
     pub field: u8,
     /// Its first byte there.
     pub address: usize,
@@ -196,7 +194,6 @@ impl Commutation {
     }
 }
 
-/// Returns the commutation offsets in an edited memory.
 pub fn stored(staged: &Staged) -> Vec<Stored> {
     let mut found = Vec::new();
     for field in staged.wanted() {

@@ -1,4 +1,4 @@
-//! The report of the run: preparation, readings, results. One line per item.
+//! Report of a commutation run: preparation, readings and results, one line per item.
 
 use super::{Commutation, Kind, RestReading, Slot, Vector};
 use crate::app::Text;
@@ -64,7 +64,6 @@ pub fn kind_words(reading: &RestReading) -> Text {
 }
 
 impl Slot {
-    /// Returns the id of its text.
     pub fn word(self) -> &'static str {
         match self {
             Slot::OneSide => "commutation.one_side",
@@ -77,7 +76,6 @@ impl Slot {
 impl Vector {
     pub const ALL: [Vector; 4] = [Vector::UAgainstBoth, Vector::UAgainstV, Vector::UAgainstW, Vector::Other];
 
-    /// Returns the id of its text.
     pub fn word(self) -> &'static str {
         match self {
             Vector::UAgainstBoth => "commutation.u_both",

@@ -1,4 +1,4 @@
-//! Texts of the changes: the title of a review, the name of a job.
+//! Texts for changes: review titles and job names.
 
 use super::words;
 use crate::app::Text;

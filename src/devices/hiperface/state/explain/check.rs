@@ -1,4 +1,4 @@
-//! Texts of the device check.
+//! Texts for the device check.
 
 use super::encoder;
 use super::words::{field_status, position, raw_position, status_with_number};

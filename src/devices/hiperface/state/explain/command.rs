@@ -1,10 +1,9 @@
-//! Texts of the commands.
+//! Command names for display.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::Command;
 use crate::devices::hiperface::state::TEXTS;
 
-/// Returns the name of a command.
 pub fn command(command: Command) -> Text {
     TEXTS.text(match command {
         Command::ReadPosition => "command.read_position",

@@ -1,4 +1,4 @@
-//! Texts of damaged replies.
+//! Messages about damaged replies.
 
 use super::words::status_with_number;
 use crate::app::Text;

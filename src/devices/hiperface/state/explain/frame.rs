@@ -1,4 +1,4 @@
-//! The meaning of a frame as text, for the trace and for `decode`.
+//! Description of a frame for the trace and for `decode`.
 
 use super::{command, field_status, line_settings, status_with_number};
 use crate::app::Text;

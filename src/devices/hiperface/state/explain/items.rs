@@ -1,4 +1,4 @@
-//! The names of items of an encoder, and why an entry of a profile is refused.
+//! Names of encoder items, and messages about refused profile entries.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -41,7 +41,6 @@ pub fn plan_item(own: &PlanItem) -> Text {
     }
 }
 
-/// Returns the text of a value read back.
 pub fn read_back(read: &ReadBack) -> Text {
     match read {
         ReadBack::Value(value) => plain(value),
@@ -49,7 +48,6 @@ pub fn read_back(read: &ReadBack) -> Text {
     }
 }
 
-/// Returns why a profile is refused.
 pub fn refused(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::Twice(field) => TEXTS.text("hf_entry.twice").with("field", field),

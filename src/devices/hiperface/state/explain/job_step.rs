@@ -1,4 +1,4 @@
-//! The step that a job is at, as text.
+//! Descriptions of job steps.
 
 use super::op;
 use crate::app::Text;

@@ -1,4 +1,4 @@
-//! The extended type label, byte by byte, as text.
+//! The extended type label, described byte by byte.
 
 use crate::app::Text;
 use crate::bits::hex;

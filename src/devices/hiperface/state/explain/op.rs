@@ -1,4 +1,4 @@
-//! The operations of a plan as text, for the review.
+//! Operations of a plan, described for the review.
 
 use super::words::{field_access, field_code_required, field_status, line_settings};
 use crate::app::Text;

@@ -1,4 +1,4 @@
-//! The user's own table of encoder types that cannot be used, and a link that cannot be opened for it.
+//! Messages about an unusable user-defined table of encoder types, and about links that cannot be opened because of it.
 
 use crate::app::Text;
 use crate::app::explain::{self as general, syntax};

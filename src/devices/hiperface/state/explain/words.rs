@@ -1,4 +1,4 @@
-//! The texts of an encoder's own data in both languages. The English ones are those of the protocol's tables.
+//! Texts for the data of an encoder in both languages. The English ones are those of the protocol tables.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{DataFieldStatus, Geometry, LineSettings, Position, StatusCode};
@@ -58,7 +58,6 @@ pub fn field_status(status: DataFieldStatus) -> Text {
         .with_text("required", field_code_required(status))
 }
 
-/// Returns "writable" or "write protected".
 pub fn field_access(status: DataFieldStatus) -> Text {
     TEXTS.text(if status.is_writable() { "field.writable" } else { "field.write_protected" })
 }

@@ -1,4 +1,4 @@
-//! The result of the readings: the offset, storing it in a data field, setting a position, and the report.
+//! Result of the readings: the offset, storing it in a data field, setting a position, and the report.
 
 use egui::{RichText, Ui};
 

@@ -1,8 +1,8 @@
-//! Words that are acknowledged (reference 4), and those whose echo looks like a busy encoder (reference 6.11a).
+//! Acknowledged words (reference 4), and those whose echo looks like a busy encoder (reference 6.11a).
 //!
-//! The echo of a word that sets cam 0, the mask, the shift or a program has code 0, as has the processing word, which may
-//! contain any data, including those just sent. Such an echo counts once it has stayed longer than any processing of this
-//! encoder so far; an edge of cam 0 is also read out before the program is left, since leaving stores it.
+//! The echo of a word that sets cam 0, the mask, the shift or a program has code 0, as has the processing word, which
+//! may contain any data, including those just sent. Such an echo counts once it has lasted longer than any processing
+//! by this encoder so far; an edge of cam 0 is also read out before the program is left, since leaving stores it.
 
 use std::time::Duration;
 

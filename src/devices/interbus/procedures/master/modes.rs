@@ -1,4 +1,4 @@
-//! The mode of an encoder: reading it, changing it, and returning to the one before.
+//! Mode of an encoder: reading it, changing it, and returning to the previous one.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! Notes about an encoder that a job sends into other modes, so that the next run completes one that was cut off.
+//! Notes about an encoder that a job switches to another mode, so that the next run can complete an interrupted one.
 
 use super::Master;
 use super::modes::does_the_same;
@@ -28,7 +28,6 @@ impl<'a> Master<'a> {
 }
 
 impl Master<'_> {
-    /// Notes the serial number of an encoder.
     pub(super) fn said_serial_number(&mut self, serial_number: u32) {
         self.notes.serial_number = Some(serial_number.to_string());
     }

@@ -1,5 +1,5 @@
-//! For how long an IN word has come, or something has held: in cycles and in time. A gateway may be read more often than
-//! it looks at the bus itself, and what it says meanwhile is one word, however often it is read.
+//! How long an IN word has been unchanged, or a condition has held, in cycles and in time. A gateway may be read more
+//! often than it updates from the bus; all readings between two updates count as one.
 
 use std::time::Duration;
 
@@ -53,7 +53,6 @@ impl Held {
         self.cycles >= STANDS && self.lasts(STANDS_FOR)
     }
 
-    /// Long enough for one that could be.
     pub(super) fn is_settled(self) -> bool {
         self.stays_for(STAYS_FOR)
     }
@@ -78,6 +77,5 @@ impl Held {
 pub(super) struct CycleResult {
     pub(super) now: Moment,
     pub(super) word: u32,
-    /// For how long it was that.
     pub(super) same: Held,
 }

@@ -1,4 +1,4 @@
-//! Assigns the columns of a table: by its header in English or German, else by their number.
+//! Assignment of table columns by their header in English or German, or else by their number.
 
 use super::Column;
 use crate::analysis::capture::Delimiter;
@@ -74,7 +74,6 @@ pub(super) fn delimiter(text: &str) -> Delimiter {
     most.filter(|(_, count)| *count > 0).map_or(Delimiter::Comma, |(delimiter, _)| delimiter)
 }
 
-/// Returns the unit that a header's cell names.
 pub(super) fn unit(cell: &str) -> Option<Unit> {
     let cell = cell.to_lowercase();
     let parts = cell.split(|c: char| !c.is_alphanumeric() && c != '°').filter(|part| !part.is_empty()).skip(1);

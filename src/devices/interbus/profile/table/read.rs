@@ -1,4 +1,4 @@
-//! Parses the text of a table to rows: split by csv-core, columns by their header, each edge to the nearest step.
+//! Parsing of a table into rows: split by csv-core, columns assigned by header, each edge rounded to the nearest step.
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
@@ -15,7 +15,6 @@ const MOST_ROWS: usize = 1000;
 /// Maximum number of characters of a wrong cell in a message.
 const SHOWN: usize = 24;
 
-/// A line, split.
 struct TableLine {
     /// Counted from 1.
     number: u64,
@@ -145,7 +144,6 @@ impl CamTable {
     }
 }
 
-/// Returns the lines with something in them.
 fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     let mut lines = Vec::new();
     for (line, number) in text.lines().zip(1..) {
@@ -264,7 +262,6 @@ fn whole(text: &str, words: &[&str]) -> Option<u64> {
     bare.parse().ok().filter(|_| is_whole)
 }
 
-/// Returns the beginning of a cell.
 fn excerpt(text: &str) -> String {
     let mut excerpt: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
     if text.chars().count() > SHOWN {

@@ -30,13 +30,11 @@ impl Setting<'_> {
     }
 }
 
-/// Checks that an edge is an existing position.
 fn within(value: Value, gear: Gear) -> Result<Value, Fault> {
     if value.get() < gear.steps() { Ok(value) } else { Err(Fault::BeyondRange) }
 }
 
 impl Encoder {
-    /// Sets something of the program that runs.
     pub(super) fn set_cams(&mut self, now: Moment, change: impl FnOnce(&mut Setting<'_>, Gear) -> Result<(), Fault>) {
         let StartupMode::Cams(number) = self.mode else { return };
         let gear = self.memory.gear;

@@ -1,4 +1,4 @@
-//! The position that an encoder calculates from its shaft, and the other running IN words (reference 1, 3 and 5).
+//! The position that an encoder derives from its shaft, and the other IN words during operation (reference 1, 3 and 5).
 
 use super::{Encoder, LOST};
 use crate::devices::interbus::protocol::{CamOutput, Class, Single, StartupMode, Value};

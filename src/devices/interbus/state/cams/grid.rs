@@ -1,4 +1,4 @@
-//! The lines of a chart: at round steps, and round units of the machine.
+//! Grid lines of a chart at round steps or machine units.
 
 use super::VisibleRange;
 use crate::devices::interbus::profile::{Scale, Unit};
@@ -8,7 +8,6 @@ use crate::devices::interbus::profile::{Scale, Unit};
 pub struct Tick {
     /// Position in steps.
     pub position: f64,
-    /// Value in units of the scale.
     pub value: f64,
     /// Decimals that it needs.
     pub decimals: usize,
@@ -80,7 +79,6 @@ fn round_units(unit: Unit, at_least: f64) -> f64 {
     }
 }
 
-/// Wraps a value into a range.
 fn turned(value: f64, span: f64) -> f64 {
     let turned = value.rem_euclid(span);
     if (span - turned).abs() < 1e-9 * span { 0.0 } else { turned }

@@ -1,11 +1,10 @@
-//! Changes of a cam when an edge is dragged, or the cam is moved as a whole or drawn. The measuring range wraps: a part
-//! dragged over its end appears at the other.
+//! Changes to a cam while an edge is dragged, or while the cam is moved or drawn. The measuring range wraps: a part
+//! dragged over one end reappears at the other.
 
 use super::of_edge;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 
-/// The dragged part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hold {
     Edge(CamNumber, Edge),
@@ -15,7 +14,6 @@ pub enum Hold {
 }
 
 impl Hold {
-    /// Returns the cam of the lane.
     pub const fn cam(self) -> CamNumber {
         match self {
             Hold::Edge(cam, _) | Hold::Whole(cam) | Hold::New(cam) => cam,

@@ -1,4 +1,4 @@
-//! Snapping of an edge while it is dragged: to edges of other cams, and to the lines of the grid.
+//! Snapping of a dragged edge to edges of other cams and to grid lines.
 
 use super::{Chart, Hold, grid, of_edge};
 use crate::devices::interbus::profile::{Edge, Scale};

@@ -1,4 +1,4 @@
-//! The texts about a table of cams that was read.
+//! Messages about a cam table that was read.
 
 use crate::analysis::capture::Delimiter;
 use crate::app::Text;
@@ -102,7 +102,6 @@ fn column(column: Column) -> Text {
     })
 }
 
-/// Returns the name of a unit.
 pub fn unit(unit: Unit) -> Text {
     TEXTS.text(match unit {
         Unit::Steps => "camtable.steps",

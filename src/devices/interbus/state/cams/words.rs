@@ -1,4 +1,4 @@
-//! Texts of the chart.
+//! Texts for the chart.
 
 use super::{Chart, Lane, OutputState};
 use crate::app::Text;
@@ -61,7 +61,6 @@ pub fn lane(own: &Lane, scale: &Scale, range: u32) -> Text {
     TEXTS.text(id).with_text("where", stretch(edges, scale, range))
 }
 
-/// Returns the problems of a lane.
 pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
     let beyond = lane.beyond.then(|| TEXTS.text("cams.beyond").with("last", chart.last()));
     let clash = lane.clashes.then(|| TEXTS.text("cams.clash").with("name", lane.name.as_deref().unwrap_or_default()));

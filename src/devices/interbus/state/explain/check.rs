@@ -1,4 +1,4 @@
-//! Texts of the device check.
+//! Texts for the device check.
 
 use super::{encoder, implausible, refusal, startup, word};
 use crate::app::Text;

@@ -1,4 +1,4 @@
-//! Reasons for refusing a profile.
+//! Messages about refused profiles.
 
 use crate::app::Text;
 use crate::devices::interbus::profile::{EntryError, ItemError};
@@ -6,7 +6,6 @@ use crate::devices::interbus::protocol::{Program, ProgramNumber};
 use crate::devices::interbus::state::TEXTS;
 use crate::profile::Cause;
 
-/// Returns why a profile is refused.
 pub fn entry(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::ProgramTwice(program) => TEXTS.text("ib_entry.program_twice").with("program", program.get()),

@@ -1,4 +1,4 @@
-//! Texts of requests to a gateway, its refusals and damaged replies.
+//! Messages about requests to a gateway, refusals and damaged replies.
 
 use crate::app::Text;
 use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};

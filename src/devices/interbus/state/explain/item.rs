@@ -1,4 +1,4 @@
-//! The names of items of an INTERBUS encoder, for use within a sentence.
+//! Names of INTERBUS encoder items for use within a sentence.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -25,7 +25,6 @@ pub(super) fn number(parameter: Parameter, number: u32) -> Text {
     }
 }
 
-/// Returns the name of a direction.
 pub fn direction(direction: Direction) -> Text {
     TEXTS.text(match direction {
         Direction::Clockwise => "ib_item.clockwise",
@@ -48,7 +47,6 @@ pub(super) fn edge(cam: CamNumber, edge: Edge) -> Text {
         .with("cam", cam.get())
 }
 
-/// Returns the name of a mode at power-up.
 pub fn startup(mode: StartupMode) -> Text {
     match mode {
         StartupMode::K2 => TEXTS.text("ib_startup.k2"),
@@ -59,7 +57,6 @@ pub fn startup(mode: StartupMode) -> Text {
     }
 }
 
-/// Returns the name of a value.
 pub fn read_out(read_out: ReadOut) -> Text {
     match (read_out.number(), read_out.register()) {
         (_, Some(register)) => TEXTS.text("ib_doing.chip").with("register", register),

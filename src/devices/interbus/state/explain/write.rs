@@ -1,5 +1,5 @@
-//! Texts of writes: changes, operations of a plan, why there is no plan, what was written, why it ended early and in which
-//! state the encoder was left.
+//! Messages about writes: changes, operations of a plan, planning errors, results, early ends, and the state in which
+//! the encoder was left.
 
 use std::path::Path;
 

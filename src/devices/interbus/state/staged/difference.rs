@@ -1,24 +1,20 @@
-//! The differences of the edited values from the encoder or the profile.
+//! Differences between the edited values and the encoder or profile.
 
 use super::{EditedValues, Staged};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, Parameter, ProgramNumber};
 
-/// Identifier of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ValueId {
     Parameter(Parameter),
-    /// The shift of the window.
     Shift,
     Edge(ProgramNumber, CamNumber, Edge),
     /// Whether a cam is active: 1 or 0.
     On(ProgramNumber, CamNumber),
 }
 
-/// Edited value that differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
-    /// Its location.
     pub place: ValueId,
     /// Present value; `None`: not in the profile.
     pub from: Option<u32>,
@@ -88,7 +84,6 @@ impl Staged {
         base.image.program(program) != wanted.image.program(program) || is_renamed && !self.is_encoder()
     }
 
-    /// Returns the number of edited values.
     pub fn count(&self) -> usize {
         self.differences().len()
     }

@@ -1,4 +1,4 @@
-//! Edits as they are kept over a crash, and taken again.
+//! Conversion of edits to drafts and back.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,11 +19,9 @@ pub enum SavedEdit {
     ZeroShift(u32),
     /// 0 to 25.
     Shift(u8),
-    /// Program, cam, and its edges.
     Cam(u8, u8, u32, u32),
     /// Program and cam to be removed from the profile.
     NoCam(u8, u8),
-    /// Program, cam, and whether it works.
     On(u8, u8, bool),
     /// Program, cam, and its name, which may be empty.
     Name(u8, u8, String),

@@ -1,4 +1,4 @@
-//! The edits: the effect of each on the edited values, and why one is refused.
+//! Edits: the effect of each on the edited values, and the reasons for refusing one.
 
 use super::{BaseSource, EditedValues};
 use crate::devices::interbus::profile::{Direction, Edge, Filled, LONGEST_NAME};
@@ -16,24 +16,18 @@ pub enum Edit {
     /// Set both at once, if they cannot be set one after the other.
     Gear {
         steps: u32,
-        /// Turns.
         revolutions: u32,
     },
-    /// Direction of counting.
     Direction(Direction),
     /// Set the preset, in steps. This does not fire it.
     Preset(u32),
     /// The zero shift, in steps.
     ZeroShift(u32),
-    /// The shift of the window in cam mode.
     Shift(WindowShift),
-    /// An edge of a cam, typed or dragged.
     Edge {
-        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         edge: Edge,
-        /// New position.
         to: u32,
     },
     /// Set both edges of a cam: entered, moved as a whole, or drawn.
@@ -47,9 +41,7 @@ pub enum Edit {
         /// Activates it if it is not active yet.
         on: bool,
     },
-    /// Activate or deactivate a cam.
     Switch {
-        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         /// Active if set.
@@ -57,7 +49,6 @@ pub enum Edit {
     },
     /// Name of a cam; empty for none.
     Name {
-        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         /// At most [`LONGEST_NAME`] characters.
@@ -71,9 +62,7 @@ pub enum Edit {
     },
     /// Copy a program to another, with the names of its cams.
     Copy {
-        /// The source program.
         from: ProgramNumber,
-        /// The replaced program.
         to: ProgramNumber,
     },
     /// Mirror a program: positions count from the other end of the range. Inactive cams are mirrored too, unless they are
@@ -107,10 +96,8 @@ pub enum EditError {
     /// Steps and turns are not one.
     #[error(transparent)]
     Gear(#[from] GearError),
-    /// Another parameter would be out of range.
     #[error(transparent)]
     Parameter(#[from] OutOfRange),
-    /// An edge beyond the measuring range.
     #[error("{to} is outside the measuring range, which ends at {last}")]
     Edge {
         edge: Edge,
@@ -121,7 +108,6 @@ pub enum EditError {
     /// An active cam is beyond the measuring range, so its program can be neither mirrored nor shifted.
     #[error("cam {} of program {} is outside the measuring range, which ends at {last}", cam.get(), program.get())]
     Beyond {
-        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         /// The last position.
@@ -240,7 +226,6 @@ pub(super) fn program_mut(
     }
 }
 
-/// Moves every cam of a program.
 fn move_cams(after: &mut EditedValues, program: ProgramNumber, to: impl Fn(Cam) -> Cam) -> Result<(), EditError> {
     let last = last(after);
     let own = after.image.program_mut(program).and_then(Option::as_mut).ok_or(EditError::NotRead(program))?;

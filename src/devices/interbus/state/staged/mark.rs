@@ -1,4 +1,4 @@
-//! The problems of the edited values, with their location.
+//! Problems of the edited values with their locations.
 
 use super::EditedValues;
 use crate::devices::interbus::profile::Edge;
@@ -9,14 +9,12 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, ProgramNumbe
 pub enum Mark {
     /// Steps and turns are no gear.
     Gear(GearError),
-    /// The preset is beyond the measuring range.
     Preset {
         /// The last position.
         last: u32,
     },
     /// A cam that works has an edge beyond the measuring range.
     Beyond {
-        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         /// The edge; the start if both are concerned.
@@ -27,9 +25,7 @@ pub enum Mark {
     /// Two active cams of one name are on at the same positions: pulses of one track should not overlap. The encoder has no
     /// such rule.
     Clash {
-        /// Program of the cams.
         program: ProgramNumber,
-        /// The one with the lower number.
         first: CamNumber,
         /// The other.
         second: CamNumber,
@@ -47,7 +43,6 @@ impl Mark {
         }
     }
 
-    /// Returns the program that it concerns.
     pub const fn program(&self) -> Option<ProgramNumber> {
         match self {
             Mark::Beyond { program, .. } | Mark::Clash { program, .. } => Some(*program),

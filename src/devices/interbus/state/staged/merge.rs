@@ -1,4 +1,4 @@
-//! Merges edits with new values of the encoder or the profile.
+//! Merging of edits with new values of the encoder or profile.
 
 use super::EditedValues;
 use crate::devices::interbus::profile::Image;

@@ -1,4 +1,4 @@
-//! The programs, and the actions on one of them as a whole.
+//! The program bar: selection of a program, and actions on a whole program.
 
 use egui::{RichText, Ui};
 
@@ -10,7 +10,6 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{button, entry, icon_menu, name, paragraph, problem_below, text_entry};
 use crate::ui::{Theme, icons};
 
-/// The entered text.
 #[derive(Default)]
 pub(super) struct CamBarUiState {
     by: String,
@@ -50,7 +49,6 @@ pub(super) fn bar_ui(
     });
 }
 
-/// A program copied, mirrored, shifted.
 fn whole(
     ui: &mut Ui,
     theme: &Theme,
@@ -96,7 +94,6 @@ fn whole(
     });
 }
 
-/// Tables of cams, in and out.
 fn tables(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     icon_menu(ui, icons::TABLE, &say(theme, "ib_cams.tables"), |ui| {

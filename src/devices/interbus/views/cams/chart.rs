@@ -1,4 +1,4 @@
-//! The chart of the open program: lanes over the measuring range, or a ring.
+//! Chart of the open program: lanes over the measuring range, or a ring.
 
 use egui::{RichText, Ui};
 

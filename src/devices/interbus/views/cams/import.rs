@@ -1,4 +1,4 @@
-//! A table of cams that was read: its content and the result, before it is taken.
+//! Import of a cam table: its content and the result before it is adopted.
 
 use egui::{Event, RichText, Ui};
 

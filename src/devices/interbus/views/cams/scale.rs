@@ -1,4 +1,4 @@
-//! The units of the machine, and its zero.
+//! Machine units and their zero.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! The cams of a program as a table: positions, names, switches.
+//! The cams of a program as a table: positions, names and switches.
 
 use std::collections::BTreeMap;
 
@@ -69,7 +69,6 @@ pub(super) fn card_ui(
     });
 }
 
-/// Draws the content of a column.
 fn cell<R>(ui: &mut Ui, width: f32, content: impl FnOnce(&mut Ui) -> R) -> R {
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let cell = ui.allocate_ui_with_layout(egui::vec2(width, ui.spacing().interact_size.y), layout, |ui| {

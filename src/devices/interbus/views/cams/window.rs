@@ -1,4 +1,4 @@
-//! The word in which an encoder sends its outputs, laid out by the shift of the window.
+//! Layout of the cam output word according to the window shift.
 
 use egui::Ui;
 

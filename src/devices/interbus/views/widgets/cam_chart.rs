@@ -1,4 +1,4 @@
-//! Shared parts of the two pictures of a cam program: input, events, and dragging with pointer, keyboard and screen
+//! Parts shared by both pictures of a cam program: input, events, and dragging with pointer, keyboard and screen
 //! reader.
 
 use egui::accesskit::{Action, ActionData, Role};
@@ -12,21 +12,17 @@ use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
-/// A program.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CamChart<'a> {
-    /// Accessible name.
     pub(crate) label: &'a str,
     /// The edited program, also during a drag.
     pub(crate) chart: &'a Chart,
-    /// The machine's units.
     pub(crate) scale: &'a Scale,
     /// Position of the encoder; `None` if not known.
     pub(crate) position: Option<u32>,
     /// The outputs reported by the encoder, bit i for cam i; `None`: not reported.
     pub(crate) own: Option<u8>,
     pub(crate) selected: Option<CamNumber>,
-    /// Cams can be changed.
     pub(crate) movable: bool,
     /// Edges snap to nearby targets; holding Alt disables this.
     pub(crate) snaps: bool,
@@ -41,14 +37,11 @@ pub(crate) enum CamEvent {
     Moved {
         cam: CamNumber,
         to: Cam,
-        /// It was drawn and is to be active.
         drawn: bool,
     },
     /// The cam is to work, or not.
     Switched(CamNumber, bool),
-    /// Another cam.
     Selected(CamNumber),
-    /// Another part of the measuring range.
     Viewed(VisibleRange),
 }
 
@@ -63,7 +56,6 @@ pub(super) struct Drag {
     pub(super) to: Option<Cam>,
 }
 
-/// Returns the colour of a cam.
 pub(super) fn ink(theme: &Theme, cam: CamNumber) -> Color32 {
     series(theme, usize::from(cam.get()))
 }
@@ -255,7 +247,6 @@ impl CamChart<'_> {
     }
 }
 
-/// Returns the drag in progress.
 pub(super) fn drag(ui: &Ui, base: Id) -> Option<Drag> {
     ui.data(|data| data.get_temp(base))
 }

@@ -1,16 +1,17 @@
-//! The cams of a program over the measuring range: a lane for each.
+//! The cams of a program over the measuring range, in one lane each.
 //!
-//! * **Size**: the available width; a line of rulers, eight lanes, a line of the machine's units if it has others.
-//! * **Keyboard**: Tab goes from lane to lane: the switch of the cam, the cam as a whole, its start, its stop. The left and
-//!   right arrows move the focused part by one step, with Shift to the next line of the grid; Delete switches the cam off,
-//!   Space on and off.
-//! * **Pointer**: an edge is dragged, or a cam as a whole; over the end of the range it appears at the other. In the lane
-//!   of an inactive cam, one is drawn. The result is shown meanwhile, and Escape cancels. Ctrl with the wheel zooms, the
-//!   horizontal wheel scrolls.
-//! * **Accessible**: an edge is a slider with its position, which can be set; a cam is a slider with its place; an
-//!   indicator has the state of its output, and its source.
-//! * **Painting**: a cam in its colour, hollow if inactive, hatched where it overlaps another pulse of its track; the end
-//!   of the range hatched in the lane of a cam beyond it; the encoder's position as a line through all lanes.
+//! * **Size**: the available width; a ruler line, eight lanes, and a line of machine units if these differ from steps.
+//! * **Keyboard**: Tab moves through the parts of a lane: the switch of the cam, the cam as a whole, its start and its
+//!   stop. The left and right arrows move the focused part by one step, with Shift to the next grid line; Delete
+//!   switches the cam off, Space on and off.
+//! * **Pointer**: an edge or a whole cam is dragged; over one end of the range it reappears at the other. In the lane
+//!   of an inactive cam, a new one is drawn. The result is shown during the drag, and Escape cancels it. Ctrl with the
+//!   wheel zooms, the horizontal wheel scrolls.
+//! * **Accessible**: an edge is a slider whose value can be set; a cam is a slider with its location; an indicator has
+//!   the state and source of its output.
+//! * **Painting**: a cam in its colour, hollow if inactive, hatched where it overlaps another pulse of its track; the
+//!   end of the range is hatched in the lane of a cam beyond it; the position of the encoder is a line through all
+//!   lanes.
 
 mod grips;
 mod head;
@@ -32,7 +33,6 @@ struct Lanes<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
     model: &'a CamChart<'a>,
-    /// The program that is drawn.
     shown: &'a Chart,
     place: &'a PlotArea,
     base: Id,
@@ -63,7 +63,6 @@ pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: 
 }
 
 impl Lanes<'_> {
-    /// Returns the snapping of edges.
     fn snap(&self) -> Snap {
         Snap::on(self.place.steps_in_point())
     }

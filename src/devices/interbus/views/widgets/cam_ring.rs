@@ -1,13 +1,13 @@
-//! The cams of a program around a ring: the measuring range begins at the top and proceeds clockwise.
+//! The cams of a program around a ring: the measuring range starts at the top and proceeds clockwise.
 //!
 //! * **Size**: a square of the given width.
-//! * **Keyboard**: Tab goes from edge to edge; the arrows move one by a step, with Shift to the next line of the grid;
+//! * **Keyboard**: Tab moves from edge to edge; the arrows move an edge by one step, with Shift to the next grid line;
 //!   Delete switches its cam off, Space on and off.
-//! * **Pointer**: an edge is dragged around the ring, or a cam as a whole; Escape cancels.
-//! * **Accessible**: an edge is a slider with its position, which can be set.
+//! * **Pointer**: an edge or a whole cam is dragged around the ring; Escape cancels the drag.
+//! * **Accessible**: an edge is a slider whose value can be set.
 //! * **Painting**: one circle per cam, the first outermost, with an arc in its colour, thin if the cam is inactive, and
-//!   struck through where it overlaps another pulse of its track; the encoder's position as a hand; numbers of steps, or of
-//!   the machine's units, around it.
+//!   struck through where it overlaps another pulse of its track; the position of the encoder as a hand; labels in
+//!   steps or machine units around the ring.
 
 use egui::accesskit::Role;
 use egui::epaint::PathStroke;
@@ -35,7 +35,6 @@ const GRIP: f32 = 12.0;
 /// Maximum number of numbers around the ring.
 const LINES: f64 = 12.0;
 
-/// Circles around a middle.
 #[derive(Clone, Copy, Debug)]
 struct Dial {
     middle: Pos2,
@@ -62,7 +61,6 @@ impl Dial {
         self.radius * (1.0 - INNER) / Program::CAMS as f32
     }
 
-    /// Returns the middle of a cam's circle.
     fn circle(self, cam: CamNumber) -> f32 {
         self.radius - (f32::from(cam.get()) + 0.5) * self.pitch()
     }

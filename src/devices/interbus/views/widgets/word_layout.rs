@@ -1,12 +1,12 @@
-//! The 32 bits of the cam output word, as the shift of the window lays them out, and below it the position with the bits
-//! that go into the window.
+//! The 32 bits of the cam output word as arranged by the window shift, and below it the position with the bits that are
+//! copied to the window.
 //!
 //! * **Size**: the available width; if 32 cells do not fit, half of them on a second line.
-//! * **Keyboard**: none; Tab skips it.
-//! * **Pointer**: the meaning of the bit under it.
-//! * **Accessible**: an image with the given label, whose value is the groups; each group is a label with its bits.
-//! * **Painting**: one cell per bit, the bit number in the word above it, in it the bit, or without a word the number of
-//!   the position's bit or of the cam; the position's bits in a row of their own, those that are not sent hollow.
+//! * **Keyboard**: none; Tab skips the widget.
+//! * **Pointer**: shows the meaning of the hovered bit.
+//! * **Accessible**: an image with the given label, whose value lists the groups; each group is a label with its bits.
+//! * **Painting**: one cell per bit with the bit number above it; the cell contains the bit or, without a word, the
+//!   number of the position bit or cam; the position bits are in a separate row, those that are not sent hollow.
 
 use egui::accesskit::Role;
 use egui::{
@@ -22,9 +22,7 @@ use crate::ui::widgets::{BitCell, series};
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WordLayout<'a> {
-    /// Accessible name.
     pub(crate) label: &'a str,
-    /// Shift of the position under its window.
     pub(crate) shift: WindowShift,
     /// A received cam output word; `None`: the layout only.
     pub(crate) word: Option<u32>,

@@ -1,4 +1,4 @@
-//! A decoder in C99, without anything but the standard's integers.
+//! Decoder in C99 that only requires the standard integer types.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -86,7 +86,7 @@ impl Dialect for C {
     }
 }
 
-/// Returns a function `ssi_decode` for this layout, with the flags that it may raise.
+/// Returns a function `ssi_decode` for this layout, and the flags that it may return.
 pub fn c99(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
     // The title must not end the comment, begin another or contain a trigraph.

@@ -1,5 +1,5 @@
-//! A decoder for controllers that have no word of 64 bits: a frame is a double word, or two of them; a position is a number
-//! of 32 bits. In IEC 61131-3 structured text, and as a source file for SIMATIC (SCL of TIA Portal: S7-1200 and S7-1500).
+//! Decoder for controllers without 64-bit words: a frame is one double word or two, and a position is a 32-bit number.
+//! Available as IEC 61131-3 structured text and as a source file for SIMATIC (SCL for TIA Portal: S7-1200 and S7-1500).
 
 use std::fmt::Write;
 
@@ -8,25 +8,25 @@ use super::procedure::{Dialect, statements};
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
-/// Why a layout has no decoder of 32 bits.
+/// The reason why a layout has no 32-bit decoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WideNumbers {
-    /// The position has more bits.
+    /// The position exceeds 32 bits.
     #[error("the position has {bits} bits, and a number of the controller 32")]
     Position {
-        /// Bits of its code word.
+        /// Width of the code word in bits.
         bits: u8,
     },
-    /// The calculation of turns and steps needs more.
+    /// The calculation of turns and steps exceeds 32 bits.
     #[error("the turns of this round axis need numbers of more than 32 bits")]
     RoundAxis,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Language {
-    /// IEC 61131-3.
+    /// IEC 61131-3 structured text.
     StructuredText,
-    /// SCL of TIA Portal.
+    /// SCL for TIA Portal.
     Scl,
 }
 
@@ -45,7 +45,7 @@ struct Pair {
     low: Option<String>,
 }
 
-/// A function block `SSI_DECODE` in structured text, with DWORD in place of LWORD.
+/// Returns a function block `SSI_DECODE` in structured text, with DWORD in place of LWORD.
 ///
 /// # Errors
 /// [`WideNumbers`]: 32 bits do not suffice.
@@ -68,7 +68,7 @@ pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, WideNu
     Ok(text)
 }
 
-/// A source file with a function block `SSI_DECODE`, for *External source files* of TIA Portal.
+/// Returns a source file with a function block `SSI_DECODE`, for *External source files* of TIA Portal.
 ///
 /// # Errors
 /// [`WideNumbers`]: 32 bits do not suffice.
@@ -165,7 +165,6 @@ impl Halves {
         }
     }
 
-    /// The variables that hold the halves.
     fn half_names(&self, name: &str) -> (Option<String>, String) {
         match name {
             "frame" | "word" | "fold" if self.is_wide => (Some(format!("{name}_high")), format!("{name}_low")),

@@ -1,5 +1,6 @@
-//! The format string of LinuxCNC's hostmot2 driver (`ssi_chan_0=…`): fields from the last clock to the first, each a name,
-//! `%`, its number of bits, and its kind: `p` padding, `b` a bit, `u` a number, `e` a position, `g` before it: Gray.
+//! Format string of LinuxCNC's hostmot2 driver (`ssi_chan_0=…`): fields from the last clock to the first, each
+//! consisting of a name, `%`, the number of bits, and the type: `p` padding, `b` bit, `u` number, `e` position; a
+//! preceding `g` denotes Gray.
 
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit, Meaning};
@@ -7,48 +8,48 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::Range;
 
-/// A part of a frame that LinuxCNC cannot decode.
+/// A property of a frame that LinuxCNC cannot decode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoFormat {
-    /// Gray over more than the position.
+    /// Gray code over more than the position.
     #[error("a Gray code that includes zeros or error bits")]
     GrayOver,
-    /// Gray excess.
+    /// Gray excess code.
     #[error("gray excess")]
     GrayExcess,
-    /// BCD.
+    /// BCD code.
     #[error("BCD")]
     Bcd,
-    /// Turns apart from steps.
+    /// Zeros between multiturn and singleturn.
     #[error("zeros between turns and steps")]
     Between,
-    /// Exchanged wires.
+    /// Swapped data wires.
     #[error("exchanged data wires")]
     Inverted,
 }
 
-/// The reason why a frame has no format string, or a format string is not a frame.
+/// The reason why a frame has no format string, or a format string does not describe a frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
-    /// LinuxCNC cannot decode that.
+    /// LinuxCNC cannot decode the frame.
     #[error("LinuxCNC cannot decode {0}")]
     Cannot(NoFormat),
-    /// Not `name%bits` and a letter.
+    /// A field is not of the form `name%bits` followed by a letter.
     #[error("\"{0}\" is not NAME%BITS and one of p b u s f e, with g before for Gray")]
     Form(String),
-    /// A kind of field that is not supported for SSI frames here.
+    /// A field type is not supported for SSI frames.
     #[error("\"{0}\" is a field of other encoders: only p b u s f e are supported, with g before for Gray")]
     Kind(char),
-    /// Two positions.
+    /// There is more than one position field.
     #[error("there are two positions, \"{0}\" and \"{1}\"")]
     Two(String, String),
-    /// No position.
+    /// There is no position field.
     #[error("the position is missing: a field of type e or u, with g before for Gray")]
     None,
-    /// More bits than a frame has.
+    /// The fields exceed the length of a frame.
     #[error("the fields have more than 64 bits together")]
     Long,
-    /// The frame cannot work.
+    /// The frame is impossible.
     #[error(transparent)]
     Layout(#[from] LayoutError),
 }
@@ -56,7 +57,8 @@ pub enum FormatError {
 /// Returns the format string of a frame.
 ///
 /// # Errors
-/// [`FormatError::Cannot`]: BCD, gray excess, Gray over more than the position, turns apart from steps, exchanged wires.
+/// [`FormatError::Cannot`]: BCD, Gray excess, Gray over more than the position, zeros between multiturn and singleturn,
+/// or swapped wires.
 pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     let descriptor = layout.descriptor();
     let modifier = match layout.coding().code() {
@@ -113,11 +115,11 @@ enum Field {
     Bit(String),
 }
 
-/// Parses the frame of a format string. Bits become error bits that invalidate the position, which the user can change. The
-/// string does not divide the position into turns and steps: it is one number.
+/// Parses a format string. Bit fields become error bits that invalidate the position, which the user can change. The
+/// string does not divide the position into multiturn and singleturn: it is a single number.
 ///
 /// # Errors
-/// [`FormatError`] with the field that is wrong.
+/// [`FormatError`] with the invalid field.
 pub fn from_linuxcnc(text: &str) -> Result<Layout, FormatError> {
     let text = text.trim().trim_matches('"');
     let text = text.split_once('=').filter(|(key, _)| key.starts_with("ssi_chan_")).map_or(text, |(_, format)| format);

@@ -1,85 +1,85 @@
-//! A picture as shapes on paper: written as SVG here, drawn by the window from the same shapes.
+//! A picture composed of shapes: saved as SVG, and drawn in the window from the same shapes.
 
 use std::fmt::{self, Write};
 
-/// A picture. Its paper is white.
+/// A picture on a white background.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// What it shows; its first text, too.
+    /// Title, which is also the first label.
     pub title: String,
-    /// In units of the shapes.
+    /// Width in picture units.
     pub width: u32,
-    /// In units of the shapes.
+    /// Height in picture units.
     pub height: u32,
-    /// From the lowest to the highest.
+    /// Shapes in drawing order.
     pub shapes: Vec<PictureShape>,
 }
 
-/// A length along the picture.
+/// A horizontal length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PictureLength {
-    /// On the grid.
+    /// A length on the grid.
     Whole(u32),
-    /// To scale; SVG has hundredths.
+    /// A length to scale; SVG output is rounded to hundredths.
     Scaled(f64),
 }
 
 /// A shape. Colours are `#rrggbb` or `#rgb`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PictureShape {
-    /// A box with a thin border.
+    /// A rectangle with a thin border.
     Box {
-        /// Left end.
+        /// Left edge.
         x: PictureLength,
-        /// Upper end.
+        /// Top edge.
         y: u32,
-        /// Along the picture.
+        /// Horizontal size.
         width: PictureLength,
-        /// Downwards.
+        /// Vertical size.
         height: u32,
-        /// Colour inside.
+        /// Fill colour.
         fill: &'static str,
-        /// Colour of the border.
+        /// Border colour.
         line: &'static str,
     },
-    /// A thin line through all points; steps along x and y alone.
+    /// A thin polyline of horizontal and vertical segments.
     Line {
-        /// It begins with a [`PathStep::Move`].
+        /// Path, which begins with a [`PathStep::Move`].
         path: Vec<PathStep>,
-        /// Its colour.
+        /// Line colour.
         colour: &'static str,
     },
-    /// A line of text.
+    /// A label.
     Text(PictureLabel),
 }
 
-/// A step of a line.
+/// A segment of a polyline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathStep {
-    /// Without drawing, to a point.
+    /// Moves to a point without drawing.
     Move(PictureLength, u32),
-    /// Along x.
+    /// Draws a horizontal segment to this x coordinate.
     Across(PictureLength),
-    /// Along y.
+    /// Draws a vertical segment to this y coordinate.
     Down(u32),
 }
 
-/// A line of text, above its baseline.
+/// A single line of text, placed by its baseline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureLabel {
-    /// Its left end or its middle.
+    /// Horizontal anchor: the left end or the middle.
     pub x: PictureLength,
-    /// Of the baseline.
+    /// Baseline.
     pub y: u32,
-    /// Height of its letters.
+    /// Font size.
     pub size: u32,
-    /// In bold letters.
+    /// Whether the label is bold.
     pub is_bold: bool,
-    /// None: black.
+    /// Text colour; `None` is black.
     pub colour: Option<&'static str>,
-    /// `x` is its middle, else its left end.
+    /// Whether `x` is the middle rather than the left end.
     pub is_centred: bool,
-    /// Its words.
+    /// Label text.
     pub text: String,
 }
 
@@ -96,7 +96,7 @@ impl Picture {
         Picture { title: title.to_owned(), width, height, shapes: vec![PictureShape::Text(heading)] }
     }
 
-    /// Writes it as SVG.
+    /// Returns the picture as SVG.
     pub fn svg(&self) -> String {
         let Picture { width, height, .. } = self;
         let mut svg = format!(
@@ -145,7 +145,7 @@ impl PictureLabel {
 }
 
 impl PictureLength {
-    /// In units of the picture.
+    /// Returns the length in picture units.
     pub fn units(self) -> f64 {
         match self {
             PictureLength::Whole(units) => units.into(),

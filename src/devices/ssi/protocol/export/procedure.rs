@@ -1,4 +1,5 @@
-//! The decoder as a list of statements, the same in every language: the steps of [`Layout::decode`] for one layout.
+//! The decoder as a list of statements that is the same in every language: the steps of [`Layout::decode`] for one
+//! layout.
 
 use crate::devices::ssi::protocol::code::{Code, ones};
 use crate::devices::ssi::protocol::descriptor::Coded;
@@ -9,7 +10,7 @@ use crate::devices::ssi::protocol::range::{Fraction, Range};
 pub(super) trait Dialect {
     /// An expression whose value is a word.
     type Word;
-    /// The word of a variable.
+    /// Returns the variable as a word expression.
     fn name(&self, name: &'static str) -> Self::Word;
     fn hex(&self, value: u64) -> Self::Word;
     fn and(&self, a: &Self::Word, b: &Self::Word) -> Self::Word;
@@ -19,12 +20,12 @@ pub(super) trait Dialect {
     fn left(&self, a: &Self::Word, bits: u8) -> Self::Word;
     fn equal(&self, a: &Self::Word, b: &Self::Word) -> String;
     fn differs(&self, a: &Self::Word, b: &Self::Word) -> String;
-    /// Returns a word as a number.
+    /// Converts a word expression to a number expression.
     fn number(&self, word: &Self::Word) -> String;
     fn divided(&self, number: &str, by: u64) -> String;
     fn rest(&self, number: &str, by: u64) -> String;
     fn assign(&self, name: &str, value: &str) -> String;
-    /// A word into a variable: a statement or more.
+    /// Returns one or more statements that assign a word to a variable.
     fn assign_word(&self, name: &'static str, value: &Self::Word) -> Vec<String>;
     fn when(&self, condition: &str, statement: &str) -> String;
     fn comment(&self, text: &str) -> String;

@@ -1,5 +1,4 @@
-//! The settings of a control's SSI module for this frame. The terms are those of the modules' own manuals. The encoder is
-//! not changed.
+//! Settings of a PLC's SSI module for this frame, in the terms of the module manuals. The encoder is not changed.
 
 use std::fmt::Write;
 
@@ -50,7 +49,7 @@ impl Places {
     }
 }
 
-/// Returns the settings of common modules, a paragraph each.
+/// Returns the settings of common modules, one paragraph each.
 pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: Say<'_>) -> String {
     let places = Places::new(layout, say);
     let descriptor = layout.descriptor();
@@ -102,14 +101,14 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: 
 
 /// The name of a setting.
 enum Label {
-    /// As the module's manual has it in every language.
+    /// A term of the module manual that is the same in every language.
     Own(&'static str),
     Said(ExportText),
 }
 
 /// The value of a setting.
 enum Setting {
-    /// The same in every language.
+    /// A string that is the same in every language.
     Plain(String),
     Said(ExportText),
 }

@@ -1,4 +1,4 @@
-//! A decoder in IEC 61131-3 structured text.
+//! Decoder in IEC 61131-3 structured text.
 
 use std::fmt::Write;
 

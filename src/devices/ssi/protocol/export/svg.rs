@@ -1,4 +1,4 @@
-//! Pictures: the frame as a row of cells, and a burst in time, to scale.
+//! Pictures: the frame as a row of cells, and the timing of a burst to scale.
 
 use super::picture::{FAINT, MARGIN, PathStep, Picture, PictureLabel, PictureLength, PictureShape};
 use super::text::{ExportText, Say};
@@ -46,7 +46,7 @@ pub(super) fn role_name(layout: &Layout, role: Role, say: Say<'_>) -> String {
     }
 }
 
-/// Draws the frame, a cell per clock; with the bits of a frame if there is one.
+/// Draws the frame with one cell per clock, and the bits of `frame`, if given.
 pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Say<'_>) -> Picture {
     let roles = layout.roles();
     let clocks = u32::from(layout.clocks());
@@ -100,7 +100,7 @@ pub fn frame_picture(layout: &Layout, frame: Option<u64>, title: &str, say: Say<
     picture
 }
 
-/// Draws a burst and the pause after it, to scale, with the clock, the data and the times of a transfer (manual, figure 2).
+/// Draws a burst and the following pause to scale, with the clock, the data and the transfer times (manual, figure 2).
 pub fn timing_picture(layout: &Layout, times: &Times, reads: &Reads, title: &str, say: Say<'_>) -> Picture {
     let timing = times.reckon(reads);
     let (burst, pause) = (timing.burst.as_secs_f64(), reads.pause.as_secs_f64());

@@ -1,28 +1,28 @@
-//! What exports say in words, apart from names and numbers: as facts, so that the window says them in its language. The
-//! command line prints them in English, as they stand here.
+//! Text of the exports, represented as facts so that the window can use its language. The command line uses the English
+//! texts below.
 
 use std::fmt;
 
 use crate::devices::ssi::protocol::code::Code;
 
-/// A piece of text of an export.
+/// A piece of text in an export.
 #[expect(missing_docs, reason = "its English, below, says what each is")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExportText {
     /// Heading of the settings sheet.
     SheetTitle(String),
-    /// What the sheet is for.
+    /// Purpose of the settings sheet.
     SheetPurpose,
     FrameLength,
-    /// So many bits.
+    /// Number of bits.
     Bits(u8),
     Code,
     CodeName(Code),
     LowestBit,
     HighestBit,
-    /// The bit of this number.
+    /// Number of a bit.
     BitNumber(u8),
-    /// The name of the parity bit.
+    /// Name of the parity bit.
     ParityBit,
     Parity,
     ParityIs {
@@ -30,7 +30,7 @@ pub enum ExportText {
     },
     NoParity,
     Monoflop,
-    /// In microseconds.
+    /// Monoflop times in microseconds.
     MonoflopTimes {
         least: f64,
         most: f64,
@@ -39,15 +39,15 @@ pub enum ExportText {
     ClockLimit {
         kilohertz: u32,
     },
-    /// How bits are counted.
+    /// Numbering of bits.
     Counting {
         first: u8,
     },
-    /// No module can decode the frame.
+    /// The reason why no module can decode the frame.
     Obstacle(ModuleObstacle),
-    /// What to do about it.
+    /// Advice to read the frame as binary.
     ReadAsBinary,
-    /// TM PosInput.
+    /// Code type of TM PosInput.
     CodeType,
     FrameBits {
         bits: u8,
@@ -59,7 +59,7 @@ pub enum ExportText {
         bit: u8,
         fits: bool,
     },
-    /// The value of a setting, with its meaning.
+    /// Value of a setting with its meaning.
     Setting(u8, SettingMeaning),
     FrameTypeNone {
         bits: u8,
@@ -70,16 +70,16 @@ pub enum ExportText {
         by: u64,
         bits: u8,
     },
-    /// Bits of a field, and where it begins.
+    /// Width of a field and its first bit.
     Field {
         bits: u8,
         highest: u8,
     },
     NoField,
     Binary,
-    /// Heading of the table of clocks.
+    /// Heading of the clock table.
     TableHeading,
-    /// The lines of the timing diagram.
+    /// Labels of the timing diagram.
     ClockLine,
     DataLine,
     BurstSpan {
@@ -92,21 +92,21 @@ pub enum ExportText {
     },
 }
 
-/// Why no module can decode a frame.
+/// The reason why no module can decode a frame.
 #[expect(missing_docs, reason = "its English, below, says what each is")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModuleObstacle {
     GrayExcess,
     Bcd,
-    /// Gray over more than the position.
+    /// Gray code over more than the position.
     GrayOver,
-    /// Exchanged wires.
+    /// Swapped data wires.
     Inverted,
-    /// Turns apart from steps.
+    /// Zeros between multiturn and singleturn.
     Between,
 }
 
-/// The meaning of a setting's number.
+/// Meaning of a setting's value.
 #[expect(missing_docs, reason = "its English, below, says what each is")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SettingMeaning {
@@ -120,10 +120,10 @@ pub enum SettingMeaning {
     Odd,
 }
 
-/// Puts a text into words.
+/// Converts a text to a string in the language of the caller.
 pub type Say<'a> = &'a dyn Fn(&ExportText) -> String;
 
-/// The words of the command line.
+/// Returns the English string, used by the command line.
 pub fn english(text: &ExportText) -> String {
     text.to_string()
 }

@@ -24,8 +24,8 @@ const LEAVE: [Leave; 12] = [
 ];
 
 impl Family {
-    /// Returns the settings with which this family sends exactly this frame, as few as possible; `None`: it cannot.
-    /// Direction and preset are not in a frame, and keep the factory setting.
+    /// Returns the fewest settings with which this family sends exactly this frame, or `None` if it cannot. Direction
+    /// and preset are not part of a frame and keep their factory setting.
     pub fn settings_of(&self, frame: &Descriptor) -> Option<Settings> {
         let asked = self.shown_settings(frame);
         let aligns: Vec<Option<Align>> = std::iter::once(None).chain(self.align.iter().copied().map(Some)).collect();

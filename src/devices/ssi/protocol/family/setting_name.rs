@@ -1,42 +1,42 @@
-//! The names of settings in a family's description.
+//! Names of settings in the description of a family.
 
-/// A setting of a family, where it is refused.
+/// A setting of a family, as named in error messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingName {
-    /// A frame as wide as the position.
+    /// Frame of the same width as the position.
     #[error("frame")]
     Frame,
     /// Positions shifted to the right.
     #[error("shifting to the right")]
     ShiftRight,
-    /// Steps that are no power of two.
+    /// Number of steps that is not a power of two.
     #[error("number of steps that is not a power of two")]
     AnySteps,
-    /// Bits of the revolutions, as they are set.
+    /// Width of the multiturn part as set.
     #[error("mt")]
     Mt,
-    /// Revolutions.
+    /// Multiturn part.
     #[error("multiturn")]
     Multiturn,
-    /// Bits of the revolutions, with their limits.
+    /// Width of the multiturn part with its limits.
     #[error("multiturn bits")]
     MultiturnBits,
-    /// Bits within a revolution, as they are set.
+    /// Width of the singleturn part as set.
     #[error("st")]
     St,
-    /// Bits within a revolution, with their limits.
+    /// Width of the singleturn part with its limits.
     #[error("singleturn bits")]
     SingleturnBits,
-    /// Bits of a length.
+    /// Width of a linear position.
     #[error("bits")]
     Bits,
     /// Steps.
     #[error("steps")]
     Steps,
-    /// Steps of a turn.
+    /// Steps per turn.
     #[error("steps per turn")]
     StepsPerTurn,
-    /// Steps of all turns.
+    /// Total number of steps.
     #[error("total number of steps")]
     StepsAltogether,
     /// Steps of a round axis.
@@ -45,25 +45,25 @@ pub enum SettingName {
     /// Turns.
     #[error("turns")]
     Turns,
-    /// Turns, and no steps for them.
+    /// Turns given without steps.
     #[error("number of turns without steps")]
     TurnsWithoutSteps,
     /// Revolutions of a round axis.
     #[error("revolutions")]
     Revolutions,
-    /// Their numerator.
+    /// Numerator of the revolutions.
     #[error("numerator of revolutions")]
     RevolutionsAbove,
-    /// Their denominator.
+    /// Denominator of the revolutions.
     #[error("denominator of revolutions")]
     RevolutionsBelow,
-    /// A round axis.
+    /// Round axis.
     #[error("round axis")]
     RoundAxis,
-    /// The length of a step, as set.
+    /// Step length as set.
     #[error("step")]
     Step,
-    /// The length of a step.
+    /// Step length.
     #[error("length of a step")]
     StepLength,
     /// The preset.

@@ -1,4 +1,4 @@
-//! The frame that results from a family's settings: resolution, code, alignment, error bits, clocks.
+//! Resolution of a family's settings to a frame: resolution, code, alignment, error bits and clocks.
 
 use super::{Align, ErrorPlace, Family, Frame, SettingName};
 use crate::devices::ssi::protocol::code::{Code, CodeError, Coding};
@@ -6,137 +6,137 @@ use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit};
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::{Direction, Fraction, Range, RangeError};
 
-/// The settings of an encoder of a family; `None` is the factory setting, with the largest resolution.
+/// Settings of an encoder family; `None` selects the factory setting with the highest resolution.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
-    /// Bits of the revolutions.
+    /// Width of the multiturn part in bits.
     pub multiturn: Option<u8>,
-    /// Bits within one, or of a length.
+    /// Width of the singleturn part, or of a linear position, in bits.
     pub singleturn: Option<u8>,
-    /// Steps that are no power of two: per turn, or in all on a round axis.
+    /// Number of steps that is not a power of two: per turn, or in total on a round axis.
     pub steps: Option<u32>,
-    /// Turns that have `steps` each.
+    /// Number of turns of `steps` steps each.
     pub turns: Option<u32>,
-    /// Turns over which `steps` are spread.
+    /// Number of turns over which `steps` are distributed.
     pub revolutions: Option<Fraction>,
-    /// Code.
+    /// Position code.
     pub code: Option<Code>,
-    /// The bits that the code covers.
+    /// Extent of the code word.
     pub coded: Option<Coded>,
-    /// Clocks of a burst.
+    /// Number of clocks in a burst.
     pub clocks: Option<u8>,
     /// Alignment of the position.
     pub align: Option<Align>,
-    /// The frame comes one clock later.
+    /// Whether the frame is delayed by one clock.
     pub shift: bool,
-    /// Place of the error bits.
+    /// Location of the error bits.
     pub errors: Option<ErrorPlace>,
     /// Length of a step.
     pub step_nanometres: Option<u32>,
-    /// Direction of counting.
+    /// Counting direction.
     pub direction: Option<Direction>,
-    /// The position at the shaft's zero.
+    /// Position at the zero of the shaft.
     pub preset: Option<u64>,
 }
 
-/// A family's frame.
+/// The frame that results from the settings of a family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolved {
     /// The frame.
     pub layout: Layout,
     /// Alignment of the position.
     pub align: Align,
-    /// Place of the error bits.
+    /// Location of the error bits.
     pub errors: ErrorPlace,
-    /// Direction of counting. Frames are read the same way.
+    /// Counting direction, which does not affect the reading of frames.
     pub direction: Direction,
-    /// The position at the shaft's zero, within the range. Frames are read the same way.
+    /// Position at the zero of the shaft, within the range. It does not affect the reading of frames.
     pub preset: u64,
     /// Accepted settings that the manual does not mention.
     pub advice: Vec<Advice>,
 }
 
-/// A setting that is not in the manual.
+/// A setting that the manual does not mention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Advice {
-    /// The manual names other codes for this family.
+    /// The manual lists other codes for this family.
     Code(Code),
-    /// More clocks than the frame has bits: their content is not known.
+    /// There are more clocks than frame bits; the content of the surplus ones is unknown.
     Clocks {
-        /// Bits of the frame.
+        /// Number of bits in the frame.
         bits: u8,
-        /// Clocks asked for.
+        /// Requested number of clocks.
         clocks: u8,
     },
 }
 
-/// The reason why settings are not possible.
+/// The reason why settings are impossible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingsError {
-    /// The family has no such field.
+    /// The family does not have this setting.
     #[error("{family} has no {field}")]
     None {
-        /// Its name.
+        /// Name of the family.
         family: String,
-        /// The missing setting.
+        /// The unavailable setting.
         field: SettingName,
     },
-    /// Two settings with the same meaning.
+    /// Two settings exclude each other.
     #[error("{0} and {1} exclude each other")]
     Both(SettingName, SettingName),
-    /// A number outside its limits.
+    /// A value is outside its limits.
     #[error("{family}: {field} must be from {least} to {most}, not {value}")]
     Limit {
-        /// The family's name.
+        /// Name of the family.
         family: String,
         /// The limited setting.
         field: SettingName,
-        /// Lowest value.
+        /// Minimum value.
         least: u64,
-        /// Highest value.
+        /// Maximum value.
         most: u64,
-        /// Value asked for.
+        /// Requested value.
         value: u64,
     },
-    /// The family does not send its position with this alignment, or there is no room for it.
+    /// The family does not support the alignment, or the frame is too short for it.
     #[error("{family}: {bits} position bits cannot be {align}; possible: {possible}")]
     Align {
-        /// The family's name.
+        /// Name of the family.
         family: String,
-        /// Bits of the position.
+        /// Width of the position in bits.
         bits: u8,
-        /// Alignment asked for.
+        /// Requested alignment.
         align: Align,
-        /// Those that work.
+        /// Supported alignments.
         possible: String,
     },
-    /// Error bits are not placed like that.
+    /// The family does not support this location of the error bits.
     #[error("{family} cannot send its error bits {place}; possible: {possible}")]
     Errors {
-        /// The family's name.
+        /// Name of the family.
         family: String,
-        /// Place asked for.
+        /// Requested location.
         place: ErrorPlace,
-        /// Those that work.
+        /// Supported locations.
         possible: String,
     },
-    /// More clocks than the encoder bears.
+    /// There are more clocks than the encoder tolerates.
     #[error("{family} supports at most {most} clocks, not {clocks}")]
     Clocks {
-        /// The family's name.
+        /// Name of the family.
         family: String,
-        /// Most clocks.
+        /// Maximum number of clocks.
         most: u8,
-        /// Clocks asked for.
+        /// Requested number of clocks.
         clocks: u8,
     },
-    /// No such range.
+    /// The range is impossible.
     #[error(transparent)]
     Range(#[from] RangeError),
-    /// No such code words.
+    /// The code cannot represent the positions.
     #[error(transparent)]
     Code(#[from] CodeError),
-    /// The frame cannot work.
+    /// The frame is impossible.
     #[error(transparent)]
     Layout(#[from] LayoutError),
 }

@@ -1,4 +1,4 @@
-//! A family and its settings in one word: `ahm36,code=gray,st=12`.
+//! A family and its settings as one word: `ahm36,code=gray,st=12`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -28,10 +28,10 @@ const NAMES: &[&str] = &[
 ];
 
 impl Settings {
-    /// Splits `ahm36,code=gray,st=12` into the family's key and its settings.
+    /// Splits `ahm36,code=gray,st=12` into the key of the family and its settings.
     ///
     /// # Errors
-    /// [`SpecError`], with the allowed values.
+    /// [`SpecError`] with the valid values.
     pub fn parse(text: &str) -> Result<(String, Self), SpecError> {
         let mut words = text.split(',').map(str::trim);
         let key = words.next().unwrap_or_default().to_ascii_lowercase();
@@ -42,8 +42,8 @@ impl Settings {
         Ok((key, settings))
     }
 
-    /// Returns the text of these settings of the family with this key: `ahm36,code=gray,st=12`. It contains only settings
-    /// that are set.
+    /// Returns the family key and its settings as one word: `ahm36,code=gray,st=12`. Only explicit settings are
+    /// included.
     pub fn emit(&self, key: &str) -> String {
         fn word<T: ToString>(value: Option<T>) -> Option<String> {
             value.map(|value| value.to_string())
@@ -143,7 +143,7 @@ impl Words for ErrorPlace {
         &[("none", ErrorPlace::None), ("fix", ErrorPlace::Fix), ("following", ErrorPlace::Following)];
 }
 
-/// Defines the text for a value and back; the error has the allowed values.
+/// Defines the conversion between values and their keywords; the error lists the valid keywords.
 macro_rules! in_words {
     ($($type:ty: $expected:expr,)*) => {$(
         impl fmt::Display for $type {

@@ -1,4 +1,5 @@
-//! An encoder of no family: usual widths, and separate bits for those that are always 1, were active or are not explained.
+//! Encoders of no known family: common widths, and separate bits for those that are always 1, have been active, or are
+//! unexplained.
 
 use super::code_ends::unusual;
 use super::frame_set::FrameSet;

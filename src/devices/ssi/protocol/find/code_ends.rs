@@ -1,5 +1,5 @@
-//! The number after which positions start again if it is no power of two: the codes that never occur, and the size of the
-//! backward jumps, determine it.
+//! The number after which positions start again, if it is not a power of two, determined from codes that never occur
+//! and from the size of backward jumps.
 
 use super::motion::{Motion, median};
 use super::reading::{Read, Reading};

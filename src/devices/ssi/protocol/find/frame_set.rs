@@ -1,4 +1,4 @@
-//! Recorded frames as bits over time: which clocks move, which stay, and where a word comes a second time. Nothing is
+//! Recorded frames as bits over time: which clocks change, which do not, and where a word is repeated. Nothing is
 //! decoded here.
 
 use std::collections::HashMap;

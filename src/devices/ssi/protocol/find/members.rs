@@ -1,4 +1,4 @@
-//! The layouts that read frames in a certain way: possible settings of families, and any other of usual widths.
+//! Layouts that read frames in a given way: possible settings of families, and other layouts of common widths.
 
 use super::any_other::any_other;
 use super::frame_set::FrameSet;
@@ -21,9 +21,7 @@ const NEVER_ODD: f64 = 8.0;
 pub(super) struct Member {
     pub(super) family: Option<(String, Settings)>,
     pub(super) layout: Layout,
-    /// How improbable it is.
     pub(super) weight: f64,
-    /// Its result for the frames.
     pub(super) trial: Trial,
 }
 
@@ -92,7 +90,6 @@ pub(super) fn never_odd(read: &Read) -> bool {
     odd * 50 <= all
 }
 
-/// Returns the sum of the weights that apply.
 pub(super) fn sum(weights: &[(bool, f64)]) -> f64 {
     weights.iter().filter(|(counts, _)| *counts).map(|(_, weight)| weight).sum()
 }

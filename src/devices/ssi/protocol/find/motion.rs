@@ -1,5 +1,5 @@
-//! Measures how evenly a shaft turns if frames are read as certain numbers: the information needed for each number once
-//! the previous ones are known. A misread number jumps and needs its full information.
+//! Measures how evenly a shaft turns when frames are read as certain numbers: the information required for each number,
+//! given the previous ones. A misread number jumps and requires its full information.
 
 /// Number of differences that share one median.
 const BLOCK: usize = 16;
@@ -19,7 +19,6 @@ pub(super) struct Motion {
     pub(super) steps: Vec<Option<i64>>,
     /// For each of them: the difference from its neighbours.
     pub(super) uneven: Vec<i64>,
-    /// Differences beyond this are jumps.
     pub(super) limit: u64,
     pub(super) jumps: usize,
     /// Frames without a valid number.

@@ -1,4 +1,4 @@
-//! Finds the settings of a family whose position ends where the reading does.
+//! Settings of a family whose position ends where the reading does.
 
 use super::frame_set::FrameSet;
 use super::members::{EXCHANGED, PADDED, Take, goes_over_zero, sum};

@@ -1,5 +1,5 @@
-//! The prior probability of a layout: encoders are built with a few usual widths, and never with 4096 turns of 2 steps.
-//! Weights, 0 for the most usual; one is about a changed setting.
+//! Prior probability of a layout: encoders are built with a few common widths, and never with 4096 turns of 2 steps.
+//! Weights are 0 for the most common layout; a changed setting costs about 1.
 
 /// Bits within a revolution.
 const STEPS: [(u8, f64); 16] = [

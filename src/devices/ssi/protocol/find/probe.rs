@@ -1,4 +1,4 @@
-//! Frames with which a layout is tried before it counts: it has to result in the same motion as the reading of the frames.
+//! Trial frames for a layout before it counts: it must yield the same motion as the reading of the frames.
 
 use super::frame_set::FrameSet;
 use super::motion::nearest;
@@ -58,7 +58,6 @@ impl<'a> Probe<'a> {
         Probe { seen, read, pairs }
     }
 
-    /// Clocks of the frames.
     pub(super) fn clocks(&self) -> u8 {
         self.seen.clocks
     }

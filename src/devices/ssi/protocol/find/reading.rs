@@ -1,5 +1,5 @@
-//! Ways to read frames as numbers: the clocks of the position, its code, exchanged wires, and the number after which it
-//! starts again. Parts that a reading does not explain need information bit by bit.
+//! Ways to read frames as numbers: the clocks of the position, its code, swapped wires, and the number after which it
+//! starts again. Parts that a reading does not explain require information bit by bit.
 
 use std::ops::RangeInclusive;
 
@@ -46,7 +46,6 @@ pub(super) struct Reading {
     pub(super) steps: Option<(u64, u64)>,
 }
 
-/// Frames with one reading.
 #[derive(Clone, Debug)]
 pub(super) struct Read {
     pub(super) reading: Reading,
@@ -57,7 +56,6 @@ pub(super) struct Read {
     pub(super) bits: f64,
     /// Clocks that move and are not explained.
     pub(super) unexplained: Vec<u8>,
-    /// The end of the range was passed.
     pub(super) closed: bool,
 }
 
@@ -84,7 +82,6 @@ impl Reading {
         }
     }
 
-    /// Returns the numbers that positions can have.
     pub(super) fn allowed(&self) -> RangeInclusive<u64> {
         match (self.steps, self.code) {
             (None, _) => 0..=u64::MAX,
@@ -118,7 +115,6 @@ impl Reading {
         words.iter().map(number).collect()
     }
 
-    /// Returns whether the clock belongs to the position.
     pub(super) fn has(&self, clock: u8) -> bool {
         (self.first..=self.last).contains(&clock) && self.gap.is_none_or(|(from, to)| !(from..=to).contains(&clock))
     }

@@ -1,4 +1,4 @@
-//! The verdict on the classes: the doubt, the quality of each, and the motion that would decide.
+//! Verdict on the classes: the confidence, the quality of each class, and the motion that would decide.
 
 use super::frame_set::FrameSet;
 use super::members::{Member, never_odd};
@@ -58,7 +58,6 @@ fn is_even(read: &Read, frames: usize, part: f64) -> bool {
         && disturbed * 100 <= DISTURBED_PERCENT * frames
 }
 
-/// Returns what keeps a group from being certain.
 fn unproven(words: &FrameSet, group: &Group) -> Vec<Open> {
     let Group { read, members, .. } = group;
     let reading = &read.reading;

@@ -1,112 +1,112 @@
-//! Checks whether a frame is possible, and computes its shifts and masks.
+//! Validation of a frame, and computation of its shifts and masks.
 
 use super::{Flags, Layout, Part};
 use crate::devices::ssi::protocol::code::{Code, CodeError, Coding, ones};
 use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, Meaning, Parity, Word};
 use crate::devices::ssi::protocol::range::{Range, RangeError};
 
-/// The reason why a frame is not possible.
+/// The reason why a frame is impossible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
-    /// No clock at all, or more than an adapter and a number hold.
+    /// The number of clocks is zero, or exceeds the capacity of an adapter or a number.
     #[error("a frame has 1 to 64 clocks, not {0}")]
     Clocks(u8),
-    /// An invalid range of positions.
+    /// The range of positions is invalid.
     #[error(transparent)]
     Range(#[from] RangeError),
-    /// A code without words for the positions.
+    /// The code cannot represent the positions.
     #[error(transparent)]
     Code(#[from] CodeError),
-    /// The area of the position ends after the frame.
+    /// The position area extends beyond the frame.
     #[error("the position reaches clock {area}, but there are only {clocks} clocks")]
     Area {
-        /// Its last clock.
+        /// Last clock of the area.
         area: u8,
-        /// Clocks of the frame.
+        /// Number of clocks in the frame.
         clocks: u8,
     },
-    /// The position's bits do not fit between the zeros.
+    /// The position bits do not fit between the zeros.
     #[error("{bits} position bits after {lead} zeros need {needed} clocks, but only {area} are available")]
     Wide {
-        /// Bits of the code word.
+        /// Width of the code word in bits.
         bits: u8,
-        /// Zeros before and in between.
+        /// Number of zeros before and within the position.
         lead: u8,
-        /// Clocks needed.
+        /// Required number of clocks.
         needed: u16,
-        /// Clocks there are.
+        /// Available number of clocks.
         area: u8,
     },
-    /// Zeros between turns and steps, and no bits of their own for both.
+    /// There are zeros between multiturn and singleturn although these have no separate bits.
     #[error("zeros between turns and steps require separate bits for both; here the position is a single number")]
     Between,
-    /// Two contents on one clock.
+    /// Two uses of the same clock.
     #[error("clock {clock} is used by both {first} and {second}")]
     Overlap {
-        /// The clock.
+        /// Clock number.
         clock: u8,
-        /// The first content.
+        /// First use.
         first: ClockUse,
-        /// The second content.
+        /// Second use.
         second: ClockUse,
     },
-    /// A bit after the last clock.
+    /// A bit is beyond the last clock.
     #[error("{name} is on clock {clock}, but the frame has only {clocks} clocks")]
     Behind {
-        /// The bit.
+        /// Use of the bit.
         name: ClockUse,
-        /// Its clock.
+        /// Clock number of the bit.
         clock: u8,
-        /// Clocks of the frame.
+        /// Number of clocks in the frame.
         clocks: u8,
     },
-    /// More error bits or patterns than there is room for.
+    /// There are too many error bits or patterns.
     #[error("at most {limit} {what}, not {count}")]
     Many {
         /// The content in question.
         what: RepeatedPart,
-        /// Largest number of them.
+        /// Maximum number.
         limit: usize,
-        /// Their number.
+        /// Given number.
         count: usize,
     },
-    /// A code over more than the position that is not Gray.
+    /// A code over more than the position is not Gray.
     #[error("only Gray code can include zeros and error bits")]
     NotGray,
-    /// An error or parity bit within a part that is coded or shifted as a whole.
+    /// An error or parity bit is within a part that is coded or shifted as a whole.
     #[error("{name} on clock {clock} is among the {area} clocks that are {done} as a whole")]
     Inside {
-        /// The bit.
+        /// Use of the bit.
         name: ClockUse,
-        /// Its clock.
+        /// Clock number of the bit.
         clock: u8,
-        /// Clocks of the area.
+        /// Number of clocks in the area.
         area: u8,
-        /// The operation on the clocks.
+        /// Operation applied to the part.
         done: WordOperation,
     },
-    /// The lowest bit is lost, and the code does not bear it.
+    /// The lowest bit is lost, which the code does not allow.
     #[error("shifting right drops the lowest bit, and without it a word of this code is not a position")]
     Lost,
-    /// Two frames need more clocks.
+    /// The repetition requires more clocks.
     #[error("the frame and its repetition need {needed} clocks, but there are only {clocks}")]
     Repeat {
-        /// Clocks needed.
+        /// Required number of clocks.
         needed: u16,
-        /// Clocks there are.
+        /// Available number of clocks.
         clocks: u8,
     },
-    /// A pattern that no frame can be.
+    /// No frame can have this pattern.
     #[error("the pattern {word:X} has more than {clocks} bits")]
     Pattern {
         /// The pattern.
         word: u64,
-        /// Clocks of the frame.
+        /// Number of clocks in the frame.
         clocks: u8,
     },
 }
 
-/// A content that takes a clock.
+/// Use of a clock.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ClockUse {
     /// The position.
@@ -115,12 +115,12 @@ pub enum ClockUse {
     /// The parity bit.
     #[error("the parity bit")]
     Parity,
-    /// An error bit, by its name.
+    /// The error bit with this name.
     #[error("{0}")]
     Error(String),
 }
 
-/// A part of which a frame has several.
+/// A part that may occur several times in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RepeatedPart {
     /// Error bits.
@@ -134,10 +134,10 @@ pub enum RepeatedPart {
 /// An operation on several clocks together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum WordOperation {
-    /// They are one code word.
+    /// The clocks form one code word.
     #[error("coded")]
     Coded,
-    /// They are shifted to the right.
+    /// The clocks are shifted to the right.
     #[error("shifted")]
     Shifted,
 }

@@ -1,4 +1,4 @@
-//! A frame with other positions or another code: it grows and shrinks with them, as a user would redraw it.
+//! Resizing a frame for other positions or another code: it grows and shrinks as a user would redraw it.
 
 use crate::devices::ssi::protocol::{Code, Coding, Descriptor, LayoutError, Range};
 

@@ -1,4 +1,4 @@
-//! Texts of the device check.
+//! Texts for the device check.
 
 use super::finding as said;
 use crate::app::Text;

@@ -1,11 +1,10 @@
-//! What exports say, in both languages. In English it is what the command line prints.
+//! Texts of the exports in both languages. The English ones are those that the command line prints.
 
 use super::code;
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Code, ExportText, ModuleObstacle, SettingMeaning};
 use crate::devices::ssi::state::TEXTS;
 
-/// Returns a piece of text of an export.
 pub fn export(text: &ExportText) -> Text {
     let own = |id| TEXTS.text(id);
     match text {

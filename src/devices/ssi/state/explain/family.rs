@@ -1,4 +1,4 @@
-//! The sentences of the families' files, and why one cannot be used.
+//! Texts from the family files, and messages about files that cannot be used.
 
 use super::refused::settings_reason;
 use crate::app::Text;

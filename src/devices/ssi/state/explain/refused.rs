@@ -1,4 +1,4 @@
-//! Why a layout is not possible, in both languages, as reported by the frame, its family or a format string.
+//! Messages about impossible layouts in both languages, as reported by the frame, its family or a format string.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -210,7 +210,6 @@ fn taker(taker: &ClockUse) -> Text {
     }
 }
 
-/// Returns why a profile is refused.
 pub fn entry(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::Layout(error) => layout_reason(error),

@@ -1,4 +1,4 @@
-//! The rows of a family: the settings of its encoders.
+//! Form rows of a family: the settings of its encoders.
 
 use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::app::Text;

@@ -1,4 +1,4 @@
-//! The rows of a frame without a family, or that its family does not send.
+//! Form rows of a frame without a family, or of one that its family cannot send.
 
 use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::devices::ssi::protocol::{Descriptor, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};

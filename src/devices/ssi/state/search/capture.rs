@@ -1,6 +1,6 @@
-//! The export of a logic analyser as levels of clock and data. Saleae Logic writes a row for each change, with
-//! `Time [s],Channel 0,Channel 1` above; sigrok (PulseView) begins with lines of `;`, one of which has the sample rate, and
-//! writes a row for each sample, with its time in front or without.
+//! Import of logic analyser exports as levels of clock and data. Saleae Logic writes a row for each change below a
+//! header `Time [s],Channel 0,Channel 1`; sigrok (PulseView) begins with lines starting with `;`, one of which states
+//! the sample rate, and writes a row for each sample, with or without a time.
 
 use crate::app::Text;
 use crate::devices::ssi::protocol::Levels;

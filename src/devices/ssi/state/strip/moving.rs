@@ -1,5 +1,5 @@
-//! Moves a part of a frame. The result is always a possible frame: of the clocks between the requested and the present
-//! one, the first that is possible.
+//! Moving parts of a frame. The result is always a possible frame: of the clocks between the requested and the present
+//! one, the first possible one is used.
 
 use super::{Handle, Parts, has_words};
 use crate::devices::ssi::protocol::{Coded, Descriptor, Layout, Parity, Pattern, Range, Repeat, Word};

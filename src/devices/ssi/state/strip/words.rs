@@ -1,4 +1,4 @@
-//! The cells, fields and handles of a frame as text.
+//! Descriptions of the cells, fields and handles of a frame.
 
 use super::{Field, Handle, Kind, Strip};
 use crate::app::Text;
@@ -82,7 +82,6 @@ pub fn clocks(field: &Field) -> Text {
     }
 }
 
-/// Returns the name of a handle.
 pub fn handle(strip: &Strip, handle: Handle) -> Text {
     TEXTS.text(match handle {
         Handle::LeadEnd => "ssi.strip_lead_end",
@@ -101,7 +100,6 @@ pub fn handle(strip: &Strip, handle: Handle) -> Text {
     })
 }
 
-/// Returns the place of a handle.
 pub fn value(strip: &Strip, handle: Handle) -> Text {
     let clock = strip.clock(handle).unwrap_or(0);
     let at = |id| TEXTS.text(id).with("clock", clock);
@@ -114,7 +112,6 @@ pub fn value(strip: &Strip, handle: Handle) -> Text {
     }
 }
 
-/// Returns how far a handle can be moved.
 pub fn reach(strip: &Strip, handle: Handle, following: bool) -> Text {
     let (first, last) = strip.limits(handle, following);
     if first == last {
@@ -124,7 +121,6 @@ pub fn reach(strip: &Strip, handle: Handle, following: bool) -> Text {
     }
 }
 
-/// Returns the effect of moving a handle.
 pub fn hint(handle: Handle) -> Text {
     TEXTS.text(match handle {
         Handle::LeadEnd => "ssi.strip_move_lead_end",

@@ -1,17 +1,18 @@
 //! An SSI frame as a row of cells, one per clock, with movable boundaries and single bits.
 //!
-//! * **Size**: the available width; cells shrink to a minimum width, then the strip wraps into as few lines of whole bytes
+//! * **Size**: the available width; cells shrink to a minimum width, then the strip wraps into as few lines of whole
+//!   bytes as possible.
+//! * **Keyboard**: Tab moves to the cells and from handle to handle. On the cells the left and right arrows, Home and
+//!   End select one, Space inverts its bit if allowed. On a handle the arrows move it by one clock, Home and End as far
 //!   as possible.
-//! * **Keyboard**: Tab goes to the cells and from handle to handle. On the cells the left and right arrows, Home and End
-//!   select one, Space inverts its bit if that is allowed. On a handle the arrows move it by one clock, Home and End as far
-//!   as possible.
-//! * **Pointer**: a click selects a cell and inverts its bit; a click on its number only selects. A handle is dragged; the
-//!   resulting frame is shown meanwhile, and Escape cancels. A handle's name and use are shown under it.
-//! * **Accessible**: the cells are a slider with the given label, whose value is the selected cell; so is each handle, with
-//!   its place. A field is a group with its bits.
-//! * **Painting**: a cell in the colour of its field, the clock's number above, and in it the bit, or the bit's number
-//!   while there is no frame; a bracket below each field with its name, a tab at each movable end; a bit with a meaning is
-//!   filled with the colour of its verdict, which its name has too, with an icon.
+//! * **Pointer**: a click selects a cell and inverts its bit; a click on its number only selects. A handle is dragged;
+//!   the resulting frame is shown during the drag, and Escape cancels it. The name and use of a handle are shown below
+//!   it.
+//! * **Accessible**: the cells are a slider with the given label, whose value is the selected cell; each handle is a
+//!   slider with its location. A field is a group with its bits.
+//! * **Painting**: a cell in the colour of its field with the clock number above; it contains the bit, or the number of
+//!   the bit while there is no frame; a bracket with the name below each field, a tab at each movable end; a bit with a
+//!   meaning is filled with the colour of its verdict, as is its name, which has an icon.
 
 mod grips;
 mod names;
@@ -30,16 +31,13 @@ pub(super) use paint::ink as field_ink;
 use names::Tag;
 use rows::Rows;
 
-/// A frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BitStrip<'a> {
-    /// Accessible name of the cells.
     pub(crate) label: &'a str,
     /// The present frame, also during a drag.
     pub(crate) strip: &'a Strip,
     /// Bits to show in it, right-justified.
     pub(crate) frame: Option<u64>,
-    /// Clock of the selected cell.
     pub(crate) selected: Option<u8>,
     /// Bits can be turned over.
     pub(crate) toggles: bool,
@@ -56,7 +54,6 @@ pub(crate) enum StripEvent {
     Preview(Handle, u8),
     /// The part was moved to this clock, which it can reach and which differs from the present one.
     Moved(Handle, u8),
-    /// Another cell was selected, by its clock.
     Selected(u8),
     /// The bit of this clock shall be the other one.
     Toggled(u8),
@@ -104,7 +101,6 @@ struct StripContext<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
     model: &'a BitStrip<'a>,
-    /// The frame that is drawn.
     shown: &'a Strip,
     /// Its bits, if they are known.
     cells: &'a [CellState],
@@ -113,7 +109,6 @@ struct StripContext<'a> {
 }
 
 impl StripContext<'_> {
-    /// Handles the keyboard on the cells.
     fn choose(&self) -> Option<StripEvent> {
         let (ui, model) = (self.ui, self.model);
         let clocks = model.strip.layout().clocks();
@@ -173,7 +168,6 @@ impl StripContext<'_> {
         }
     }
 
-    /// Handles the pointer on the cells.
     fn press(&self, tags: &[Tag]) -> Option<StripEvent> {
         let (ui, model) = (self.ui, self.model);
         let mut event = None;
@@ -221,7 +215,6 @@ impl StripContext<'_> {
     }
 }
 
-/// Returns the worst meaning of these clocks.
 fn tells(cells: &[CellState], clocks: std::ops::RangeInclusive<u8>) -> Option<Meaning> {
     let own = clocks.filter_map(|clock| cells.get(usize::from(clock.checked_sub(1)?))?.tells);
     own.min_by_key(|meaning| *meaning == Meaning::Warning)

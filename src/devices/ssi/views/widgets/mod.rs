@@ -1,4 +1,4 @@
-//! Widgets of this tab: the bits of a frame, and a burst in time.
+//! Widgets of the SSI tab: the bits of a frame, and the timing of a burst.
 
 mod bit_strip;
 mod timing_diagram;

@@ -1,12 +1,12 @@
-//! A burst in time: the clock line, the data line with its bits, and the times between them, to scale.
+//! The timing of a burst to scale: clock line, data line with its bits, and the times between them.
 //!
-//! * **Size**: the available width; the height required by its texts.
-//! * **Keyboard**: none; Tab skips it.
-//! * **Pointer**: the time under it, with the clock and its content.
-//! * **Accessible**: an image with the given label; its value is the times as text.
-//! * **Painting**: moments as lines from their texts down through all; the clock as it changes; the bits in the colours of
-//!   their fields, the field's name below; each time as a line with ends in a lane. Where nothing happens the axis is
-//!   broken, with the omitted time.
+//! * **Size**: the available width, and the height required by the labels.
+//! * **Keyboard**: none; Tab skips the diagram.
+//! * **Pointer**: shows the hovered time with the clock and its content.
+//! * **Accessible**: an image with the given label, whose value lists the times.
+//! * **Painting**: moments are vertical lines below their labels; the clock is drawn as a waveform; bits are drawn in
+//!   the colours of their fields with the field name below; each time is a dimension line in a lane. Where nothing
+//!   happens the axis is broken and states the omitted time.
 
 mod axis;
 mod place;
@@ -30,9 +30,7 @@ use place::{Bar, Flag, Put};
 /// A timing diagram to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimingDiagram<'a> {
-    /// Accessible name.
     pub(crate) label: &'a str,
-    /// A burst.
     pub(crate) diagram: &'a Diagram,
     /// Bits to show in it, right-justified.
     pub(crate) frame: Option<u64>,
@@ -47,7 +45,6 @@ const BEFORE: f32 = 12.0;
 /// A bit narrower than this has no digit.
 const DIGIT: f32 = 9.0;
 
-/// Positions of the rows.
 struct Rows {
     flags: f32,
     clock: Rangef,
@@ -132,7 +129,6 @@ fn draw(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     }
 }
 
-/// The context of painting.
 struct Picture<'a> {
     painter: &'a Painter,
     theme: &'a Theme,

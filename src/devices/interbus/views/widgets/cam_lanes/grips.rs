@@ -1,4 +1,4 @@
-//! The handles in the lanes: edges, cams, and the space for new ones.
+//! Handles in the lanes: edges, cams, and the space for new ones.
 
 use egui::accesskit::Role;
 use egui::{CursorIcon, Rect, Response, Sense, WidgetInfo};
@@ -26,7 +26,6 @@ impl Lanes<'_> {
         event
     }
 
-    /// Handles the lane itself, below its cam.
     fn room(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
         let id = self.base.with("room").with(lane.cam);
         let draws = self.model.movable && !lane.on;
@@ -152,7 +151,6 @@ impl Lanes<'_> {
         }
     }
 
-    /// Scrolls to the element with the keyboard focus.
     fn follow(&self, response: &Response, stretch: Stretch) -> Option<CamEvent> {
         let (view, range) = (self.place.view, self.model.chart.range);
         let (first, last) = (f64::from(stretch.first), f64::from(stretch.last) + 1.0);

@@ -1,4 +1,4 @@
-//! The head of a lane: whether its cam is active, its number and name, the indicator of its output.
+//! Head of a lane: the switch of its cam, its number and name, and the indicator of its output.
 
 use egui::accesskit::Role;
 use egui::text::{LayoutJob, TextWrapping};

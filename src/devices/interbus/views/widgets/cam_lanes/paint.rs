@@ -1,4 +1,4 @@
-//! The painting of the lanes.
+//! Painting of the lanes.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect, Shape, Stroke, StrokeKind, Vec2, pos2};
 
@@ -150,7 +150,6 @@ impl Lanes<'_> {
         painter.add(Shape::convex_polygon(mark, colour, Stroke::NONE));
     }
 
-    /// Draws the target of a drag.
     fn goal(&self, drag: &Drag) {
         let Some(to) = drag.to else { return };
         let (theme, place) = (self.theme, self.place);

@@ -1,4 +1,4 @@
-//! The layout of the lanes of cams.
+//! Layout of the cam lanes.
 
 use egui::{Rect, Vec2, pos2};
 
@@ -20,7 +20,6 @@ const GRIP: f32 = 9.0;
 #[derive(Clone, Debug)]
 pub(super) struct PlotArea {
     pub(super) head: Rect,
-    /// The lanes.
     pub(super) plot: Rect,
     /// The ruler of steps.
     pub(super) ruler: Rect,
@@ -55,7 +54,6 @@ impl PlotArea {
         self.view.span() / f64::from(self.plot.width().max(1.0))
     }
 
-    /// Returns the x coordinate of a position.
     pub(super) fn x(&self, position: f64) -> f32 {
         let part = self.view.part(position).clamp(-1e4, 1e4);
         self.plot.left() + part as f32 * self.plot.width()

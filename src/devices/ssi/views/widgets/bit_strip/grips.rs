@@ -1,4 +1,4 @@
-//! The handles of a bit strip, for pointer and keyboard.
+//! Handles of a bit strip for pointer and keyboard.
 
 use egui::accesskit::Role;
 use egui::{CursorIcon, Id, Key, Modifiers, Rect, Response, Sense, Ui, Vec2, WidgetInfo};
@@ -18,7 +18,6 @@ const SECOND_TAB: f32 = 8.0;
 /// Share of a field at each of its ends where it cannot be taken hold of as a whole.
 const ENDS: f32 = 0.25;
 
-/// Draws all handles, and returns the user's action.
 pub(super) fn grips(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
     let (ui, model) = (view.ui, view.model);
     let mut event = None;
@@ -70,7 +69,6 @@ pub(super) fn is_dragged(ui: &Ui, base: Id, drag: Drag) -> bool {
     ui.ctx().is_being_dragged(id(base, drag.handle))
 }
 
-/// Returns the grab area of a handle.
 fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let clock = strip.clock(handle)?;
     if matches!(handle, Handle::Error(_) | Handle::Parity) {
@@ -98,7 +96,6 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     Some(Rect::from_x_y_ranges(x - WIDTH / 2.0..=right, top..=bottom))
 }
 
-/// Returns the edge of a boundary.
 pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let begins = matches!(handle, Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd);
     let clocks = strip.layout().clocks();

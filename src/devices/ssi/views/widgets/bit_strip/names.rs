@@ -1,5 +1,5 @@
-//! The names of the fields below their brackets: centred if they fit, else beside a line that leads down to them, on as
-//! many lines as needed to separate them.
+//! Field names below their brackets: centred if they fit, otherwise next to a line that leads to them, on as many lines
+//! as needed to separate them.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -13,12 +13,10 @@ use crate::devices::ssi::protocol::Meaning;
 use crate::devices::ssi::state::strip::{Field, Strip, bare, name, short};
 use crate::ui::{Theme, controls};
 
-/// Name with its place.
 pub(super) struct Tag {
     /// Index of its field in the strip.
     pub(super) field: usize,
     line: usize,
-    /// Line of the name.
     level: usize,
     /// From the first cell of its line.
     left: f32,
@@ -38,7 +36,6 @@ const LEVELS: usize = 8;
 struct Narrow {
     index: usize,
     line: usize,
-    /// The middle of the field.
     x: f32,
     /// No neighbour is such a name.
     alone: bool,
@@ -105,7 +102,6 @@ impl Tag {
         Rect::from_min_size(pos2(rows.left() + self.left, top), Vec2::new(self.galley.size().x, NAME))
     }
 
-    /// Paints it below its bracket.
     pub(super) fn paint(&self, painter: &Painter, theme: &Theme, (rows, lane): (&Rows, Rect), colour: Color32) {
         let rect = self.rect(rows, lane);
         if let Some(x) = self.leader {

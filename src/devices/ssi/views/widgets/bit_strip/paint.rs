@@ -1,4 +1,4 @@
-//! The painting of a bit strip.
+//! Painting of a bit strip.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Rect, Stroke, StrokeKind, Vec2, pos2};
 
@@ -28,7 +28,6 @@ fn colour(theme: &Theme, meaning: Meaning) -> Color32 {
 }
 
 impl StripContext<'_> {
-    /// Cells, brackets and names.
     pub(super) fn paint(&self, tags: &[Tag]) {
         let painter = self.ui.painter();
         for tag in tags {

@@ -1,4 +1,4 @@
-//! The layout of the cells of a bit strip: on one line if there is room, else on lines of whole bytes.
+//! Layout of the cells in a bit strip: on one line if there is room, otherwise on lines of whole bytes.
 
 use egui::{Pos2, Rect, Vec2, pos2};
 
@@ -89,7 +89,6 @@ impl Rows {
         Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL))
     }
 
-    /// Returns the centre of its number.
     pub(super) fn number(&self, clock: u8) -> Pos2 {
         let cell = self.cell(clock);
         pos2(cell.center().x, cell.top() - NUMBERS / 2.0)
@@ -108,7 +107,6 @@ impl Rows {
         runs
     }
 
-    /// Returns the lane below a run of cells.
     pub(super) fn lane(run: Rect) -> Rect {
         Rect::from_min_max(pos2(run.left(), run.bottom()), pos2(run.right(), run.bottom() + LANE))
     }

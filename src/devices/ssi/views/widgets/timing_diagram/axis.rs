@@ -1,4 +1,4 @@
-//! From times to coordinates: to scale within each section of the axis, with a gap at each break.
+//! Conversion of times to coordinates: to scale within each section of the axis, with a gap at each break.
 
 use egui::Rangef;
 

@@ -1,9 +1,7 @@
-//! Texts that do not overlap: those of moments above their lines, those of times beside theirs.
+//! Placement of labels without overlaps: labels of moments above their lines, labels of times next to theirs.
 
-/// A moment's words.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flag {
-    /// X coordinate of its line.
     pub(super) x: f32,
     pub(super) width: f32,
 }
