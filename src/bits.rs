@@ -4,18 +4,16 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// Returns upper-case hex with a blank between bytes: `40 42 02`.
 pub fn hex(bytes: &[u8]) -> String {
     let words: Vec<String> = bytes.iter().map(|byte| format!("{byte:02X}")).collect();
     words.join(" ")
 }
 
-/// Returns upper-case hex without separators, as in JSON: `404202`.
+/// Returns upper-case hex without separators, as used in JSON: `404202`.
 pub fn hex_compact(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02X}")).collect()
 }
 
-/// The order of the bytes of a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ByteOrder {
@@ -24,7 +22,7 @@ pub enum ByteOrder {
     LowFirst,
 }
 
-/// A number with its width in bits. Its text has as many upper-case hexadecimal digits as the width needs.
+/// A number with its width in bits. It displays with as many upper-case hexadecimal digits as the width requires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
     /// The bits, right-justified.
@@ -39,7 +37,7 @@ impl fmt::Display for Word {
     }
 }
 
-/// Bytes that may be shown: secrets are not included. Its text has `**` for a masked byte.
+/// Bytes without secrets. A masked byte displays as `**`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MaskedBytes(Vec<Option<u8>>);
 
@@ -54,13 +52,13 @@ impl MaskedBytes {
         MaskedBytes(vec![None; count])
     }
 
-    /// Creates the bytes, without those at the positions in `secret`.
+    /// Creates the bytes, masking those at the positions in `secret`.
     pub fn masked(bytes: &[u8], secret: &[usize]) -> Self {
         let show = |(at, byte): (usize, &u8)| (!secret.contains(&at)).then_some(*byte);
         MaskedBytes(bytes.iter().enumerate().map(show).collect())
     }
 
-    /// Returns the number of bytes, masked ones included.
+    /// Returns the number of bytes, including masked ones.
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -69,7 +67,7 @@ impl MaskedBytes {
         self.0.is_empty()
     }
 
-    /// Returns the bytes; `None` if one is masked.
+    /// Returns the bytes, or `None` if any of them is masked.
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
         self.0.iter().copied().collect()
     }
@@ -78,18 +76,16 @@ impl MaskedBytes {
         self.0.iter().map(|byte| byte.unwrap_or(stand_in)).collect()
     }
 
-    /// Returns the first `count` bytes and the rest.
     pub fn split_at(&self, count: usize) -> (MaskedBytes, MaskedBytes) {
         let (head, tail) = self.0.split_at(count.min(self.0.len()));
         (MaskedBytes(head.to_vec()), MaskedBytes(tail.to_vec()))
     }
 
-    /// Appends `more` to these bytes.
     pub fn extend(&mut self, more: MaskedBytes) {
         self.0.extend(more.0);
     }
 
-    /// Returns whether the bytes have the same length and are equal wherever this one is not masked.
+    /// Returns whether the bytes have the same length and are equal wherever this value is not masked.
     pub fn matches(&self, bytes: &[u8]) -> bool {
         self.0.len() == bytes.len() && self.0.iter().zip(bytes).all(|(own, byte)| own.is_none_or(|own| own == *byte))
     }
@@ -123,18 +119,18 @@ impl FromStr for MaskedBytes {
     }
 }
 
-/// The reason why a text is not hexadecimal bytes.
+/// The reason why a string is not hexadecimal bytes.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HexError {
-    /// A character that is neither a hex digit nor a separator.
+    /// The character is neither a hex digit nor a separator.
     #[error("{0:?} is not a hexadecimal digit")]
     Digit(char),
     #[error("{0:?} has an odd number of hexadecimal digits")]
     Odd(String),
 }
 
-/// Parses hex bytes: groups of two digits each, separated by blanks, commas, colons or dashes or by nothing, with or
-/// without `0x` or a final `h`. An empty text is no bytes.
+/// Parses hex bytes: groups of two digits each, optionally separated by blanks, commas, colons or dashes, with or
+/// without `0x` or a final `h`. An empty string yields no bytes.
 pub fn parse_hex(text: &str) -> Result<Vec<u8>, HexError> {
     let mut bytes = Vec::new();
     for group in text.split(|c: char| c.is_whitespace() || matches!(c, ',' | ':' | '-')).filter(|g| !g.is_empty()) {
@@ -165,12 +161,12 @@ fn parse_group(group: &str, bytes: &mut Vec<u8>) -> Result<(), HexError> {
     Ok(())
 }
 
-/// A way to interpret bytes as a value.
+/// An interpretation of bytes as a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TypedKind {
-    /// One byte, unsigned.
+    /// One unsigned byte.
     U8,
-    /// One byte, two's complement.
+    /// One byte in two's complement.
     I8,
     /// Two bytes, unsigned.
     U16,
@@ -182,7 +178,7 @@ pub enum TypedKind {
     I32,
     /// Four bytes, IEEE 754 binary32.
     F32,
-    /// The bits of one byte, highest first.
+    /// The bits of one byte, most significant first.
     Binary,
     /// All bytes as ASCII.
     Text,
@@ -202,23 +198,23 @@ impl TypedKind {
         TypedKind::Text,
     ];
 
-    /// Returns whether the order of the bytes makes a difference.
+    /// Returns whether the byte order matters.
     pub const fn has_byte_order(self) -> bool {
         !matches!(self, TypedKind::U8 | TypedKind::I8 | TypedKind::Binary | TypedKind::Text)
     }
 }
 
-/// The first bytes of a run in one interpretation. If the byte order makes no difference, both are the same.
+/// The first bytes of a run in one interpretation. Both values are equal if the byte order does not matter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TypedRow {
     pub kind: TypedKind,
-    /// Lowest byte first; `None` if there are too few bytes.
+    /// Little-endian value, or `None` if there are too few bytes.
     pub little: Option<String>,
-    /// Highest byte first; `None` if there are too few bytes.
+    /// Big-endian value, or `None` if there are too few bytes.
     pub big: Option<String>,
 }
 
-/// Interprets the beginning of `bytes` in every way, in the order of [`TypedKind::ALL`].
+/// Interprets the beginning of `bytes` in all ways, in the order of [`TypedKind::ALL`].
 pub fn typed(bytes: &[u8]) -> Vec<TypedRow> {
     let row = |kind| TypedRow { kind, little: read_typed(kind, bytes, false), big: read_typed(kind, bytes, true) };
     TypedKind::ALL.into_iter().map(row).collect()
@@ -241,7 +237,7 @@ fn read_typed(kind: TypedKind, bytes: &[u8], big: bool) -> Option<String> {
     }
 }
 
-/// The replacement of a byte that is not a printable character.
+/// Replacement for a byte that is not a printable character.
 pub const NOT_PRINTABLE: char = '·';
 
 /// Returns the printable ASCII character of a byte.
@@ -249,12 +245,11 @@ pub fn ascii(byte: u8) -> Option<char> {
     (0x20..0x7F).contains(&byte).then_some(char::from(byte))
 }
 
-/// Returns the bits of a byte in two groups: `0011 1111`.
 pub fn binary(byte: u8) -> String {
     format!("{:04b} {:04b}", byte >> 4, byte & 0xF)
 }
 
-/// Returns the shortest text that parses as the same number, with an exponent if it would be long.
+/// Returns the shortest representation that parses as the same number, with an exponent if it would be long.
 fn float(value: f32) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs());
     if plain { value.to_string() } else { format!("{value:e}") }

@@ -19,12 +19,11 @@ use super::outliers::kept;
 /// Number of harmonics of the period.
 pub const HARMONICS: usize = 8;
 
-/// The error over one period.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionError {
-    /// Measured error in electrical degrees, at [`POINTS`] evenly spread angles; its mean is zero.
+    /// Measured error in electrical degrees at [`POINTS`] equidistant angles; the mean is zero.
     pub raw_deg: Vec<f64>,
-    /// The remaining error after the correction, likewise.
+    /// Remaining error after correction, in electrical degrees at the same angles.
     pub corrected_deg: Vec<f64>,
     /// Basis of the remaining error.
     pub basis: Basis,
@@ -35,12 +34,12 @@ pub struct PositionError {
 /// The basis against which the remaining error was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Basis {
-    /// A steady motion; remaining deviation of the samples besides the harmonics (noise), rms in electrical degrees.
+    /// A steady motion: the deviation of the samples that the harmonics do not explain.
     Motion {
-        /// Rms in electrical degrees.
+        /// Noise in electrical degrees, rms.
         noise_deg: f64,
     },
-    /// The motion was not steady, or too short: the distance from the ellipse.
+    /// The distance from the ellipse, because the motion was not steady, or the capture was too short.
     Ellipse,
 }
 
@@ -49,18 +48,17 @@ pub const POINTS: usize = 720;
 
 /// Sine and cosine of each harmonic.
 const TERMS: usize = 2 * HARMONICS;
-/// Periods in a segment with its own motion.
+/// Number of periods in a segment, each of which is fitted with its own motion.
 const SEGMENT_PERIODS: f64 = 4.0;
-/// Maximum number of segments examined; they are spread over the capture.
+/// Maximum number of segments examined, which are distributed over the capture.
 const SEGMENTS: usize = 32;
-/// Maximum number of samples of a segment; of more, every n-th is used.
+/// Maximum number of samples per segment; larger segments are thinned out.
 const SEGMENT_SAMPLES: usize = 4096;
 /// Fewest samples for a fit of the motion with all harmonics.
 const LEAST_SAMPLES: usize = 3 * TERMS;
-/// Minimum number of periods: with fewer, harmonics and motion cannot be separated.
+/// Minimum number of periods, below which harmonics and motion cannot be separated.
 const LEAST_PERIODS: f64 = 0.95;
-/// Ratio of the noise besides the harmonics to that expected from the distance to the ellipse, beyond which the motion was
-/// not steady.
+/// Ratio of the noise to the value expected from the distance to the ellipse, above which the motion was not steady.
 const STEADY: f64 = 3.0;
 
 type Normal = SMatrix<f64, TERMS, TERMS>;
@@ -68,7 +66,7 @@ type Terms = SVector<f64, TERMS>;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Samples<'a> {
-    /// Times in seconds; if they do not grow, they are ignored and the samples count as evenly spaced.
+    /// Times in seconds. If they do not increase, they are ignored, and samples are assumed to be equidistant.
     pub time_s: &'a [f64],
     /// Sine channel in volts.
     pub sine_v: &'a [f64],
@@ -77,7 +75,8 @@ pub struct Samples<'a> {
 }
 
 impl PositionError {
-    /// Returns the error of samples on their ellipse, without `left_out`: ranges in order that do not overlap.
+    /// Calculates the error of samples relative to their ellipse, excluding the ranges in `left_out`, which are ordered
+    /// and do not overlap.
     pub(super) fn of(samples: Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, coverage: &Coverage) -> Self {
         let expected_deg = coverage.residual_rms.to_degrees();
         let found = fit(&samples, left_out, ellipse, coverage.periods)
@@ -145,7 +144,7 @@ fn harmonics_at(angle: f64) -> Terms {
     terms
 }
 
-/// Returns the harmonics in radians, and the rms of the rest in degrees; `None` if there are too few samples.
+/// Returns the harmonics in radians, and the rms of the residual in degrees, or `None` if there are too few samples.
 fn fit(samples: &Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, periods: f64) -> Option<(Terms, f64)> {
     let count = samples.sine_v.len().min(samples.cosine_v.len());
     if count < LEAST_SAMPLES || periods < LEAST_PERIODS {
@@ -168,7 +167,7 @@ fn fit(samples: &Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, peri
     sums.solve()
 }
 
-/// Samples with a motion of their own.
+/// A run of samples that is fitted with its own motion.
 struct Segment {
     times: Vec<f64>,
     sine: Vec<f64>,
@@ -176,7 +175,6 @@ struct Segment {
 }
 
 impl Segment {
-    /// Returns the part of `range` that is not excluded.
     fn of(samples: &Samples<'_>, left_out: &[Range<usize>], range: Range<usize>, timed: bool) -> Self {
         let from = left_out.partition_point(|stretch| stretch.end <= range.start);
         let inside = left_out.iter().skip(from).take_while(|stretch| stretch.start < range.end);
@@ -246,8 +244,8 @@ impl Sums {
     }
 
     fn solve(self) -> Option<(Terms, f64)> {
-        /// Smallest share of the largest eigenvalue that is significant: few samples in a period cannot separate high
-        /// harmonics from low ones.
+        /// Smallest significant share of the largest eigenvalue: few samples per period cannot separate high harmonics
+        /// from low ones.
         const RANK: f64 = 1e-4;
         let parts = self.normal.symmetric_eigen();
         let largest = parts.eigenvalues.max();

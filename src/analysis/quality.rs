@@ -9,18 +9,17 @@ use crate::units::SupplyVoltage;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     Ok,
-    /// Outside; the position is still right.
+    /// The signal is outside its limits, but the position is still correct.
     Warn,
-    /// So far outside that a wire is broken or the angle is wrong.
+    /// The signal is so far outside that a wire is broken or the angle is wrong.
     Fault,
 }
 
-/// Limits of a family of encoders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Least and largest amplitude (peak, differential) that is good, in volts.
+    /// Minimum and maximum good amplitude (peak, differential) in volts.
     pub ok_v: (f64, f64),
-    /// Amplitudes outside these are a fault, in volts.
+    /// Amplitudes in volts outside which the signal is faulty.
     pub fault_v: (f64, f64),
     /// Largest offset as a share of the amplitude.
     pub offset: f64,
@@ -57,8 +56,8 @@ impl Family {
         }
     }
 
-    /// Returns the supply of its encoders: HIPERFACE description 8010701; 4.5 to 5.5 V for AFS and AFM60 with sine and
-    /// cosine.
+    /// Returns the supply voltage of the family's encoders: HIPERFACE description 8010701; 4.5 to 5.5 V for AFS and
+    /// AFM60 with sine and cosine.
     pub const fn supply(self) -> SupplyVoltage {
         match self {
             Family::Hiperface | Family::Ttk70 => SupplyVoltage { least: 7_000, given: 8_000, greatest: 12_000 },
@@ -75,7 +74,7 @@ impl Family {
     }
 }
 
-/// Value out of its limits.
+/// A quantity outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QualityFinding {
     /// An amplitude (peak) in volts, the smaller or larger of the two channels.
@@ -86,19 +85,17 @@ pub enum QualityFinding {
         ok_v: (f64, f64),
         verdict: Verdict,
     },
-    /// Offset of the sine channel as a share of the amplitude.
     OffsetSine(f64),
-    /// Offset of the cosine channel as a share of the amplitude.
     OffsetCosine(f64),
-    /// Amplitude of the cosine over that of the sine.
+    /// Ratio of the cosine amplitude to the sine amplitude.
     GainRatio(f64),
     /// Phase error in degrees.
     PhaseError(f64),
-    /// Distance of the samples from the ellipse, rms, as a share of the amplitude: noise, interference, harmonics.
+    /// Distance of the samples from the ellipse, rms, relative to the amplitude: noise, interference and harmonics.
     Residual(f64),
 }
 
-/// Rounding of the last place must not turn a value on the limit into one beyond it.
+/// Tolerance that keeps rounding from pushing a value on the limit beyond it.
 const SLACK: f64 = 1e-9;
 
 impl Limits {
@@ -119,8 +116,8 @@ impl Limits {
     /// TTK70: 0.9 … 1.1 V peak to peak, mean level 2.5 V ± 5 %.
     pub const TTK70: Limits = Limits { level_v: (2.375, 2.625), ..Limits::HIPERFACE };
 
-    /// Judges the length of one amplitude vector; `None` without a signal. A single vector also contains offset and gain
-    /// error, so the minimum and maximum over a period should be judged.
+    /// Judges the length of a single amplitude vector; `None` without a signal. A single vector also contains offset
+    /// and gain errors, so judge the minimum and maximum over a period.
     pub fn vector(&self, sine: f64, cosine: f64) -> Option<Verdict> {
         let length = sine.hypot(cosine);
         if length.is_nan() || length == 0.0 { None } else { Some(self.amplitude(length)) }
@@ -137,7 +134,7 @@ impl Limits {
         }
     }
 
-    /// Returns the values of an ellipse that are out of their limits, in the order of section 2. `residual_rms` is
+    /// Returns the quantities of an ellipse that are outside their limits, in the order of section 2. `residual_rms` is
     /// relative to the amplitude.
     pub fn judge(&self, ellipse: &Ellipse, residual_rms: f64) -> Vec<QualityFinding> {
         let amplitude = ellipse.amplitude_v;

@@ -18,13 +18,13 @@ pub struct Revolution {
     pub corrected: Nonlinearity,
 }
 
-/// Why it cannot be determined.
+/// The reason why the non-linearity cannot be determined.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum RevolutionError {
-    /// The samples or the reference do not allow it.
+    /// The samples or the reference are unsuitable.
     #[error(transparent)]
     Nonlinearity(#[from] NonlinearityError),
-    /// The path of the signals does not match that of the reference with this many periods per revolution.
+    /// The signals do not match the reference for this number of periods per revolution.
     #[error("the capture has {found:.1} periods in a revolution of the reference, not {given}")]
     Periods {
         /// Periods that were counted in a revolution of the reference.
@@ -33,12 +33,12 @@ pub enum RevolutionError {
     },
 }
 
-/// Allowed deviation of the counted periods from the given ones, as a share.
+/// Tolerated deviation of the counted number of periods from the given one, as a fraction.
 const CLOSE: f64 = 0.02;
 
 impl Revolution {
-    /// Compares sine and cosine in volts with the reference's angle in mechanical degrees, wrapped or not, in either
-    /// direction. Samples in `left_out` do not count, nor do those at which the reference stands still.
+    /// Compares sine and cosine in volts with the reference angle in mechanical degrees, wrapped or not, in either
+    /// direction. Samples in `left_out`, and those taken while the reference is at rest, are ignored.
     ///
     /// # Errors
     /// [`RevolutionError`].
@@ -88,7 +88,7 @@ impl Revolution {
     }
 }
 
-/// Angle that continues where the measured one wraps.
+/// An angle that continues where the measured one wraps.
 struct Follow {
     whole: f64,
     last: Option<f64>,

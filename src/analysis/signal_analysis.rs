@@ -10,12 +10,12 @@ use super::position_error::{PositionError, Samples};
 
 /// Fewest octants of a period that must hold samples (U).
 pub const LEAST_OCTANTS: u32 = 6;
-/// Rms distance from the ellipse, as a share of the amplitude, beyond which there is none: a cloud of noise around one
-/// point has 0.4 and more, a signal with a residual of 0.02 is already bad.
+/// Rms distance from the ellipse, relative to the amplitude, above which there is no ellipse: a cloud of noise around
+/// one point has 0.4 or more, while a signal with a residual of 0.02 is already poor.
 pub const LARGEST_RESIDUAL: f64 = 0.25;
 
-/// Median angle from one sample to the next, in degrees, above which the direction is not certain: fewer than four samples
-/// per period, where noise or an uneven motion easily makes it half a period (U).
+/// Median angle between samples, in degrees, above which the direction is uncertain: with fewer than four samples per
+/// period, noise or an uneven motion easily turns it into half a period (U).
 const LARGEST_STEP_DEG: f64 = 90.0;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -23,15 +23,14 @@ pub struct Analysis {
     pub ellipse: Ellipse,
     pub coverage: Coverage,
     pub continuity: Continuity,
-    /// Median angle from one sample to the next, in degrees, 0 to 180.
+    /// Median angle between consecutive samples, in degrees, 0 to 180.
     pub step_deg: f64,
-    /// The position error over one period.
     pub error: PositionError,
-    /// Samples, with those that were left out.
+    /// Number of samples, including excluded ones.
     pub samples: usize,
-    /// Time from the first to the last sample in seconds; `None` without growing times.
+    /// Time between the first and last sample in seconds, or `None` if times do not increase.
     pub duration_s: Option<f64>,
-    /// Outliers that were left out, with the ellipse that would include them; `None` if there were none.
+    /// Excluded outliers with the ellipse that would include them, or `None` if there are none.
     pub outliers: Option<Outliers>,
 }
 
@@ -44,7 +43,7 @@ pub enum AnalysisError {
     /// The capture covers too little of a period for a reliable ellipse.
     #[error("samples in {octants} of 8 octants where {least} are needed", least = LEAST_OCTANTS)]
     Coverage { octants: u32 },
-    /// All samples are around one point, away from zero: the signal is present, and the shaft stands still.
+    /// All samples lie around one point away from zero: the signal is present, and the shaft is at rest.
     #[error("all samples lie around one point")]
     AtRest,
     /// The samples are too far from the ellipse to be a sine and a cosine.
@@ -56,10 +55,10 @@ pub enum AnalysisError {
 }
 
 impl Analysis {
-    /// Analyses samples; surplus values of unequal columns are ignored.
+    /// Analyses samples; surplus values of columns with different lengths are ignored.
     ///
     /// # Errors
-    /// [`AnalysisError`] if they determine no ellipse or cover less than six octants of a period.
+    /// [`AnalysisError`] if the samples do not determine an ellipse or cover fewer than six octants of a period.
     pub fn of(samples: Samples<'_>) -> Result<Self, AnalysisError> {
         Self::attempt(samples).map_err(|error| match error {
             // Few samples and NaN tell nothing more; equal points may also be a dead cable.
@@ -108,24 +107,24 @@ impl Analysis {
         })
     }
 
-    /// Returns the average periods per second, of continuous sections only; negative if the angle falls. If it reversed,
-    /// the mean of both directions, which is positive. `None` without times.
+    /// Returns the average number of periods per second over continuous sections, negative if the angle falls. After a
+    /// reversal, returns the positive mean of both directions. `None` without times.
     pub fn frequency_hz(&self) -> Option<f64> {
         let Coverage { path_periods, travel_periods, reversals, .. } = self.coverage;
         self.continuity.stretches_s.map(|seconds| if reversals > 0 { path_periods } else { travel_periods } / seconds)
     }
 
-    /// Returns whether a period has enough samples to follow the angle, and with it the frequency.
+    /// Returns whether periods have enough samples to track the angle, and therefore the frequency.
     pub fn is_followed(&self) -> bool {
         self.step_deg <= LARGEST_STEP_DEG
     }
 }
 
-/// Returns whether the samples scatter by little around a point that is no zero.
+/// Returns whether the samples scatter only slightly around a point other than zero.
 fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
-    /// Scatter of one channel, rms, as a share of the point's distance from zero: 6° of a signal (U).
+    /// Scatter of one channel, rms, relative to the distance of the point from zero: 6° of a signal (U).
     const SCATTER: f64 = 0.1;
-    /// Closer to zero there may be no signal at all, in volts (U).
+    /// Distance from zero in volts below which there may be no signal at all (U).
     const LEAST_V: f64 = 0.1;
     let of = |values: &[f64]| {
         let count = values.len().max(1) as f64;
@@ -137,7 +136,7 @@ fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
     away >= LEAST_V && sine_rms.max(cosine_rms) <= SCATTER * away
 }
 
-/// Returns the median angle from one sample to the next, in degrees.
+/// Returns the median angle between consecutive samples, in degrees.
 fn step_deg(sine_v: &[f64], cosine_v: &[f64], ellipse: &Ellipse) -> f64 {
     /// Number of steps examined.
     const SAMPLED: usize = 1 << 13;

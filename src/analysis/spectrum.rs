@@ -19,7 +19,7 @@ pub struct SpectralLine {
     pub amplitude_v: f64,
 }
 
-/// Why there is no spectrum.
+/// The reason why a spectrum cannot be calculated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SpectrumError {
     /// A spectrum needs at least eight samples.
@@ -38,14 +38,14 @@ pub enum SpectrumError {
 
 /// Fewest samples.
 const LEAST: usize = 8;
-/// Lines on each side of a peak that belong to it in a Hann window.
+/// Number of lines on each side of a peak that belong to it with a Hann window.
 const PEAK_REACH: usize = 2;
 
 impl Spectrum {
-    /// Calculates the spectrum of samples taken `rate_hz` times per second; their mean is removed.
+    /// Calculates the spectrum of samples taken at `rate_hz`, after removing their mean.
     ///
     /// # Errors
-    /// [`SpectrumError`] if there are too few or one is not finite.
+    /// [`SpectrumError`] if there are too few samples, or one is not finite.
     pub fn of(samples: &[f64], rate_hz: f64) -> Result<Self, SpectrumError> {
         let count = samples.len();
         if count < LEAST {
@@ -66,7 +66,7 @@ impl Spectrum {
         Ok(Spectrum { spacing_hz: rate_hz / count as f64, amplitudes_v })
     }
 
-    /// Returns the distance of two lines in hertz: one over the duration.
+    /// Returns the distance between lines in hertz, the reciprocal of the duration.
     pub fn spacing_hz(&self) -> f64 {
         self.spacing_hz
     }
@@ -76,8 +76,8 @@ impl Spectrum {
         &self.amplitudes_v
     }
 
-    /// Returns the `most` highest peaks, highest first; frequency and amplitude are interpolated between the lines. Lines
-    /// of a peak already taken and those around 0 Hz (the mean) are skipped.
+    /// Returns the `most` highest peaks, highest first, with interpolated frequency and amplitude. Lines of peaks
+    /// already found and those around 0 Hz (the mean) are skipped.
     pub fn peaks(&self, most: usize) -> Vec<SpectralLine> {
         let lines = &self.amplitudes_v;
         let mut order: Vec<usize> = (PEAK_REACH..lines.len())
@@ -102,7 +102,8 @@ impl Spectrum {
         taken.into_iter().map(|at| self.peak_at(at)).collect()
     }
 
-    /// Interpolates a sine between two lines of a Hann window: from the ratio of the highest line to its higher neighbour.
+    /// Interpolates a sine between two lines of a Hann window from the ratio of the highest line to its higher
+    /// neighbour.
     pub(super) fn peak_at(&self, at: usize) -> SpectralLine {
         let height = |at: usize| self.amplitudes_v.get(at).copied().unwrap_or(0.0);
         let (before, top, after) = (height(at.saturating_sub(1)), height(at), height(at + 1));
@@ -114,11 +115,11 @@ impl Spectrum {
     }
 }
 
-/// Returns the sample rate in hertz of evenly spaced times in seconds; steps may differ by a tenth, as times printed with
-/// few digits do.
+/// Returns the sample rate in hertz of equidistant times in seconds. Steps may differ by a tenth, as in times printed
+/// with few digits.
 ///
 /// # Errors
-/// [`SpectrumError`] if there are fewer than eight, or they do not increase, or not evenly.
+/// [`SpectrumError`] if there are fewer than eight times, or they do not increase evenly.
 pub fn sample_rate_hz(times_s: &[f64]) -> Result<f64, SpectrumError> {
     let (Some(first), Some(last), true) = (times_s.first(), times_s.last(), times_s.len() >= LEAST) else {
         return Err(SpectrumError::TooFew { samples: times_s.len() });

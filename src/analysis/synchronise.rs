@@ -10,16 +10,16 @@ use std::f64::consts::TAU;
 use super::arctan::Phase;
 use super::quality::Verdict;
 
-/// Steps of the absolute position in one period.
+/// Number of absolute position steps per period.
 pub const STEPS: u64 = 32;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchroniser {
-    /// Periods in the whole range: periods per revolution times revolutions, at least 1.
+    /// Number of periods in the whole range: periods per revolution times revolutions, at least 1.
     pub periods: u64,
-    /// Lead of the absolute position if both are right, in steps of 1/32 period; 0 if not known.
+    /// Lead of a correct absolute position over the analogue one, in steps of 1/32 period; 0 if unknown.
     pub offset_steps: f64,
-    /// The absolute position means the middle of its step instead of its beginning.
+    /// Whether the absolute position refers to the middle of its step rather than to its beginning.
     pub half_step: bool,
 }
 
@@ -28,20 +28,20 @@ pub struct Synchronised {
     /// Whole periods, below the range.
     pub period: u64,
     pub phase: Phase,
-    /// Periods by which the absolute position was corrected: −1, 0 or 1.
+    /// Correction of the absolute position in periods: −1, 0 or 1.
     pub correction: i8,
     pub residual_periods: f64,
     /// Warns beyond 8/32 (the encoder's own drift is up to 4/32), a fault beyond 14/32 (U).
     pub verdict: Verdict,
 }
 
-/// Both positions differ by exactly half a period: either neighbour could be right.
+/// The positions differ by exactly half a period, so either neighbour could be correct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("absolute and analogue position are half a period apart")]
 pub struct Unsynchronisable;
 
 impl Synchroniser {
-    /// Creates one without offset, with this many periods in the whole range.
+    /// Creates a synchroniser without offset for the given number of periods in the whole range.
     pub fn new(periods: u64) -> Self {
         Synchroniser { periods: periods.max(1), offset_steps: 0.0, half_step: false }
     }
@@ -51,7 +51,7 @@ impl Synchroniser {
     /// # Errors
     /// [`Unsynchronisable`] at exactly half a period.
     pub fn synchronise(&self, absolute: u64, phase: Phase) -> Result<Synchronised, Unsynchronisable> {
-        /// Rounding may move half a period by this, in steps.
+        /// Tolerance for rounding at half a period, in steps.
         const SLACK: f64 = 1e-9;
         let half = if self.half_step { 0.5 } else { 0.0 };
         let low = (absolute % STEPS) as f64 + half - self.offset_steps;
@@ -75,7 +75,7 @@ impl Synchroniser {
         Ok(Synchronised { period, phase, correction: nearest as i8, residual_periods: residual, verdict })
     }
 
-    /// Returns the fine position from a counter of quarters of a period (quadrature counter).
+    /// Returns the fine position from a quadrature counter, which counts quarters of a period.
     pub fn with_quadrature(&self, quarters: u64, phase: Phase) -> (u64, Phase) {
         let nearest = (((quarters % 4) as f64 + 0.5) / 4.0 - phase.periods()).round();
         let range = u128::from(self.periods.max(1));
@@ -96,9 +96,9 @@ impl Synchronised {
     }
 }
 
-/// Returns the number of steps of 1/32 period by which the absolute position is ahead on average: the mean of the
-/// differences over at least one turn, taken as angles, so that a difference of 31 steps is one of −1. `None` without
-/// samples, or if they cancel.
+/// Returns the average lead of the absolute position in steps of 1/32 period: the mean of the differences over at least
+/// one turn, treated as angles, so that a difference of 31 steps equals −1. `None` without samples, or if they cancel
+/// each other out.
 pub fn measure_offset(samples: impl IntoIterator<Item = (u64, Phase)>) -> Option<f64> {
     let (mut sine, mut cosine, mut count) = (0.0, 0.0, 0_usize);
     for (absolute, phase) in samples {

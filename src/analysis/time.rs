@@ -26,20 +26,20 @@ impl Time {
         Time(self.0.saturating_add(nanoseconds))
     }
 
-    /// Returns the nanoseconds from `origin` to here, negative if `origin` is later. Exact.
+    /// Returns the exact number of nanoseconds since `origin`, negative if `origin` is later.
     pub const fn nanoseconds_since(self, origin: Time) -> i64 {
         self.0.saturating_sub(origin.0)
     }
 
-    /// Returns the seconds from `origin` to here. The difference is taken before it is rounded: near `origin` nothing is
-    /// lost.
+    /// Returns the number of seconds since `origin`. The difference is calculated before rounding, so it is exact near
+    /// `origin`.
     pub fn seconds_since(self, origin: Time) -> f64 {
         self.nanoseconds_since(origin) as f64 / 1e9
     }
 }
 
 impl From<Moment> for Time {
-    /// Converts a moment on its clock; the start of the clock is the origin.
+    /// Converts a moment of a clock, whose start is the origin.
     fn from(moment: Moment) -> Self {
         let elapsed = moment.since_start();
         let seconds = i64::try_from(elapsed.as_secs()).unwrap_or(i64::MAX);

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug)]
 pub struct Unwrap {
     range: Option<i64>,
-    /// Last position word and its unwrapped value.
+    /// Last position word with its unwrapped value.
     last: Option<(i64, i64)>,
     gap: bool,
 }
@@ -13,29 +13,29 @@ pub struct Unwrap {
 pub struct Unwrapped {
     /// Steps; beyond the range after a wrap, negative below zero.
     pub steps: i64,
-    /// The path from the previous sample is not known: there was a gap, or the step was half the range, which is ambiguous.
-    /// Not set for the very first position.
+    /// Whether the path from the previous sample is unknown, because of a gap or an ambiguous step of half the range.
+    /// Not set for the first position.
     pub broken: bool,
 }
 
 impl Unwrap {
-    /// Creates it for an encoder that counts 0…`range` − 1 and starts again; `None` for a range below 2.
+    /// Creates the state for an encoder that wraps from `range` − 1 to 0, or returns `None` for a range below 2.
     pub fn rotary(range: i64) -> Option<Self> {
         (range >= 2).then_some(Unwrap { range: Some(range), last: None, gap: false })
     }
 
-    /// Creates it for an encoder without a wrap: its positions are unchanged.
+    /// Creates the state for an encoder that does not wrap; positions are unchanged.
     pub fn linear() -> Self {
         Unwrap { range: None, last: None, gap: false }
     }
 
-    /// Notes that samples are missing before the next one.
+    /// Marks a gap before the next sample.
     pub fn gap(&mut self) {
         self.gap = true;
     }
 
-    /// Takes the next position word by the shortest way from the previous one, so a wrap is a step like any other. `None`
-    /// if it is outside the range: such a word is no position, and counts as a gap.
+    /// Unwraps the next position word along the shortest way from the previous one, so a wrap is a step like any other.
+    /// Returns `None` for a word outside the range, which counts as a gap.
     pub fn next(&mut self, word: i64) -> Option<Unwrapped> {
         if self.range.is_some_and(|range| !(0..range).contains(&word)) {
             self.gap();

@@ -12,12 +12,10 @@ pub struct Wires {
     pub cos_v: Vec<f64>,
     /// REFCOS in volts.
     pub refcos_v: Vec<f64>,
-    /// The shaft's angle by a reference encoder in mechanical degrees, from 0 up to but not including 360; empty without
-    /// one.
+    /// Shaft angle measured by a reference encoder, in mechanical degrees from 0 up to 360; empty without a reference.
     pub reference_deg: Vec<f64>,
 }
 
-/// One of the four wires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire {
     Sin,
@@ -46,12 +44,11 @@ impl Wires {
         self.sin_v.len()
     }
 
-    /// Returns whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.sin_v.is_empty()
     }
 
-    /// Returns SIN − REFSIN in volts, as a differential receiver gives it.
+    /// Returns SIN − REFSIN in volts, as received by a differential receiver.
     pub fn sine_v(&self) -> Vec<f64> {
         difference(&self.sin_v, &self.refsin_v)
     }

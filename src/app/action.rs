@@ -26,64 +26,64 @@ pub enum Action {
     SetTheme(ColorScheme),
     SetLanguage(Language),
     KeepLayout(String),
-    /// Open the lower panel, or close it to one line.
+    /// Open the lower panel, or reduce it to one line.
     OpenLowerPanel(bool),
-    /// Show live values without their plot, or with it.
+    /// Show live values with or without their plot.
     ShowValuesAlone(bool),
     /// The window has another size, in points.
     KeepSize(u32, u32),
     Select(SessionId),
-    /// End a session; asks first if it has edits.
+    /// End a session, after asking if it has edits.
     CloseSession(SessionId),
     Stop,
     /// Stop all drives of all sessions, and nothing else.
     StopMotion,
-    /// The window has lost the keyboard, or something covers it: release held buttons.
+    /// Release held buttons, because the window has lost the keyboard or is covered by a dialog.
     LetGo,
     /// Escape: stops the running job, or else closes the dialog.
     Escape,
     /// Close the window; asks first if something would be lost.
     Close,
-    /// The system ends the program: close the window without questions.
+    /// Close the window without questions, because the system is ending the program.
     Quit,
     Confirm,
     Dismiss,
     Connect(connect::ConnectAction),
     OpenVirtual,
-    /// Save a profile: to the open file, else to one that is asked for.
+    /// Save a profile to its open file, or else ask for one.
     Save(SessionId),
     /// Resolves a profile that another program has changed meanwhile.
     Resolve(Resolve),
-    /// Ask for a file to open: a capture in the Signals tab, else a profile.
+    /// Ask for a file to open: a capture in the Signals tab, a profile elsewhere.
     AskOpen,
     /// Open a capture (`.csv`), or else a profile.
     Open(PathBuf),
     FileNotChosen,
-    /// The system has no file dialog: the path must be typed.
+    /// Ask for a path as text, because the system has no file dialog.
     TypePath(FileQuestion),
     /// A path was typed. An existing file is not replaced without a question, which the system's dialogs ask themselves.
     Typed(FileQuestion, PathBuf),
-    /// A file was chosen, which may be replaced if it exists.
+    /// Use the chosen file, which may be replaced if it exists.
     Chosen(FileQuestion, PathBuf),
     CloseComparison,
     Recorder(RecorderOwner, recorder::RecorderAction),
-    /// Clear a recording; asks first if it is long.
+    /// Clear a recording, after asking if it is long.
     AskForget(RecorderOwner),
-    /// Ask where to write a table of a recording: of the visible part, or of everything.
+    /// Ask for the file of a table: of the visible part of a recording, or of everything.
     AskTable {
         owner: RecorderOwner,
         /// Only the visible part.
         visible: bool,
     },
     AskPicture(Picture),
-    /// A picture was requested of something that is not visible as a whole.
+    /// Report that a picture was requested of something that is not completely visible.
     PictureCut,
     Review(SessionId, ReviewAction),
-    /// Something that every kind of device can be asked for, about one session, whichever is shown by then.
+    /// Execute a command that every kind of device supports, for the given session, whichever is shown by then.
     Command(SessionId, DeviceCommand),
-    /// An action of one kind of device; see [`Action::device`].
+    /// Execute an action of one kind of device; see [`Action::device`].
     Device(SessionId, Payload),
-    /// A profile that is in no file yet, of the kind of device of this tab.
+    /// Create an unsaved profile for the kind of device of a tab.
     New(Tab),
     /// An action of a tab that needs no device; see [`Action::tool`].
     Tool(Tab, Payload),
@@ -95,11 +95,11 @@ pub enum Action {
 /// An action on the review of a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReviewAction {
-    /// Write the plan that was shown, and no other.
+    /// Execute the plan with this id, which the user has seen.
     Write(PlanId),
-    /// Give or withdraw a permission, which makes another plan.
+    /// Grant or withdraw a permit, which results in another plan.
     Toggle(Permit),
-    /// Write although the device counts as worn.
+    /// Write even though the device has reached its limit of write cycles.
     ForceWear(bool),
     Close,
 }
@@ -113,7 +113,7 @@ pub enum Done {
     },
     /// A link was opened for a session, or not.
     Opened(Attempt),
-    /// A task of a search, from the connection form for this tab's kind of device; see [`Done::finder`].
+    /// The result of a search task started from the connection form of a tab; see [`Done::finder`].
     Finder(Tab, Payload),
     /// A task whose result belongs to no particular session, and the handler of the result.
     Shared(SharedResult),
@@ -121,7 +121,8 @@ pub enum Done {
     Read {
         file: ProfileFile,
         result: Result<Box<Document>, ReadError>,
-        /// Opens the profile, with the tables that its kind needs; `None` for a kind that the window does not support.
+        /// Function that opens the profile with the tables required by its kind, or `None` for a kind that the window
+        /// does not support.
         open: Option<OpenProfile>,
     },
     /// A profile was read to be compared with a session, or not.
@@ -135,9 +136,9 @@ pub enum Done {
         file: ProfileFile,
         result: Result<(), FileError>,
     },
-    /// The file of a profile differs from what was opened, and was not written.
+    /// A profile was not saved, because its file differs from what was opened.
     Diverged(Box<Diverged>),
-    /// A user's comments would be lost, and the file was not written: which.
+    /// A profile was not saved, because these comments of the user would be lost.
     WouldLose(Box<Saving>, Vec<String>),
     TableWritten(RecorderOwner, Exported),
     PictureSaved(PathBuf, Result<(), FileError>),
@@ -145,10 +146,10 @@ pub enum Done {
     /// A wait before closing has run out of time.
     Waited(Waited),
     Left,
-    /// The settings were read, later than the start could wait for them.
+    /// The settings have been read, too late for the start.
     SettingsRead(SettingsRead),
     SettingsKept(Result<SettingsWritten, FileError>),
-    /// The settings were read while drives are under control; `None` if there are none to read.
+    /// The settings have been read while drives are under control; `None` if there are none.
     SettingsSeen(Result<Option<Box<Settings>>, FileError>),
     Draft(SessionId, DraftDone),
     Listed(SessionId, DeviceKey, Box<DeviceHistory>),
@@ -159,7 +160,7 @@ pub enum Done {
         path: PathBuf,
         result: Result<Box<Document>, ReadError>,
     },
-    /// A task of one kind of device, for one session; see `Done::device`.
+    /// The result of a task of one kind of device, for one session; see `Done::device`.
     Device(SessionId, Payload),
     /// A task of a tab that needs no device; see [`Done::tool`].
     Tool(Tab, Payload),
@@ -168,13 +169,12 @@ pub enum Done {
 /// The result of opening a link for a session.
 pub struct Attempt {
     pub session: SessionId,
-    /// Number of the attempt within its session: only the latest counts.
+    /// Number of the attempt within its session; only the latest one counts.
     pub attempt: u32,
-    /// The session on its thread, or the error.
     pub(super) result: Result<Box<dyn AnyOpened>, Box<OpenFailed>>,
 }
 
-/// Session on its thread, with the ring for its trace.
+/// A session on its thread, with the ring for its trace.
 pub struct Opened<D: Kind> {
     pub(super) worker: Worker<D>,
     /// The part of the session outside its thread.
@@ -183,13 +183,13 @@ pub struct Opened<D: Kind> {
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
     pub(super) is_virtual: bool,
     pub began: jiff::Zoned,
-    /// Dropping it lets the next attempt use the wire.
+    /// Sender whose drop lets the next attempt use the connection.
     pub(super) turn: crossbeam_channel::Sender<()>,
 }
 
-/// Session on its thread, with its kind of device erased.
+/// A session on its thread with its kind of device erased.
 pub trait AnyOpened: Any + Send {
-    /// Closes the session that is no longer needed.
+    /// Closes a session that is no longer required.
     fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services);
 
     fn into_any(self: Box<Self>) -> Box<dyn Any>;
@@ -207,7 +207,7 @@ impl<D: Kind> AnyOpened for Opened<D> {
     }
 }
 
-/// The waits before the window closes, in order; a later one includes the earlier ones.
+/// The waits before the window closes, in order; each includes the preceding ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Waited {
     Drives,
@@ -217,7 +217,7 @@ pub enum Waited {
     Writes,
 }
 
-/// Why there is no session.
+/// The reason why a session could not be opened.
 #[derive(Debug)]
 pub enum OpenFailed {
     Link(OpenError),

@@ -9,27 +9,26 @@ use std::time::{Duration, Instant};
 
 use crate::worker::Stopper;
 
-/// Stops the drives of a session when the program ends. A handle shared with the session: it works from any thread,
-/// whatever the session does and whether or not the window still draws.
+/// A handle that stops the drives of a session when the program ends. It works from any thread, whatever the session
+/// does and whether or not the window still draws.
 pub trait Brake: Send {
-    /// Ends motion with the program: all drives stop, are switched off, and their connection is closed. Nothing moves after
-    /// that, whatever is requested. Does not wait, and may be called again.
+    /// Ends motion with the program: all drives are stopped and switched off, and their connection is closed. Nothing
+    /// moves afterwards, whatever is requested. Does not block, and may be called repeatedly.
     fn leave(&self);
 
-    /// Returns whether the device holds a connection that was opened here, over which drives move, and that has not been
-    /// closed. After [`leave`](Self::leave) this becomes false as soon as the drives are stopped and the connection is
-    /// closed.
+    /// Returns whether the device holds a connection over which drives can move. After [`leave`](Self::leave) this
+    /// becomes `false` as soon as the drives are stopped and the connection is closed.
     fn is_connected(&self) -> bool;
 
     /// Returns whether the session has ended: nothing else holds a handle to its drives, so nothing here can move them.
     fn is_left_over(&self) -> bool;
 }
 
-/// All drives that this program can move. Clones share them.
+/// All drives that this program can move, shared by clones.
 #[derive(Clone, Default)]
 pub struct Brakes(Arc<Shared>);
 
-/// Session with drives: the brake, and the stopper of its jobs.
+/// The brake of a session with drives, and the stopper of its jobs.
 type Session = (Box<dyn Brake>, Stopper);
 
 #[derive(Default)]
@@ -44,7 +43,7 @@ struct Shared {
 const LOOKS: Duration = Duration::from_millis(5);
 
 impl Brakes {
-    /// Time that drives have to stop and connections to close before the program ends regardless.
+    /// Time allowed for stopping drives and closing connections before the program ends regardless.
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
     pub(crate) fn add(&self, brake: Box<dyn Brake>, stopper: Stopper) {
@@ -58,7 +57,7 @@ impl Brakes {
         sessions.push((brake, stopper));
     }
 
-    /// Stops all drives, switches them off and closes their connections. Nothing moves after that. Does not wait.
+    /// Stops all drives, switches them off and closes their connections. Nothing moves afterwards. Does not block.
     pub fn begin(&self) {
         self.0.released.store(true, Ordering::SeqCst);
         let sessions = self.sessions();
@@ -67,7 +66,6 @@ impl Brakes {
         sessions.iter().for_each(|(_, stopper)| stopper.stop());
     }
 
-    /// Returns whether [`begin`](Self::begin) was called.
     pub fn has_begun(&self) -> bool {
         self.0.released.load(Ordering::SeqCst)
     }
@@ -86,7 +84,7 @@ impl Brakes {
         self.0.closing.store(true, Ordering::SeqCst);
     }
 
-    /// Waits until the window has begun to close, for at most `patience`. Returns whether it has.
+    /// Blocks until the window has begun to close, for at most `patience`; returns whether it has.
     pub fn wait_for_window(&self, patience: Duration) -> bool {
         wait_for(patience, || self.0.closing.load(Ordering::SeqCst))
     }

@@ -11,7 +11,6 @@ pub struct CheckLine {
 }
 
 impl CheckLine {
-    /// Creates a line with the texts of its device.
     pub(crate) fn of<S: Copy, F>(line: &StepResult<S, F>, step: fn(S) -> Text, finding: fn(&F) -> Text) -> Self {
         CheckLine {
             step: step(line.step),

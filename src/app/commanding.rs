@@ -14,8 +14,8 @@ use super::{AnyDevice, Severity, Text};
 const LIVE: Duration = Duration::from_millis(50);
 
 impl Studio {
-    /// Carries out a command that every device has. Links are opened here, and commands between two sessions are handled
-    /// here.
+    /// Executes a command that every device supports. Links are opened here, and commands between two sessions are
+    /// handled here.
     pub(super) fn command(&mut self, id: SessionId, command: DeviceCommand) {
         match command {
             DeviceCommand::Reconnect => self.reconnect(id),
@@ -38,7 +38,7 @@ impl Studio {
         });
     }
 
-    /// Starts live values where they start by themselves: once the device was read, and while nothing runs on its line.
+    /// Starts live values automatically once the device has been read and its line is idle.
     pub(super) fn start_live(&mut self) {
         let is_due = |device: &AnyDevice| {
             let state = device.state();
@@ -87,14 +87,13 @@ impl Studio {
         }
     }
 
-    /// Handles the result of a task of a device.
     pub(super) fn device_done(&mut self, id: SessionId, done: Payload) {
         let mut taken = Ok(());
         self.with_device(id, |device, services| taken = device.done(done, services));
         self.check_kind(taken, id);
     }
 
-    /// Stops all motion if an action has reached another kind of device: its intended target does not exist.
+    /// Stops all motion if an action has reached another kind of device, because its intended target does not exist.
     pub(super) fn check_kind(&mut self, done: Result<(), WrongKind>, id: SessionId) {
         if done.is_err() {
             let name = self.device(id).map(AnyDevice::name);

@@ -9,7 +9,7 @@ use super::studio::{SessionId, Studio};
 use super::{Severity, Text};
 use crate::profile::{Comparison, Document};
 
-/// The result of a comparison, on display until it is closed.
+/// The result of a comparison, displayed until it is closed.
 #[derive(Debug)]
 pub struct ProfileComparison {
     session: SessionId,
@@ -34,7 +34,7 @@ impl ProfileComparison {
 }
 
 impl Studio {
-    /// Returns the comparison on display; `None` once its session was closed.
+    /// Returns the displayed comparison, or `None` once its session has been closed.
     pub fn comparison(&self) -> Option<&ProfileComparison> {
         self.comparison.as_ref().filter(|shown| self.device(shown.session).is_some())
     }

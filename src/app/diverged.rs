@@ -10,14 +10,14 @@ use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Text};
 use crate::profile::{Change, Changed, Document, ProfileError, divergence};
 
-/// One profile in two versions.
+/// A profile in two versions.
 #[derive(Debug)]
 pub struct Diverged {
     saving: Saving,
     theirs: Result<Box<Document>, ReadError>,
     text: String,
     rows: Vec<Row>,
-    /// Why the last choice is not possible.
+    /// The reason why the last choice was not possible.
     problem: Option<Text>,
 }
 
@@ -25,11 +25,10 @@ pub struct Diverged {
 pub struct Row {
     change: Change,
     pub changed: Changed,
-    /// The selected version; `None` until one is selected.
+    /// The selected version, if any.
     pub take: Option<Side>,
 }
 
-/// One of both versions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     Theirs,
@@ -39,7 +38,7 @@ pub enum Side {
 /// How to resolve a profile in two versions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Resolve {
-    /// Takes the file and discards the edits.
+    /// Reload the file and discard the edits.
     Reload,
     KeepMine,
     Take(usize, Side),
@@ -55,7 +54,7 @@ impl Row {
         self.change.place()
     }
 
-    /// Returns the value in a version; `None` if it has none.
+    /// Returns the value in a version, if it exists there.
     pub fn value(&self, side: Side) -> Option<&str> {
         match side {
             Side::Theirs => self.change.from.as_deref(),
@@ -103,18 +102,18 @@ impl Diverged {
         &self.rows
     }
 
-    /// Returns why the file cannot be read again, or why the last choice is not possible.
+    /// Returns why the file cannot be read again, or why the last choice was not possible.
     pub fn problem(&self) -> Option<Text> {
         self.problem.clone()
     }
 
-    /// Returns whether the file can be taken as it is.
+    /// Returns whether the file can be adopted unchanged.
     pub fn can_reload(&self) -> bool {
         self.theirs.is_ok()
     }
 
-    /// Returns whether the file can be written regardless of other changes. A file of a newer version of the program
-    /// cannot: its unknown content would be lost.
+    /// Returns whether the file can be overwritten. A file written by a newer version of the program cannot, because
+    /// its unknown content would be lost.
     pub fn can_keep_mine(&self) -> bool {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
     }
@@ -148,7 +147,7 @@ impl Diverged {
 }
 
 impl Studio {
-    /// Saves to the open file, else asks for one.
+    /// Saves to the open file, or else asks for one.
     pub(super) fn save_in_place(&mut self, id: SessionId) {
         let Some(device) = self.device(id) else { return };
         match device.source() {
@@ -163,7 +162,7 @@ impl Studio {
         }
     }
 
-    /// Shows that the file of a profile differs from what was opened, in its session.
+    /// Shows in the session of a profile that its file has changed since it was opened.
     pub(super) fn has_diverged(&mut self, diverged: Diverged) {
         self.with_device(diverged.session(), |device, _| device.save_waits());
         if let Some(tab) = self.device(diverged.session()).map(|device| device.tab()) {

@@ -55,7 +55,7 @@ impl Studio {
         }
     }
 
-    /// Reports that a profile is of a kind of device that the window does not show.
+    /// Reports that a profile belongs to a kind of device that the window does not support.
     fn cannot_show(&mut self, path: &Path, found: &str) {
         let error = ProfileError::Device {
             found: found.to_owned(),
@@ -78,8 +78,7 @@ impl Studio {
         self.with_device(id, |device, services| device.take_draft(done, services));
     }
 
-    /// Refuses to save a profile of a newer schema or write it to a device; returns true, after reporting it, if this is
-    /// one.
+    /// Refuses to save or write a profile with a newer schema; returns `true` after reporting it.
     pub(crate) fn is_only_looked_at(&mut self, id: SessionId) -> bool {
         let refusal = self.device(id).and_then(|device| only_looked_at(device.source()));
         let Some(refusal) = refusal else { return false };

@@ -15,7 +15,7 @@ pub enum Measure {
     #[default]
     Steps,
     Turns,
-    /// Its angle, also beyond a turn.
+    /// Angle in degrees, which may exceed one turn.
     Degrees,
     /// Millimetres of a spindle whose pitch has been entered.
     Millimetres,
@@ -35,7 +35,7 @@ impl Measure {
     }
 }
 
-/// Stored data about the drives behind one device.
+/// Stored data about the drives of one device.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RememberedDrives {
@@ -68,20 +68,20 @@ pub enum SettingsReadState {
 
 /// Drives of which the settings remember something.
 pub trait RemembersDrives {
-    /// Returns the name under which the settings store its drives; `None` before it was read.
+    /// Returns the name under which the settings store the drives of the device, or `None` before it was read.
     fn remembered_as(&self) -> Option<String>;
 
-    /// Takes the stored data of its drives, and returns the data to store next, if they differ. All data are taken
+    /// Adopts the stored data of the drives, and returns the data to store next, if they differ. All data are adopted
     /// once per device; later only limits that were marked elsewhere.
     fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
 
-    /// Locks the drives whose limits were marked elsewhere, before the settings contain it.
+    /// Locks the drives whose limits were marked elsewhere, before the settings contain the mark.
     fn lock_by(&mut self, found: &RememberedDrives);
 
     /// Returns whether the settings were read since control was taken.
     fn marks(&self) -> SettingsReadState;
 
-    /// Sets whether the settings were read since control was taken: nothing moves before.
+    /// Sets whether the settings have been read since control was taken; nothing moves before.
     fn set_marks(&mut self, marks: SettingsReadState);
 }
 
@@ -118,8 +118,8 @@ impl RememberedDrives {
         self.marks.insert(drive, self.marks(drive).wrapping_add(times));
     }
 
-    /// Returns the drives that were marked since `before`: a mark of the same number is the same, which may be confirmed
-    /// here and not yet on disk. A program that does not count omits the numbers.
+    /// Returns the drives marked since `before`. A mark with an unchanged number may already be confirmed here and not
+    /// yet on disk. Programs that do not count omit the numbers.
     pub(crate) fn marked_since(&self, before: &RememberedDrives) -> Vec<u8> {
         let is_new = |drive: &u8| {
             let number = self.marks(*drive);
@@ -128,8 +128,8 @@ impl RememberedDrives {
         self.unconfirmed.iter().copied().filter(is_new).collect()
     }
 
-    /// Returns the same with the changes of `ours` since `known`. Limits that were marked meanwhile stay unconfirmed,
-    /// whatever `ours` has confirmed.
+    /// Returns the data with the changes from `known` to `ours` applied. Limits marked in the meantime stay
+    /// unconfirmed, whatever `ours` has confirmed.
     #[must_use]
     pub(crate) fn with_changes(mut self, known: &RememberedDrives, ours: &RememberedDrives) -> Self {
         let drives = |maps: [&BTreeMap<u8, u64>; 2]| -> BTreeSet<u8> {

@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 use super::PendingEdits;
 use super::history::History;
 
-/// A memory as it was read.
+/// A memory as last read.
 pub trait EditBase: Default {
     /// The location of a value.
     type Place: Ord + Copy;
     type Value: Copy + PartialEq;
 
-    /// Returns whether a value at a location is an edit: it differs from the value read.
+    /// Returns whether a value is an edit, that is, differs from the value read.
     fn is_edit(&self, at: Self::Place, value: Self::Value) -> bool;
 }
 
@@ -31,22 +31,22 @@ impl<B: EditBase> Default for Edits<B> {
 }
 
 impl<B: EditBase> Edits<B> {
-    /// Returns the memory as it was read.
+    /// Returns the memory as last read.
     pub fn base(&self) -> &B {
         &self.base
     }
 
-    /// Returns the edited value; `None`: as in the device.
+    /// Returns the edited value, or `None` if the value is not edited.
     pub fn get(&self, at: B::Place) -> Option<B::Value> {
         self.edits.get(&at).copied()
     }
 
-    /// Returns all edits, in the order of their locations.
+    /// Returns all edits, ordered by location.
     pub fn iter(&self) -> impl Iterator<Item = (B::Place, B::Value)> {
         self.edits.iter().map(|(at, value)| (*at, *value))
     }
 
-    /// Edits values, as one step that can be undone; a value equal to the device's is no edit.
+    /// Edits values as one undoable step; a value equal to that of the device is not an edit.
     pub fn set(&mut self, values: impl IntoIterator<Item = (B::Place, B::Value)>) {
         let mut after = self.edits.clone();
         for (at, value) in values {
@@ -59,14 +59,14 @@ impl<B: EditBase> Edits<B> {
         self.history.step(&mut self.edits, after);
     }
 
-    /// Undoes the edits that `is_meant` selects, as one step. Returns false if there are none.
+    /// Undoes the edits selected by `is_meant` as one step; returns `false` if there are none.
     pub fn take_back(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
         let mut after = self.edits.clone();
         after.retain(|at, _| !is_meant(*at));
         self.history.step(&mut self.edits, after)
     }
 
-    /// Takes a new reading of the memory: edits stay, unless the device has their values now.
+    /// Adopts a new reading of the memory. Edits are kept unless the device now contains their values.
     pub fn read_again(&mut self, read: impl FnOnce(&mut B)) {
         read(&mut self.base);
         self.settle();
@@ -78,7 +78,7 @@ impl<B: EditBase> Edits<B> {
         *self = Edits::default();
     }
 
-    /// Removes edits that are no longer any: an earlier step may contain such.
+    /// Removes edits that no longer differ from the device, as an earlier step may contain.
     fn settle(&mut self) {
         let base = &self.base;
         self.edits.retain(|at, value| base.is_edit(*at, *value));

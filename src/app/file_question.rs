@@ -9,7 +9,7 @@ use super::payload::Payload;
 use super::studio::SessionId;
 use super::{DeviceAction, Language, Picture, Text};
 
-/// File that the user is asked for, by a dialog of the system or an entry for the path.
+/// A file to be chosen by the user, in a system dialog or by entering a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileQuestion {
     Open,
@@ -21,7 +21,6 @@ pub enum FileQuestion {
         session: SessionId,
         suggested: PathBuf,
     },
-    /// A file that one kind of device reads or writes.
     OfDevice(DeviceFile),
     Table {
         owner: RecorderOwner,
@@ -35,7 +34,7 @@ pub enum FileQuestion {
     },
 }
 
-/// A file that one kind of device reads or writes, and the action that follows when one was chosen.
+/// A file that one kind of device reads or writes, and the action to take once it has been chosen.
 #[derive(Clone)]
 pub struct DeviceFile {
     session: SessionId,
@@ -47,8 +46,8 @@ pub struct DeviceFile {
 }
 
 impl DeviceFile {
-    /// Creates the question for a file to read: `title` is the title of the dialog, `kind` the name of such files, with
-    /// their extensions.
+    /// Creates the question for a file to read: `title` is the title of the dialog, `kind` the name of the file type,
+    /// with its extensions.
     pub fn to_read<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),
@@ -59,7 +58,7 @@ impl DeviceFile {
         DeviceFile { session, title, kind, endings, suggested: None, then: Arc::new(then) }
     }
 
-    /// Creates the question for a file to write, with a suggested name; its content may be in the language of the window.
+    /// Creates the question for a file to write, with a suggested name; its content may depend on the window language.
     pub fn to_write<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),
@@ -118,7 +117,7 @@ impl FileQuestion {
         }
     }
 
-    /// Returns the suggested name, if a file is to be written.
+    /// Returns the suggested name of a file to be written.
     pub fn suggested(&self) -> Option<&Path> {
         match self {
             FileQuestion::Open

@@ -13,7 +13,7 @@ use crate::link::{LinkUrl, Scheme};
 use crate::store::{FileError, Folders};
 
 impl Studio {
-    /// Returns the action with an absolute path. Paths given by the user enter the program only here.
+    /// Returns the action with absolute paths. Paths given by the user enter the program only here.
     pub(super) fn with_whole_path(&self, action: Action) -> Action {
         let whole = |path: PathBuf| self.services.world.folders.absolute(&path);
         match action {
@@ -24,7 +24,7 @@ impl Studio {
         }
     }
 
-    /// Returns the same for a link that leads to a file.
+    /// Returns the link with an absolute path, if it leads to a file.
     pub(super) fn with_whole_file(&self, mut url: LinkUrl) -> LinkUrl {
         if url.scheme == Scheme::Replay {
             url.target = self.services.world.folders.absolute(Path::new(&url.target)).display().to_string();
@@ -37,7 +37,7 @@ impl Studio {
         &self.services.world.folders
     }
 
-    /// Handles a typed path: an existing file is not replaced without a question.
+    /// Handles a typed path; an existing file is not replaced without asking.
     pub(super) fn typed(&mut self, question: FileQuestion, path: PathBuf) {
         if question.suggested().is_none() {
             return self.chosen(question, path);
@@ -108,7 +108,7 @@ impl Studio {
         self.services.file_question = Some(FileQuestion::Table { owner, visible, suggested });
     }
 
-    /// Reports that a picture was requested of something that is not visible as a whole.
+    /// Reports that a picture was requested of something that is not completely visible.
     pub(super) fn tell_picture_cut(&mut self) {
         self.services.notify(Severity::Warning, vec![Text::new("recorder.picture_cut")], None);
     }
@@ -118,7 +118,7 @@ impl Studio {
         self.services.file_question = Some(FileQuestion::Picture { picture, suggested });
     }
 
-    /// Returns a name after the encoder and the time of day, so that recordings have different names.
+    /// Suggests a file name that contains the encoder and the time of day, so that recordings have different names.
     fn suggested(&self, owner: Option<RecorderOwner>, ending: &str) -> PathBuf {
         let device = match owner {
             Some(RecorderOwner::Device(id)) => self.device(id),
@@ -195,7 +195,7 @@ impl Studio {
         }
     }
 
-    /// Hands samples over to the tables that are being written.
+    /// Passes samples to the tables that are being written.
     pub(super) fn feed_exports(&mut self) {
         for device in &mut self.devices {
             device.recorders_mut().into_iter().for_each(Recorder::feed_export);

@@ -15,7 +15,7 @@ use crate::worker::{Device, OpenError, Session};
 pub struct Given(HashMap<TypeId, Arc<dyn Any + Send + Sync>>);
 
 impl Given {
-    /// Adds a value, replacing another one of its type.
+    /// Adds a value, replacing any other of its type.
     #[must_use]
     pub fn with<T: Send + Sync + 'static>(mut self, value: T) -> Self {
         self.0.insert(TypeId::of::<T>(), Arc::new(value));
@@ -27,7 +27,7 @@ impl Given {
     }
 }
 
-/// Prints only their number: a value may be a secret.
+/// Prints the number of values only, because a value may be a secret.
 impl fmt::Debug for Given {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Given({})", self.0.len())
@@ -36,7 +36,7 @@ impl fmt::Debug for Given {
 
 type Open<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
 
-/// Opens links to a kind of device instead of the kind's own function. Used by tests only.
+/// Opens links in place of the kind's own function. Used by tests only.
 pub struct Opener<D: Device>(Box<Open<D>>);
 
 impl<D: Device> Opener<D> {

@@ -1,6 +1,6 @@
 //! Undo and redo for any kind of state. The owner holds the current state.
 
-/// The states before the last steps, and those undone.
+/// The states before the last steps, and those that were undone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct History<T> {
     undo: Vec<T>,
@@ -22,12 +22,11 @@ impl<T> History<T> {
         !self.undo.is_empty()
     }
 
-    /// Returns whether there is a step to redo.
     pub(crate) fn can_redo(&self) -> bool {
         !self.redo.is_empty()
     }
 
-    /// Notes a step made from `before`: undone steps can no longer be redone.
+    /// Records a step made from `before`; undone steps can no longer be redone.
     pub(crate) fn note(&mut self, before: T) {
         self.redo.clear();
         self.undo.push(before);
@@ -36,33 +35,33 @@ impl<T> History<T> {
         }
     }
 
-    /// Undoes the last step: `now` becomes the state before it. Returns false if there is none.
+    /// Undoes the last step: `now` becomes the state before it. Returns `false` if there is none.
     pub(crate) fn undo(&mut self, now: &mut T) -> bool {
         let Some(before) = self.undo.pop() else { return false };
         self.redo.push(std::mem::replace(now, before));
         true
     }
 
-    /// Redoes the last undone step. Returns false if there is none.
+    /// Redoes the last undone step; returns `false` if there is none.
     pub(crate) fn redo(&mut self, now: &mut T) -> bool {
         let Some(after) = self.redo.pop() else { return false };
         self.undo.push(std::mem::replace(now, after));
         true
     }
 
-    /// Forgets all steps: nothing can be undone any more.
+    /// Discards all steps, so nothing can be undone.
     pub(crate) fn forget(&mut self) {
         *self = History::default();
     }
 
-    /// Forgets the undone steps: nothing can be redone any more.
+    /// Discards the undone steps, so nothing can be redone.
     pub(super) fn forget_undone(&mut self) {
         self.redo.clear();
     }
 }
 
 impl<T: PartialEq> History<T> {
-    /// Makes a step from `now` to `after`. Returns false if they are equal.
+    /// Makes a step from `now` to `after`; returns `false` if they are equal.
     pub(crate) fn step(&mut self, now: &mut T, after: T) -> bool {
         if *now == after {
             return false;

@@ -17,14 +17,14 @@
 
 use super::press::{FreshKeys, PressKey};
 
-/// The state of a hold button at the start of a frame.
+/// Surroundings of a hold button at the start of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HoldScene {
-    /// Whether it may be pressed.
+    /// Whether the button may be pressed.
     pub enabled: bool,
     pub window: bool,
     pub keyboard: bool,
-    /// Something moves that this button does not hold, or was stopped just now: a key press then stops motion.
+    /// Whether something moves that this button does not hold, or was stopped just now: a key press then stops motion.
     pub moving: bool,
 }
 
@@ -42,7 +42,7 @@ pub enum HoldInput {
     OtherKey,
     Modifiers,
     PointerDown {
-        /// The first one, on this button.
+        /// Whether the first pointer button went down on this button.
         on: bool,
     },
     PointerMoved {
@@ -51,7 +51,7 @@ pub enum HoldInput {
     PointerUp,
     /// The pointer has left.
     PointerGone,
-    /// A finger touched the screen, also one that acts as the pointer: a press of the pointer then follows.
+    /// A finger touched the screen, including one that acts as the pointer; a pointer press then follows.
     Finger,
 }
 
@@ -61,7 +61,7 @@ pub enum HoldEvent {
     Press,
     Hold,
     Release,
-    /// A key that holds nothing was pressed while something moves: everything must stop.
+    /// A key that holds nothing was pressed while something moves, so everything must stop.
     Stop,
 }
 
@@ -71,7 +71,7 @@ enum Holder {
     Key(PressKey),
 }
 
-/// The state of a button that is kept between frames.
+/// State of a hold button that is kept between frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HoldState {
     scene: Option<HoldScene>,
@@ -79,14 +79,14 @@ pub struct HoldState {
     keys: FreshKeys,
     pointer: bool,
     was_held: bool,
-    /// A hold has begun since the last picture.
+    /// Whether a hold has begun since the last frame.
     began: bool,
     stop: bool,
     next_picture: Option<f64>,
 }
 
 impl HoldState {
-    /// Begins a frame; `follows`: the button was in the previous frame.
+    /// Begins a frame; `follows` tells whether the button was present in the previous frame.
     pub fn begin(&mut self, scene: HoldScene, follows: bool) {
         let before = self.scene.replace(scene).filter(|_| follows);
         self.pointer &= before.is_some();
@@ -105,7 +105,7 @@ impl HoldState {
         }
     }
 
-    /// Takes the input of a frame at a time of the window's clock.
+    /// Processes an input of the frame at a time of the window's clock.
     pub fn take(&mut self, now: f64, input: HoldInput) {
         let Some(scene) = self.scene else { return };
         match input {
@@ -144,8 +144,7 @@ impl HoldState {
         }
     }
 
-    /// Ends the frame of this time, with the pointer pressed or not, and on the button or not. Returns the state of the
-    /// hold.
+    /// Ends the frame, given whether the pointer is pressed and on the button; returns the state of the hold.
     pub fn end(&mut self, now: f64, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
         self.next_picture = self.keys.end_picture(now);
         self.pointer = pointer_down;
@@ -165,7 +164,7 @@ impl HoldState {
         }
     }
 
-    /// Returns the seconds until the next frame is needed, so that a released key counts as released.
+    /// Returns the time in seconds after which another frame is required to recognise that a key was released.
     pub const fn next_picture(&self) -> Option<f64> {
         self.next_picture
     }
@@ -178,7 +177,8 @@ impl HoldState {
         self.holder == Some(Holder::Pointer)
     }
 
-    /// Returns whether it has the keyboard focus and no release of a key has been seen yet: the first press will not count.
+    /// Returns whether the button has the keyboard focus but no key release has been seen yet, so that the first press
+    /// will not count.
     pub fn waits_for_release(&self) -> bool {
         let has_keyboard = self.scene.is_some_and(|scene| scene.enabled && scene.window && scene.keyboard);
         let armed = self.keys.is_armed(PressKey::Space) || self.keys.is_armed(PressKey::Enter);

@@ -7,7 +7,6 @@ use super::{Text, explain};
 use crate::link::LinkUrl;
 use crate::profile::{Cause, Formats};
 
-/// The kinds of devices and the tools, in the order of the navigation.
 #[derive(Clone, Copy)]
 pub struct Kinds {
     pub formats: Formats,
@@ -34,7 +33,7 @@ impl Kinds {
         self.tools
     }
 
-    /// Returns the kind of device of a tab; `None` for a tool, and for an unknown tab.
+    /// Returns the kind of device of a tab, or `None` for a tool or an unknown tab.
     pub(super) fn of_tab(self, tab: Tab) -> Option<&'static dyn DeviceKind> {
         self.devices.iter().copied().find(|kind| kind.tab() == tab)
     }
@@ -43,13 +42,13 @@ impl Kinds {
         self.devices.iter().copied().find(|kind| kind.word() == word)
     }
 
-    /// Returns why one of the kinds refuses a profile; in English, from the cause itself, if no kind knows it.
+    /// Explains why a kind refuses a profile; in English, from the cause itself, if no kind recognises it.
     pub(super) fn explain(self, cause: &Cause) -> Text {
         self.devices.iter().find_map(|kind| kind.explain(cause)).unwrap_or_else(|| explain::plain(cause))
     }
 
-    /// Returns a link as it may be shown and kept: without the parameters that are secret in a link to any kind of device, as
-    /// it may have been given for another.
+    /// Returns a link in a form that may be displayed and stored: without the parameters that are secret for any kind
+    /// of device, since the link may have been given for another kind.
     pub fn shown_link(self, url: &LinkUrl) -> String {
         let secrets: Vec<&str> = self.devices.iter().flat_map(|kind| kind.secrets()).collect();
         let query: Vec<String> =
@@ -58,7 +57,7 @@ impl Kinds {
         format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
     }
 
-    /// Returns the first tab of a device, or if there is none the first of a tool.
+    /// Returns the first tab of a device, or else of a tool.
     pub(super) fn first_tab(self) -> Tab {
         let device = self.devices.first().map(|kind| kind.tab());
         device.or_else(|| self.tools.first().map(|kind| kind.tab())).unwrap_or_default()

@@ -21,7 +21,6 @@ pub struct Running<W> {
     pub stopping: bool,
 }
 
-/// Session on its thread.
 pub struct LiveSession<D: Device> {
     worker: Worker<D>,
     trace: Ring<TraceEntry>,
@@ -44,7 +43,7 @@ impl<D: Kind> LiveSession<D> {
         LiveSession { worker, trace, running: None, is_virtual }
     }
 
-    /// Returns the job that runs, as text.
+    /// Describes the running job.
     pub fn progressing(&self) -> Option<Progressing> {
         let running = self.running.as_ref()?;
         let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::step_text(&own.step)));
@@ -65,7 +64,7 @@ impl<D: Kind> LiveSession<D> {
         self.running.as_ref()
     }
 
-    /// Returns the polling interval; `None` if polling is off.
+    /// Returns the polling interval, or `None` if polling is off.
     pub fn polling(&self) -> Option<Duration> {
         self.worker.polling()
     }
@@ -74,7 +73,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.poll(interval);
     }
 
-    /// Watches these values from now on while samples are taken.
+    /// Starts watching the given values while samples are taken.
     pub(crate) fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
         self.worker.watch(watched);
     }
@@ -92,7 +91,7 @@ impl<D: Kind> LiveSession<D> {
         self.poll(pace);
     }
 
-    /// Returns the next event, and notes what it reports about the running job.
+    /// Returns the next event, after recording what it reports about the running job.
     pub(crate) fn next(&mut self) -> Option<Event<D>> {
         let event = self.worker.events().try_recv().ok()?;
         match &event {
@@ -112,12 +111,12 @@ impl<D: Kind> LiveSession<D> {
         self.worker.is_ended() && self.worker.events().is_empty()
     }
 
-    /// Returns the samples since the last time, and how many were dropped.
+    /// Returns the samples since the previous call, and the number dropped.
     pub(super) fn samples(&mut self) -> (Vec<D::Sample>, u64) {
         self.worker.samples().drain()
     }
 
-    /// Returns the frames since the last time, and how many were dropped.
+    /// Returns the frames since the previous call, and the number dropped.
     pub(super) fn frames(&mut self) -> (Vec<TraceEntry>, u64) {
         self.trace.drain()
     }
@@ -127,7 +126,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.stopper()
     }
 
-    /// Returns the thread, to be closed where nothing waits for it.
+    /// Returns the worker, to be closed where nothing waits for it.
     pub(crate) fn into_worker(self) -> Worker<D> {
         self.worker
     }

@@ -12,7 +12,7 @@ impl Studio {
         self.devices.iter_mut().filter_map(|device| device.motion_mut())
     }
 
-    /// Returns whether drives are connected, in any session: STOP must be reachable.
+    /// Returns whether drives are connected in any session, so that STOP must be reachable.
     pub fn has_drives(&self) -> bool {
         self.devices.iter().any(|device| device.motion().is_some() && device.is_connected())
     }
@@ -22,17 +22,17 @@ impl Studio {
         self.motions().any(MotionControl::is_moving)
     }
 
-    /// Returns whether a motion from this window is running. Escape stops it before anything else.
+    /// Returns whether a motion requested in this window is running. Escape stops it before anything else.
     pub fn moves_by_hand(&self) -> bool {
         self.motions().any(MotionControl::moves_by_hand)
     }
 
-    /// Returns whether a motion that was asked for here has not ended.
+    /// Returns whether a motion requested in this window has not ended yet.
     pub fn is_under_way(&self) -> bool {
         self.motions().any(MotionControl::is_under_way)
     }
 
-    /// Returns whether drives are under control: their values then arrive unrequested.
+    /// Returns whether drives are under control, so that their values arrive without being requested.
     pub fn is_in_control(&self) -> bool {
         self.motions().any(MotionControl::is_in_control)
     }
@@ -42,13 +42,13 @@ impl Studio {
         self.motions_mut().for_each(MotionControl::stop);
     }
 
-    /// Ends everything that is held, and endless rotation: the window has lost the keyboard, or a dialog covers it.
+    /// Ends everything that is held, and endless runs, because the window has lost the keyboard or is covered by a
+    /// dialog.
     pub(super) fn let_go_of_jogs(&mut self) {
         self.motions_mut().for_each(MotionControl::let_go);
     }
 
-    /// Ends a jog and a run unless their panel is visible: another tab or device, a dialog, a question for a file or any
-    /// other question ends them.
+    /// Ends a jog or run whose panel is not visible: another tab or device, a dialog, or any question ends it.
     pub(super) fn hold_in_sight(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || asks;

@@ -19,7 +19,8 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Returns how much longer a notice is displayed that has been shown for this time; `None`: until it is dismissed.
+    /// Returns the remaining display time of a notice that has been shown for `shown`, or `None` if it stays until
+    /// dismissed.
     pub fn stands_for(self, shown: Duration) -> Option<Duration> {
         let seconds = match self {
             Severity::Note | Severity::Good => 6,
@@ -59,7 +60,7 @@ pub struct Log {
 impl Log {
     const CAPACITY: usize = 2_000;
 
-    /// Adds a notice; it is displayed until another one arrives or it is dismissed.
+    /// Adds a notice, displayed until another one arrives or it is dismissed.
     pub fn add(&mut self, notice: Notice) {
         // A success does not replace a notice that needs attention.
         if notice.severity >= Severity::Warning
@@ -70,7 +71,6 @@ impl Log {
         self.add_to_log(notice);
     }
 
-    /// Adds a notice that is displayed elsewhere in the window.
     pub fn add_to_log(&mut self, notice: Notice) {
         if notice.severity >= Severity::Warning {
             tracing::warn!("{}", terminal(&notice));
@@ -92,7 +92,7 @@ impl Log {
         self.standing.as_ref()
     }
 
-    /// Removes this text about this session from the window: it no longer applies.
+    /// Removes a notice about a session from the window, because it no longer applies.
     pub(crate) fn settle(&mut self, id: &str, about: Option<&str>) {
         let is_it =
             |notice: &Notice| notice.about.as_deref() == about && notice.texts.iter().any(|text| text.id() == id);

@@ -2,10 +2,10 @@
 
 use super::Text;
 
-/// Maximum number of signal periods per revolution that can be entered: encoders have no more.
+/// Maximum number of signal periods per revolution that can be entered; no encoder has more.
 pub(crate) const MOST_PERIODS: u32 = 65_536;
 
-/// Parses a decimal number, with an optional exponent; `None` if it is none.
+/// Parses a decimal number with an optional exponent, or returns `None` if it is invalid.
 pub fn number(text: &str) -> Option<f64> {
     let text = text.trim().replace(',', ".").replace('−', "-");
     // The parser would accept words such as `inf`.
@@ -16,7 +16,7 @@ pub fn number(text: &str) -> Option<f64> {
 /// Parses a number from `least` to `most`; `what` names the entry.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Explains why the entry is invalid.
 pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -> Result<f64, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -47,10 +47,10 @@ pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) ->
     value.filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
-/// Parses a number from 0 to `last`, decimal or hexadecimal with `0x` or a final `h`.
+/// Parses a number from 0 to `last`, decimal, or hexadecimal with `0x` or a final `h`.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Explains why the entry is invalid.
 pub(crate) fn number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Result<u64, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -68,9 +68,9 @@ pub(crate) fn number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Res
     value.filter(|value| *value <= last).ok_or_else(refused)
 }
 
-/// Parses a quantity as printed on a component: a number with a prefix from f to G, after it or in place of its decimal
-/// point, with or without the unit (`10k`, `10 kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`); or an exponent (`22e-12`). `None` if it
-/// is none.
+/// Parses a quantity as printed on a component: a number with a prefix from f to G, after the number or in place of its
+/// decimal point, with or without a unit (`10k`, `10 kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`), or with an exponent
+/// (`22e-12`). Returns `None` if it is invalid.
 fn quantity(text: &str) -> Option<f64> {
     const UNITS: [&str; 6] = ["Ohm", "ohm", "Ω", "\u{2126}", "F", "R"];
     const PREFIXES: [(char, f64); 10] = [
@@ -100,10 +100,10 @@ fn quantity(text: &str) -> Option<f64> {
     }
 }
 
-/// Parses a quantity from `least` to `most`; an error gives this as `range`.
+/// Parses a quantity from `least` to `most`; errors state this as `range`.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Explains why the entry is invalid.
 pub(crate) fn quantity_within(
     what: impl Into<Text>,
     text: &str,

@@ -16,14 +16,15 @@ use super::{AnyDevice, Severity, Text};
 use crate::link::{LinkUrl, Scheme, TraceEntry, UrlError};
 use crate::worker::{OpenError, Ring, Session, Worker};
 
-/// Frames that wait for the window, at most: ten seconds of 2,000 a second, which a window that draws always outruns.
+/// Maximum number of frames waiting for the window: ten seconds at 2,000 per second, far more than a window that draws
+/// leaves unread.
 const FRAMES: usize = 20_000;
-/// The memory that they may take, in bytes.
+/// Maximum memory of the waiting frames, in bytes.
 const FRAME_BYTES: usize = 8 << 20;
 
 impl Studio {
-    /// Returns the tab of the device that a link leads to. If the link does not tell, this is the kind of device last used
-    /// with it, of several the tab shown last; for a new link the open tab.
+    /// Returns the tab of the device to which a link leads. If the link does not determine it, this is the kind of
+    /// device last used with the link, or of several the tab shown last; for a new link the open tab.
     pub(super) fn tab_of(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
         let tab = self.settings.tab;
@@ -40,8 +41,8 @@ impl Studio {
         tabs().find(used).or_else(|| tabs().find(fits)).or_else(|| tabs().find(leads_there)).unwrap_or(shown)
     }
 
-    /// Opens a link to a kind of device: in the session that already has this connection, else in a new one. A session of
-    /// another kind releases the connection.
+    /// Opens a link to a kind of device, in the session that already has the connection, or else in a new one. A
+    /// session of another kind releases the connection.
     pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {
         let url = self.with_whole_file(url);
         if let Some(id) = self.session_at(tab, &url) {
@@ -49,7 +50,7 @@ impl Studio {
         }
     }
 
-    /// Opens a link to a device found by a search: other masters on its line were asked about before.
+    /// Opens a link to a device found by a search, which has already asked about other masters on the line.
     pub(super) fn open_found(&mut self, tab: Tab, url: LinkUrl) {
         let was_asked = self.services.world.kinds.of_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
         if let Some(id) = self.session_at(tab, &url) {
@@ -57,7 +58,7 @@ impl Studio {
         }
     }
 
-    /// Returns the session for a link and selects it; `None` if it must not be opened.
+    /// Returns the session for a link and selects it, or `None` if it must not be opened.
     fn session_at(&mut self, tab: Tab, url: &LinkUrl) -> Option<SessionId> {
         let mut own = None;
         for device in &mut self.devices {
@@ -94,11 +95,11 @@ impl Studio {
         Some(id)
     }
 
-    /// Releases the session on this connection for another use, unless it writes; one whose link is still being opened has
-    /// ended when the returned channel closes.
+    /// Releases the session on a connection for another use, unless it is writing. A session whose link is still being
+    /// opened has ended when the returned channel closes.
     ///
     /// # Errors
-    /// The session that writes.
+    /// Returns the session that is writing.
     pub(super) fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         let holds = |device: &&mut Box<AnyDevice>| {
             let held = device.is_connected() || device.is_opening();
@@ -125,8 +126,8 @@ impl Studio {
         self.open_for(id, url);
     }
 
-    /// Opens a link for a session. If a drive may be on the line, the user is asked before anything is opened: the drive
-    /// may have read the encoder at power-up and be silent since, so listening proves nothing.
+    /// Opens a link for a session. If a drive may be on the line, the user is asked before anything is opened: the
+    /// drive may have read the encoder at power-up and be silent since, so listening proves nothing.
     fn open_for(&mut self, id: SessionId, url: LinkUrl) {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
@@ -137,14 +138,13 @@ impl Studio {
         self.question = Some(Question::other_master(kinds.shown_link(&url), Then::OpenLink(id)));
     }
 
-    /// Opens the link after the user has confirmed that no drive is on its line.
     pub(super) fn open_confirmed(&mut self, id: SessionId) {
         if let Some(Source::Link(url)) = self.device(id).map(|device| device.source()) {
             self.attempt_to_open(id, url.clone(), true);
         }
     }
 
-    /// Opens a link for a session again: only the result of this attempt counts.
+    /// Opens a link for a session again; only the result of this attempt counts.
     fn attempt_to_open(&mut self, id: SessionId, url: LinkUrl, is_sole_master: bool) {
         let attempt = self.new_number();
         self.free_wire_of_tools(&url);
@@ -182,8 +182,8 @@ impl Studio {
 }
 
 impl Services {
-    /// Opens a link on a thread, after an earlier attempt and any other user of the connection have finished. Dropping its
-    /// turn shows that the connection is free again.
+    /// Opens a link on a thread, after an earlier attempt and any other user of the connection have finished. Dropping
+    /// its turn signals that the connection is free again.
     pub(crate) fn open_task<D: Kind>(
         &mut self,
         url: LinkUrl,
@@ -234,7 +234,7 @@ fn open<D: Kind>(
     }
 }
 
-/// Wakes the window when a session's thread has ended, however it ended.
+/// Wakes the window when the thread of a session has ended, for whatever reason.
 struct WakeOnDrop(Wake);
 
 impl Drop for WakeOnDrop {

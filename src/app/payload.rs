@@ -9,10 +9,10 @@ use super::connect::form::Finder;
 use super::studio::SessionId;
 use super::tab::Tab;
 
-/// An action that a kind of device takes.
+/// An action of a kind of device.
 pub trait DeviceAction: Any + Send {}
 
-/// An action, or a result of a task, with its kind of device erased.
+/// An action or a task result with its kind of device erased.
 pub struct Payload(Box<dyn Any + Send>);
 
 /// A payload reached a device of another kind.
@@ -32,7 +32,7 @@ impl Payload {
     /// Returns the content.
     ///
     /// # Errors
-    /// [`WrongKind`] if it is of another type.
+    /// [`WrongKind`] if the content has another type.
     pub fn open<T: Any>(self) -> Result<T, WrongKind> {
         self.0.downcast().map(|content| *content).map_err(|_| WrongKind)
     }
@@ -51,17 +51,16 @@ impl Action {
 }
 
 impl Done {
-    /// Returns the result of a task of one device, typed for its kind.
+    /// Wraps the result of a device task, typed for its kind.
     pub(crate) fn device(id: SessionId, done: impl Any + Send) -> Self {
         Done::Device(id, Payload::of(done))
     }
 
-    /// Returns the result of a task of a search, for the connection form of a kind of device.
+    /// Wraps the result of a search task for the connection form of a kind of device.
     pub fn finder<F: Finder>(tab: Tab, done: F::Done) -> Self {
         Done::Finder(tab, Payload::of(done))
     }
 
-    /// Returns the result of a task of a tool.
     pub fn tool(tab: Tab, done: impl Any + Send) -> Self {
         Done::Tool(tab, Payload::of(done))
     }

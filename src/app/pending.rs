@@ -8,26 +8,24 @@ pub trait PendingEdits {
 
     fn is_dirty(&self) -> bool;
 
-    /// Returns whether there is a step to undo.
     fn can_undo(&self) -> bool;
 
-    /// Returns whether there is a step to redo.
     fn can_redo(&self) -> bool;
 
-    /// Undoes the last step. Returns false if there is none.
+    /// Undoes the last step; returns `false` if there is none.
     fn undo(&mut self) -> bool;
 
-    /// Redoes the last undone step. Returns false if there is none.
+    /// Redoes the last undone step; returns `false` if there is none.
     fn redo(&mut self) -> bool;
 
-    /// Discards all edits as one step that can be undone. Returns false if there are none.
+    /// Discards all edits as one undoable step; returns `false` if there are none.
     fn revert(&mut self) -> bool;
 
-    /// Forgets the steps: the edits were written or saved, and can no longer be undone.
+    /// Discards the undo steps, because the edits were written or saved.
     fn forget_steps(&mut self);
 }
 
-/// Edits that are whole values beside those of the device or the file, with the steps that led to them.
+/// Edits kept as a complete copy of the values, with the steps that led to them.
 pub(crate) trait Stepped {
     type Values: Clone + PartialEq;
 
@@ -37,11 +35,11 @@ pub(crate) trait Stepped {
 
     fn history(&self) -> &History<Self::Values>;
 
-    /// Returns the values of the device or the file, the edited ones, and the steps; `None` where nothing was read.
+    /// Returns the original values, the edited values and the steps, or `None` if nothing has been read.
     fn parts(&mut self) -> Option<SteppedParts<'_, Self::Values>>;
 }
 
-/// The values of the device or the file, the edited ones, and the steps.
+/// The original values, the edited values and the steps.
 pub(crate) type SteppedParts<'s, T> = (&'s T, &'s mut T, &'s mut History<T>);
 
 impl<S: Stepped> PendingEdits for S {
@@ -80,5 +78,5 @@ impl<S: Stepped> PendingEdits for S {
     }
 }
 
-/// A step through the edits: undoes or redoes one, or discards all.
+/// Undoes or redoes an edit, or discards all edits.
 pub type EditStep = fn(&mut dyn PendingEdits) -> bool;

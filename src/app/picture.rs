@@ -22,17 +22,17 @@ impl fmt::Debug for Picture {
 }
 
 impl Picture {
-    /// Creates a picture of red, green and blue pixels; `None` if there are none, or their number does not match the size.
+    /// Creates a picture from RGB pixels, or returns `None` if there are none or their number does not match the size.
     pub fn new(width: u32, height: u32, bytes: Vec<u8>) -> Option<Self> {
         let wanted = u64::from(width) * u64::from(height) * 3;
         let fits = wanted > 0 && u64::try_from(bytes.len()) == Ok(wanted);
         fits.then(|| Picture { width, height, bytes: bytes.into() })
     }
 
-    /// Writes it as PNG.
+    /// Saves the picture as PNG.
     ///
     /// # Errors
-    /// The error of writing; the old content stays.
+    /// The error of writing; the old file remains.
     pub(super) fn save(&self, path: &Path) -> Result<(), FileError> {
         let refused = |error: std::io::Error| FileError {
             path: path.to_owned(),

@@ -21,12 +21,12 @@ const LEAST: f64 = 0.05;
 /// The known state of a key.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum KeyState {
-    /// It may be held.
+    /// Nothing is known: the key may be held.
     #[default]
     Nothing,
     Down,
-    /// It was released, or another key was pressed, in the frame of this time; since then it was not seen up for long
-    /// enough.
+    /// The key was released, or another key was pressed, in the frame at this time, and has not been seen up long
+    /// enough since.
     Released(f64),
     Up,
 }
@@ -39,15 +39,15 @@ pub struct FreshKeys {
 }
 
 impl FreshKeys {
-    /// The keys are up: the keyboard focus was never lost.
+    /// Both keys are up, and the keyboard focus was never lost.
     pub const UP: FreshKeys = FreshKeys { space: KeyState::Up, enter: KeyState::Up };
 
-    /// Forgets everything: the keyboard focus was lost or gained, or means something else.
+    /// Discards everything known, because the keyboard focus was lost, gained, or has another purpose.
     pub fn forget(&mut self) {
         *self = FreshKeys::default();
     }
 
-    /// Handles a key press. Returns whether it is fresh: an earlier frame saw the key up for long enough.
+    /// Handles a key press; returns whether it is fresh, that is, whether an earlier frame saw the key up long enough.
     pub fn press(&mut self, key: PressKey) -> bool {
         std::mem::replace(self.of(key), KeyState::Down) == KeyState::Up
     }
@@ -57,7 +57,7 @@ impl FreshKeys {
         *self.of(key) = KeyState::Released(now);
     }
 
-    /// Notes that another key was pressed. Only the key pressed last repeats itself, so a repeat of an unknown key is
+    /// Records that another key was pressed. Only the key pressed last repeats, so a repetition of an unknown key is
     /// ignored.
     pub fn press_other(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
@@ -68,8 +68,8 @@ impl FreshKeys {
         }
     }
 
-    /// Notes that another key was pressed outside a text entry: a press immediately after it is not a user's, because a
-    /// barcode scanner types digits and Enter that fast.
+    /// Records that another key was pressed outside a text entry. A press immediately after it is not made by a person:
+    /// barcode scanners type digits and Enter that fast.
     pub fn doubt(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
@@ -79,8 +79,8 @@ impl FreshKeys {
         }
     }
 
-    /// Ends a frame. Returns in how many seconds the next one is needed at the latest: a user who presses a key again after
-    /// its release causes no frame in between.
+    /// Ends a frame; returns the time in seconds after which the next one is required at the latest, because a user who
+    /// presses a key again after releasing it causes no frame in between.
     #[must_use]
     pub fn end_picture(&mut self, now: f64) -> Option<f64> {
         let mut next: Option<f64> = None;
@@ -97,7 +97,7 @@ impl FreshKeys {
         next
     }
 
-    /// Returns whether the key was seen up: its next press is fresh, unless it follows immediately.
+    /// Returns whether the key was seen up, so that its next press is fresh unless it follows immediately.
     pub fn is_armed(&self, key: PressKey) -> bool {
         matches!(self.get(key), KeyState::Released(_) | KeyState::Up)
     }

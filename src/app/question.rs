@@ -12,10 +12,10 @@ use super::tab::Tab;
 /// Question to be answered before something is done.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
-    /// What would be lost or interrupted.
+    /// Describes what would be lost or interrupted.
     pub text: Text,
     pub confirm: Text,
-    /// The word for not continuing.
+    /// Label of the button that declines.
     pub decline: Text,
     pub(super) then: Then,
 }
@@ -29,7 +29,7 @@ pub(crate) enum Then {
     Forget(RecorderOwner),
     Save(Box<Saving>),
     OpenLink(SessionId),
-    /// Continue the search of the form of this tab, in the connection dialog.
+    /// Continue the search in the form of a tab, in the connection dialog.
     Find(Tab),
 }
 
@@ -39,7 +39,7 @@ impl Question {
         Question { text, confirm, decline: Text::new("question.stay"), then }
     }
 
-    /// Returns the question whether another master may be on the line behind a link, as it may be shown.
+    /// Returns the question whether another master may be on the line of a link.
     pub(crate) fn other_master(link: String, then: Then) -> Self {
         Question {
             text: Text::new("question.drive").with("link", link),

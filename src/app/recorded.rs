@@ -25,7 +25,7 @@ fn settings_match_the_recorded_file() {
     assert_eq!(Settings::salvage(SETTINGS), settings);
 }
 
-/// Fails unless a draft of a kind is read, and written word for word the same, under the name of the kind.
+/// Fails unless a draft of a kind is read and written unchanged under the name of the kind.
 pub(crate) fn assert_recorded<D: Kind>(kind: &str, draft: &str)
 where
     D::Edits: Debug,
@@ -35,7 +35,6 @@ where
     assert_eq!(ron::to_string(&edits).unwrap(), draft, "{kind}");
 }
 
-/// A change of a text, as in a draft of an SSI layout.
 #[test]
 fn a_change_is_read_and_written_as_recorded() {
     let change = "(path:[Entry(\"ranges\"),Named(\"name\",\"error\"),At(2)],from:Some(\"24\"),to:None,\

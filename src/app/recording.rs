@@ -4,17 +4,17 @@ use std::time::Duration;
 
 use super::recorder::Recorder;
 
-/// The recording of a device while it is read.
+/// The recording of a device that is being read.
 pub trait Recording {
     fn recorder(&self) -> &Recorder;
 
     #[doc(hidden)]
     fn recorder_mut(&mut self) -> &mut Recorder;
 
-    /// Returns the number of samples that were taken and dropped before they were recorded.
+    /// Returns the number of samples that were dropped before they could be recorded.
     fn dropped(&self) -> u64;
 
-    /// Sets the interval of polling; `begins`: there was none before.
+    /// Sets the polling interval; `begins` tells whether polling was off before.
     #[doc(hidden)]
     fn poll(&mut self, interval: Option<Duration>, begins: bool);
 }

@@ -10,11 +10,11 @@ use crate::store::FileError;
 
 /// Interval at which the settings are read while drives are under control.
 const PACE: Duration = Duration::from_secs(1);
-/// How long the settings that were read stay valid: as long as values read from the drives.
+/// Time for which settings remain valid after reading, the same as for values read from the drives.
 const STALE: Duration = Duration::from_secs(4);
 
 impl Studio {
-    /// Gives the drives their remembered values, and puts new ones into the settings.
+    /// Passes remembered values to the drives, and stores new ones in the settings.
     pub(super) fn remember_drives(&mut self) {
         for drives in self.devices.iter_mut().filter_map(|device| device.remembers_drives()) {
             let Some(key) = drives.remembered_as() else { continue };
@@ -24,7 +24,7 @@ impl Studio {
         }
     }
 
-    /// Reads the settings periodically while drives are under control: another window may have marked limits as
+    /// Reads the settings periodically while drives are under control, because another window may have marked limits as
     /// unconfirmed.
     pub(super) fn refresh_settings(&mut self) {
         let now = self.services.now();
@@ -52,7 +52,7 @@ impl Studio {
         self.drives_in_hand().filter(reading).for_each(|drives| drives.set_marks(SettingsReadState::Read));
     }
 
-    /// Notes that the settings could not be read: no drive under control moves before they are.
+    /// Records that the settings could not be read: no drive under control moves before they are.
     pub(super) fn settings_unread(&mut self, error: &FileError) {
         tracing::warn!("{error}");
         self.settings_store.read_failed();

@@ -15,13 +15,13 @@ use crate::worker::{Committed, is_uncounted};
 pub struct Review<K: Reviewed> {
     pub title: Text,
     pub state: ReviewState<K>,
-    /// Write although the device counts as worn.
+    /// Whether to write even though the device has reached its limit of write cycles.
     pub force_wear: bool,
     pub is_for_another: bool,
-    /// The change was made for another type of device.
+    /// Whether the change was made for another type of device.
     pub is_for_another_type: bool,
     pub(crate) change: K::Change,
-    /// The permissions in question, and whether they are given.
+    /// The relevant permits, and whether they are granted.
     permits: Vec<Toggle>,
 }
 
@@ -33,11 +33,11 @@ pub enum ReviewState<K: Reviewed> {
     Writing(Box<K::Prepared>),
     /// The plan was carried out and read back.
     Done(Box<K::Prepared>, Committed<K::Written>),
-    /// It is not possible, or ended early: what happened, and what to do.
+    /// The write is impossible, or ended early.
     Failed {
-        /// What happened, as texts.
+        /// What happened and what to do.
         texts: Vec<Text>,
-        /// Something was written before it ended.
+        /// Whether the device had been written to before the end.
         begun: bool,
         /// The plan that was being carried out, and the number of operations known to be done.
         cut_off: Option<(Box<K::Prepared>, usize)>,
@@ -60,7 +60,7 @@ impl<K: Reviewed> Review<K> {
         }
     }
 
-    /// Returns the plan as shown, until its end.
+    /// Returns the displayed plan until its end.
     pub fn prepared(&self) -> Option<&K::Prepared> {
         match &self.state {
             ReviewState::Ready(prepared) | ReviewState::Writing(prepared) | ReviewState::Done(prepared, _) => {
@@ -70,7 +70,7 @@ impl<K: Reviewed> Review<K> {
         }
     }
 
-    /// Returns the plan that is being carried out.
+    /// Returns the plan being executed.
     pub(crate) fn writing(&self) -> Option<&K::Prepared> {
         self.prepared().filter(|_| self.is_writing())
     }
@@ -89,7 +89,7 @@ impl<K: Reviewed> Review<K> {
         matches!(self.state, ReviewState::Planning | ReviewState::Ready(_))
     }
 
-    /// Ends the review early, after `done` operations if they had begun.
+    /// Ends the review early, after `done` operations if execution had begun.
     pub(in crate::app) fn fail(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
         let cut_off = self.writing().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
         self.state = ReviewState::Failed { texts, begun, cut_off };
@@ -102,7 +102,7 @@ impl<K: Reviewed> Review<K> {
         Some(change)
     }
 
-    /// Returns the permissions that are given or would make a difference.
+    /// Returns the permits that are granted or would make a difference.
     fn toggles(&self) -> Vec<Toggle> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
@@ -116,18 +116,18 @@ impl<K: Reviewed> Review<K> {
     }
 }
 
-/// An operation of a plan as text.
+/// Description of an operation of a plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OpWords {
     pub item: Text,
-    /// The changes in order; at least one.
+    /// Changes in order; at least one.
     pub changes: Vec<ChangeWords>,
 }
 
-/// One thing that an operation changes, as text.
+/// Description of a single change.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangeWords {
-    /// The part of the item; `None` for all of it.
+    /// Changed part of the item, or `None` for all of it.
     pub part: Option<Text>,
     pub old: Text,
     pub new: Text,
@@ -144,7 +144,7 @@ impl OpWords {
     }
 }
 
-/// Question about a plan, whose answer makes another plan.
+/// A question about a plan, whose answer results in another plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
     pub title: Text,
@@ -155,7 +155,7 @@ pub struct Question {
     pub is_on: bool,
 }
 
-/// How a plan is carried out, and what starts it.
+/// The way in which a plan is executed and started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutionMode {
     Writes,
@@ -166,7 +166,7 @@ pub enum ExecutionMode {
 }
 
 impl ExecutionMode {
-    /// Returns the id of the text of the start button.
+    /// Returns the text id of the start button.
     pub const fn button_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.write",
@@ -175,7 +175,7 @@ impl ExecutionMode {
         }
     }
 
-    /// Returns the id of the text about the next action.
+    /// Returns the text id describing the next action.
     pub const fn summary_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.way",
@@ -192,19 +192,19 @@ pub struct ReviewSheet {
     pub stage: Stage,
     pub lines: Vec<OpWords>,
     pub warnings: Vec<Text>,
-    /// What the plan requires of the user at the device.
+    /// What the plan requires from the user at the device.
     pub needs: Vec<Text>,
     /// Values from another device that must be set up again afterwards; shown during planning, writing and at the end.
     pub redo: Option<Text>,
-    /// The cost, besides the write cycles that this computer has counted.
+    /// Cost in addition to the write cycles counted by this computer.
     pub cost: Option<Text>,
     pub execution_mode: ExecutionMode,
     pub toggles: Vec<Toggle>,
-    /// Questions that have to be answered first.
+    /// Questions that must be answered first.
     pub questions: Vec<Question>,
-    /// The device is worn after it, or its wear is not known: whether to write regardless.
+    /// Whether to write regardless, if the device reaches its limit of write cycles or their number is unknown.
     pub force_wear: Option<bool>,
-    /// The number of its earlier write cycles is not known.
+    /// Whether the number of earlier write cycles is unknown.
     pub is_uncounted: bool,
 }
 
@@ -212,10 +212,10 @@ pub struct ReviewSheet {
 #[derive(Clone, Debug)]
 pub enum Stage {
     Planning,
-    /// There is nothing to do.
+    /// The plan contains nothing to do.
     Nothing,
     Ready(PlanId),
-    /// The plan is being carried out: number of operations done.
+    /// The plan is being executed; number of completed operations.
     Writing(usize),
     /// The plan was carried out.
     Done {
@@ -225,23 +225,23 @@ pub enum Stage {
         /// What the logbook could not record.
         logbook: Option<Text>,
     },
-    /// It is not possible, or ended early.
+    /// The write is impossible, or ended early.
     Failed {
         texts: Vec<Text>,
-        /// Something was written before it ended.
+        /// Whether the device had been written to before the end.
         begun: bool,
         done: usize,
     },
 }
 
-/// Kind of device with a memory: the texts of its writes.
+/// A kind of device with a memory, and the texts for its writes.
 pub trait Reviewed: Kind<Review = Review<Self>> {
     type Change: Clone;
     type Prepared: Planned + Clone;
     type Written;
 
     fn change(change: &Self::Change) -> Text;
-    /// Returns the flag of a permission; `None` if it is not in question.
+    /// Returns the flag of a permit, or `None` if it does not apply.
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
     fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OpWords;
     /// Returns whether values of the mounting differ and are left alone.
@@ -249,12 +249,12 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         false
     }
 
-    /// Returns the written values that belong to another device and have to be set up again.
+    /// Returns the written values that belong to another device and must be set up again.
     fn redo(_prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
 
-    /// Returns the questions that have to be answered first.
+    /// Returns the questions that must be answered first.
     fn questions(_prepared: &Self::Prepared) -> Vec<Question> {
         Vec::new()
     }
@@ -263,14 +263,14 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    /// Returns what the plan requires of the user at the device.
+    /// Returns what the plan requires from the user at the device.
     fn needs(_change: &Self::Change, _prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
 
     fn cost(prepared: &Self::Prepared) -> Text;
 
-    /// Returns whether the device counts as worn after it.
+    /// Returns whether the device reaches its limit of write cycles with the plan.
     fn is_worn(prepared: &Self::Prepared) -> bool {
         let seen = prepared.cycles_seen().unwrap_or(0);
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
@@ -278,7 +278,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
 
     fn written(written: &Self::Written) -> Text;
 
-    /// Returns the same for the end of a review, which shows each operation.
+    /// Returns the summary for the end of a review, which shows each operation.
     fn verified(written: &Self::Written) -> Text {
         Self::written(written)
     }
@@ -300,7 +300,7 @@ pub fn written_texts<K: Reviewed>(committed: &Committed<K::Written>) -> (Severit
     }
 }
 
-/// Returns the values that a restore leaves unchanged: those that only one side has, and those of another mounting.
+/// Describes the values that a restore leaves unchanged: those missing on one side, and those of another mounting.
 pub(crate) fn left_alone(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
     let mut texts = Vec::new();
     if !missing.is_empty() {
@@ -312,7 +312,7 @@ pub(crate) fn left_alone(words: impl Into<Text>, missing: Vec<Text>, mounting: V
     texts
 }
 
-/// Returns the text for values that have to be set up again.
+/// Describes the values that must be set up again.
 pub fn redo(items: Vec<Text>) -> Option<Text> {
     (!items.is_empty()).then(|| Text::new("review.redo").with_list("items", items))
 }
@@ -323,7 +323,7 @@ impl<K: Reviewed> Review<K> {
         self.sheet_with(done, K::op)
     }
 
-    /// Returns the same with the words that the device on the desk has for an operation.
+    /// Returns the review for display, with the connected device's own descriptions of operations.
     pub(in crate::app) fn sheet_with(&self, done: usize, op: impl Fn(&K::Prepared, &Op<K>) -> OpWords) -> ReviewSheet {
         let prepared = self.prepared();
         let cut_off = match &self.state {

@@ -19,13 +19,12 @@ use crate::link::{LinkError, PortInfo};
 use crate::store::{Folders, Store};
 use crate::worker::JobId;
 
-/// The studio's access to the outside world; a test has its own.
+/// Access of the studio to the outside world, replaced in tests.
 #[derive(Clone)]
 pub struct Environment {
     pub store: Store,
     /// The configuration that kinds of device receive from outside.
     pub given: Given,
-    /// The kinds of devices and the tools that there are.
     pub kinds: Kinds,
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
     /// The folders that relative paths start from.
@@ -36,7 +35,6 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// Creates the real environment, with these kinds of devices and tools.
     pub fn real(store: Store, kinds: Kinds) -> Self {
         Environment {
             store,
@@ -52,7 +50,7 @@ impl Environment {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobEnd {
-    /// It is still running.
+    /// The job is still running.
     Running,
     Done,
     Failed(Text),
@@ -74,7 +72,7 @@ pub struct Services {
     pub(crate) world: Environment,
     pub(crate) tasks: Tasks,
     pub log: Log,
-    /// Jobs, the newest last.
+    /// Jobs, newest last.
     jobs: VecDeque<JobRecord>,
     pub(crate) file_question: Option<FileQuestion>,
     pub(crate) brakes: Brakes,
@@ -89,12 +87,12 @@ pub struct Services {
 impl Services {
     const JOBS: usize = 500;
 
-    /// Returns the data shared by the sessions of one kind of device; `None` before one has shared any.
+    /// Returns the data shared by the sessions of one kind of device, or `None` before any was shared.
     pub fn shared<T: Any>(&self) -> Option<&T> {
         self.shared.get(&TypeId::of::<T>())?.downcast_ref()
     }
 
-    /// Shares data with the other sessions of this kind of device, replacing earlier ones.
+    /// Shares data with the other sessions of this kind of device, replacing earlier data.
     pub fn share<T: Any>(&mut self, value: T) {
         self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }
@@ -121,12 +119,11 @@ impl Services {
         (self.world.now)()
     }
 
-    /// Adds a notice to the log and displays it in the window.
     pub(crate) fn notify(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add(self.notice(severity, texts, about));
     }
 
-    /// Does the same for a part of the device.
+    /// Adds a notice about a part of the device to the log and displays it in the window.
     pub(crate) fn notify_part(
         &mut self,
         severity: Severity,
@@ -136,7 +133,7 @@ impl Services {
         self.log.add(Notice { part, ..self.notice(severity, texts, about) });
     }
 
-    /// Adds a notice to the log only: the window shows it elsewhere.
+    /// Adds a notice to the log only, because the window shows it elsewhere.
     pub(crate) fn note(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add_to_log(self.notice(severity, texts, about));
     }
@@ -145,7 +142,7 @@ impl Services {
         Notice { at: self.now(), severity, texts, about: about.map(ToOwned::to_owned), part: None }
     }
 
-    /// Returns the jobs, the newest last.
+    /// Returns the jobs, newest last.
     pub fn jobs(&self) -> impl DoubleEndedIterator<Item = &JobRecord> + ExactSizeIterator {
         self.jobs.iter()
     }

@@ -24,7 +24,7 @@ pub enum ColorScheme {
 pub struct Settings {
     pub theme: ColorScheme,
     pub language: Language,
-    /// Links used, the latest first, by the tab of the device; never with access codes, which are not part of a link.
+    /// Links used in each tab, latest first; without access codes, which are not part of a link.
     links: Links,
     /// Arrangement of the panels, which only the window reads.
     pub layout: Option<String>,
@@ -34,13 +34,13 @@ pub struct Settings {
     /// The lower panel, with trace, jobs and log, is open.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub lower_open: bool,
-    /// Live values do not start by themselves: the user has stopped them.
+    /// Whether the user has stopped live values, so that they no longer start automatically.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub live_stopped: bool,
-    /// The panel Live shows values alone, without its plot.
+    /// Whether the Live panel shows values without a plot.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub values_alone: bool,
-    /// Stored data about drives, by the device that they are behind.
+    /// Stored data about drives, by the device to which they are connected.
     drives: BTreeMap<String, RememberedDrives>,
 }
 
@@ -67,15 +67,15 @@ impl Settings {
         Settings { tab: kinds.first_tab(), ..Settings::default() }
     }
 
-    /// Links that are remembered.
+    /// Number of remembered links.
     const LINKS: usize = 12;
 
-    /// Parses settings; `None` if the text was not written by [`emit`](Self::emit).
+    /// Parses settings, or returns `None` if the file was not written by [`emit`](Self::emit).
     pub fn parse(text: &str) -> Option<Self> {
         ron::from_str(text).ok()
     }
 
-    /// Returns the readable part of a text that [`parse`](Self::parse) refuses, entry by entry, so that an unknown tab
+    /// Returns the readable part of a file that [`parse`](Self::parse) refuses, entry by entry, so that an unknown tab
     /// does not cost the links.
     pub(super) fn salvage(text: &str) -> Self {
         macro_rules! entry {
@@ -116,8 +116,8 @@ impl Settings {
         }
     }
 
-    /// Returns the same with the changes of `ours` since `known`: the rest may have been written by another window
-    /// meanwhile.
+    /// Returns the settings with the changes from `known` to `ours` applied; everything else may have been written by
+    /// another window in the meantime.
     #[must_use]
     pub(super) fn with_changes(mut self, known: &Settings, ours: &Settings) -> Self {
         macro_rules! take {
@@ -165,7 +165,7 @@ impl Settings {
         self.links.of(tab)
     }
 
-    /// Replaces an unknown tab by the first one.
+    /// Replaces an unknown tab with the first one.
     pub(super) fn settle(&mut self, kinds: Kinds) {
         if !kinds.has_tab(self.tab) {
             self.tab = kinds.first_tab();
@@ -182,7 +182,7 @@ impl Settings {
     }
 }
 
-/// Links used, by the tab of the device, in the order of first use of the tabs.
+/// Links used in each tab, in the order of first use of the tabs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Links(Vec<(Tab, Vec<String>)>);
 
@@ -205,7 +205,7 @@ impl Links {
         self.0.iter().map(|(tab, _)| *tab)
     }
 
-    /// Links of files from before there were several kinds are those of the first.
+    /// Assigns the links in files from before several kinds existed to the first tab.
     fn settle(&mut self, first: Tab) {
         let Some(at) = self.0.iter().position(|(tab, _)| *tab == Tab::default()) else { return };
         let (_, links) = self.0.remove(at);

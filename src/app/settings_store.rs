@@ -21,21 +21,20 @@ use crate::store::{FileError, FileProblem, read_text, update_text};
 /// How long the start waits for the settings.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// Text id of the notice that the settings cannot be kept.
 const NOT_KEPT: &str = "session.settings_not_kept";
 
-/// Pause after a failed reading before the next one.
+/// Pause between a failed reading and the next one.
 const AGAIN: Duration = Duration::from_secs(1);
 
 /// The settings on disk, and a write in progress.
 #[derive(Debug)]
 pub(crate) struct SettingsStore {
-    /// The settings here as they were when the file was last read or written.
+    /// Settings of this window when the file was last read or written.
     known: Settings,
     /// Settings that could not be written.
     failed: Option<Settings>,
     writing: Option<Settings>,
-    /// The file has been read, or put aside: nothing is written over it before that.
+    /// Whether the file has been read or set aside; it is not overwritten before.
     may_write: bool,
     is_failure_reported: bool,
     /// The file is being read, since then.
@@ -48,15 +47,15 @@ pub(crate) struct SettingsStore {
 
 #[derive(Debug)]
 pub enum SettingsRead {
-    /// They are as written by the program.
+    /// The settings are complete, as written by the program.
     Whole(Box<Settings>),
-    /// There are none yet.
+    /// There are no settings yet.
     Missing,
     /// The file is broken: its readable part, and the copy that was made.
     Broken {
         settings: Box<Settings>,
         path: PathBuf,
-        /// Path of the copy that was set aside, or why there is none.
+        /// Path of the copy, or the reason why there is none.
         aside: Result<PathBuf, String>,
     },
     /// The file cannot be read at all.
@@ -66,12 +65,12 @@ pub enum SettingsRead {
 #[derive(Debug)]
 pub struct SettingsWritten {
     settings: Box<Settings>,
-    /// It was broken, and this copy was made of it.
+    /// Paths of a broken file and of its copy.
     aside: Option<(PathBuf, PathBuf)>,
 }
 
 impl SettingsStore {
-    /// Reads the settings. If the disk does not reply at once, they arrive as an action later.
+    /// Reads the settings. If the disk does not respond at once, they arrive later as an action.
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         let mailbox = services.tasks.mailbox();
@@ -103,7 +102,7 @@ impl SettingsStore {
         (settings, store)
     }
 
-    /// Takes over the settings that were read; changes by the user since then stay.
+    /// Adopts settings that were read; changes made by the user since then are kept.
     pub(super) fn take(&mut self, read: SettingsRead, settings: &mut Settings, services: &mut Services) {
         services.log.settle("session.settings_slow", None);
         let kinds = services.world.kinds;
@@ -178,7 +177,7 @@ impl SettingsStore {
         }
     }
 
-    /// Reads the settings as another window may have written them. Returns whether a reading starts now.
+    /// Reads the settings again, as another window may have changed them; returns whether a reading starts now.
     pub(crate) fn begin_read(&mut self, services: &Services) -> bool {
         let has_failed = |at: &Zoned| at.duration_until(&services.now()).unsigned_abs() < AGAIN;
         if self.reading_since.is_some() || self.last_failed_read.as_ref().is_some_and(has_failed) {
@@ -193,12 +192,12 @@ impl SettingsStore {
         true
     }
 
-    /// Handles settings that could not be read: this counts as not having read them, since they may contain locks.
+    /// Handles settings that could not be read, which count as not read, since they may contain locks.
     pub(crate) fn read_failed(&mut self) {
         self.last_failed_read = self.reading_since.take();
     }
 
-    /// Merges settings that were read. During a write they are returned instead: its result is merged later.
+    /// Merges settings that were read. During a write they are returned instead, and its result is merged later.
     pub(crate) fn read_done(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
         self.last_read = self.reading_since.take();
         if self.writing.is_some() {
@@ -210,14 +209,14 @@ impl SettingsStore {
         None
     }
 
-    /// Returns whether the settings have not been read for this long.
+    /// Returns whether the settings have not been read for the given time.
     pub(crate) fn is_older(&self, now: &Zoned, than: Duration) -> bool {
         // The wall clock may be set back.
         let age = self.last_read.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());
         age.is_none_or(|age| age > than)
     }
 
-    /// Takes over the data of other windows about drives.
+    /// Adopts data of other windows about drives.
     fn meet(&mut self, found: &Settings, settings: &mut Settings) {
         let ours = settings.clone();
         settings.take_drives(found);
@@ -230,7 +229,7 @@ impl SettingsStore {
     }
 }
 
-/// Reads the settings, and copies a broken file to a name beside it.
+/// Reads the settings; copies a broken file to a name next to it.
 fn read(path: PathBuf, kinds: Kinds) -> SettingsRead {
     match understood(read_text(&path), kinds) {
         Ok(Some((settings, true))) => SettingsRead::Whole(Box::new(settings)),
@@ -245,7 +244,7 @@ fn read(path: PathBuf, kinds: Kinds) -> SettingsRead {
     }
 }
 
-/// Parses settings as far as possible, and returns whether that is all of them; `None` without a file.
+/// Parses settings as far as possible; returns whether they are complete, or `None` without a file.
 fn understood(text: Result<String, FileError>, kinds: Kinds) -> Result<Option<(Settings, bool)>, FileError> {
     match text {
         Ok(text) => {
@@ -264,7 +263,7 @@ fn understood(text: Result<String, FileError>, kinds: Kinds) -> Result<Option<(S
     }
 }
 
-/// Reads the settings; `None` if no window can have written any.
+/// Reads the settings, or returns `None` if no window can have written any.
 fn found(path: &Path, kinds: Kinds) -> Result<Option<Settings>, FileError> {
     use FileProblem::{IsFolder, NoFolder, NotAFile, NotFolder};
     match understood(read_text(path), kinds) {

@@ -15,14 +15,14 @@ use crate::link::{LinkUrl, Wire};
 use crate::worker::stream::End;
 use crate::worker::{Ending, JobId, Worker};
 
-/// Maximum waiting times of closing, and of opening while a connection is still held.
+/// Maximum waiting times when closing, and when opening while a connection is still held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GracePeriods {
     pub drives: Duration,
     pub disk: Duration,
     /// For a job that writes nothing.
     pub job: Duration,
-    /// For a write: it reaches a point at which it can end, and locks again what it unlocked.
+    /// Time for a write to reach a point at which it can end, and to lock again what it unlocked.
     pub write: Duration,
 }
 
@@ -56,10 +56,10 @@ pub(crate) trait ClosingWorker: Send + Sync {
     /// Returns whether the thread has ended and the wire is free.
     fn is_ended(&self) -> bool;
 
-    /// Waits at most `patience` for the end; returns whether it has come.
+    /// Waits at most `patience` for the end; returns whether it was reached.
     fn wait(&self, patience: Duration) -> bool;
 
-    /// Returns how jobs ended since the last call.
+    /// Returns how jobs ended since the previous call.
     fn job_endings(&self) -> Vec<JobEnding>;
 }
 
@@ -91,13 +91,12 @@ impl ClosingWorker for End {
     }
 }
 
-/// Returns whether two links lead to the same wire.
 pub(crate) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
     one.wire() == other.wire() && one.wire() != Wire::Inside
 }
 
 impl Services {
-    /// Releases a thread. The next user of the connection gets its turn when `turn` is dropped, at the end.
+    /// Releases a thread. Dropping `turn` at the end gives the next user of the connection its turn.
     pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, info: ClosingSessionInfo, turn: Option<Sender<()>>) {
         self.close_session_thread(Arc::new(worker.end()), info, turn);
     }
@@ -153,7 +152,7 @@ impl Services {
         self.closing_sessions.iter().any(|closing| closing.info.write.is_some())
     }
 
-    /// Returns the sessions that are ending on the wire of a link, with the time each gets.
+    /// Returns the sessions that are ending on the wire of a link, with the time allowed for each.
     pub(crate) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn ClosingWorker>, Duration)> {
         let own = self.closing_sessions.iter().filter(|closing| same_wire(&closing.info.url, url));
         own.map(|closing| (closing.ending.clone(), self.patience_with(closing.info.write.is_some()))).collect()

@@ -14,7 +14,7 @@ pub struct SineCosineReading {
     pub signals: Option<SineCosineVolts>,
 }
 
-/// Sine and cosine, each relative to its reference.
+/// Sine and cosine, each relative to its reference wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SineCosineVolts {
     pub sine_v: f64,
@@ -33,9 +33,9 @@ pub struct SineCosineRange {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SineCosineOrigin {
     pub session: SessionId,
-    /// Its serial number, if it was read.
+    /// Serial number, if it was read.
     pub serial_number: Option<String>,
-    /// Its range, if it is known and rotary.
+    /// Range, if known and rotary.
     pub range: Option<SineCosineRange>,
 }
 
@@ -47,6 +47,6 @@ pub trait SineCosineSource {
 
     fn origin(&self) -> SineCosineOrigin;
 
-    /// Takes the requested reading, or why there is none.
+    /// Returns the requested reading, or the reason why there is none.
     fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>>;
 }

@@ -2,10 +2,10 @@
 //! after the machine has stopped; such presses must not affect anything else. They still stop motion, which may have
 //! started in the meantime. This module is pure: times are those of the frames, in seconds.
 
-/// Time after a stop, in seconds, in which another press has the same meaning.
+/// Time after a stop, in seconds, during which another press has the same meaning.
 const FRIGHT: f64 = 0.5;
 
-/// When motion was stopped last, and when a button that stops was pressed last.
+/// Times of the last stop of motion, and of the last press of a stop button.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StopPresses {
     stopped: Option<f64>,
@@ -13,7 +13,8 @@ pub struct StopPresses {
 }
 
 impl StopPresses {
-    /// Returns whether a press at this time applies to a motion that runs or has just ended; it is then a stop itself.
+    /// Returns whether a press at this time refers to a motion that is running or has just ended, and is therefore a
+    /// stop itself.
     pub fn means_motion(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_just_stopped(pressed);
         if means {
@@ -22,7 +23,7 @@ impl StopPresses {
         means
     }
 
-    /// Returns whether a press stopped something so shortly before that another press means the same.
+    /// Returns whether a press stopped something so recently that another press means the same.
     pub fn has_just_stopped(&self, pressed: f64) -> bool {
         self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
     }
@@ -31,7 +32,7 @@ impl StopPresses {
         self.pressed = Some(now);
     }
 
-    /// Returns the time of the press that counts now. A click by the keyboard has no press of its own.
+    /// Returns the time of the press that counts now. A keyboard click has no press of its own.
     pub fn pressed_at(&self, by_pointer: bool, now: f64) -> f64 {
         self.pressed.filter(|_| by_pointer).unwrap_or(now)
     }

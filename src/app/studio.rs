@@ -29,7 +29,7 @@ pub struct Studio {
     pub connect: Option<Connect>,
     /// A question that must be answered.
     pub question: Option<Question>,
-    /// A profile that others have changed in its file since it was opened.
+    /// A profile whose file has changed since it was opened.
     pub diverged: Option<Diverged>,
     pub services: Services,
     pub(super) tools: Vec<(Tab, Box<dyn Tool>)>,
@@ -153,7 +153,7 @@ impl Studio {
         self.write_if_changed();
     }
 
-    /// Takes in all events since the last call: called in every frame.
+    /// Processes all events since the last call. Call this in every frame.
     pub fn poll(&mut self) {
         while let Some(action) = self.services.tasks.next() {
             self.act(action);
@@ -184,22 +184,22 @@ impl Studio {
         }
     }
 
-    /// Puts actions into the studio from other threads.
+    /// Returns a mailbox through which other threads send actions.
     pub fn mailbox(&self) -> Mailbox {
         self.services.tasks.mailbox()
     }
 
-    /// Returns the file that the user is to be asked for, once.
+    /// Returns a question for a file, once.
     pub fn take_file_question(&mut self) -> Option<FileQuestion> {
         self.services.file_question.take()
     }
 
-    /// Takes the question for a file whose path the user must type.
+    /// Returns a question for a file whose path the user must type, once.
     pub fn take_path_question(&mut self) -> Option<FileQuestion> {
         self.path_question.take()
     }
 
-    /// Returns the profiles that are being read from the disk.
+    /// Returns the profiles that are being read from disk.
     pub fn opening_files(&self) -> &[PathBuf] {
         &self.services.opening_files
     }
@@ -213,14 +213,14 @@ impl Studio {
         self.devices.iter().map(Box::as_ref).find(|device| device.id() == id)
     }
 
-    /// Returns the device that the open tab shows; if it shows none, the one shown last.
+    /// Returns the device shown in the open tab, or else the one shown last.
     pub fn selected_device(&self) -> Option<&AnyDevice> {
         let tab = self.settings.tab;
         let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.of(tab) };
         self.device(id?)
     }
 
-    /// Returns the device of that type shown by its tab.
+    /// Returns the device of type `M` shown in its tab.
     pub fn selected_model<M: DeviceType>(&self) -> Option<&M> {
         self.device(self.shown.of(M::TAB)?)?.get()
     }
@@ -230,7 +230,7 @@ impl Studio {
         self.tools.iter().any(|(own, _)| *own == tab)
     }
 
-    /// Returns the virtual device of a tab; `None` for a tool.
+    /// Returns the link to the virtual device of a tab, or `None` for a tool.
     fn virtual_link(&self, tab: Tab) -> Option<LinkUrl> {
         Some(self.services.world.kinds.of_tab(tab)?.virtual_link())
     }
@@ -243,7 +243,7 @@ impl Studio {
         }
     }
 
-    /// Creates a profile that is in no file yet, if the kind supports that.
+    /// Creates an unsaved profile, if the kind supports that.
     fn new_profile(&mut self, tab: Tab) {
         let Some(kind) = self.services.world.kinds.of_tab(tab) else { return };
         let taken: Vec<PathBuf> = self.devices.iter().filter_map(|device| device.source().suggested()).collect();
@@ -255,7 +255,7 @@ impl Studio {
         }
     }
 
-    /// Returns sine and cosine of a device that is shown in its own tab.
+    /// Returns the sine/cosine source of a device shown in its own tab.
     pub fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         let kinds = self.services.world.kinds.devices().iter();
         kinds.into_iter().find_map(|kind| self.device(self.shown.of(kind.tab())?)?.sine_cosine())
@@ -266,18 +266,18 @@ impl Studio {
         self.shown.set(tab, id);
     }
 
-    /// Returns whether any session has something to stop: a job or polling.
+    /// Returns whether a job or polling can be stopped in any session.
     pub fn can_stop(&self) -> bool {
         self.devices.iter().any(|device| device.is_active()) || self.searches() || self.can_stop_tools()
     }
 
-    /// Returns whether something runs that ends by itself, or measures; polling does not count.
+    /// Returns whether a job or a measurement is running; polling does not count.
     pub fn works(&self) -> bool {
         let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
         self.devices.iter().map(Box::as_ref).any(device) || self.searches() || self.can_stop_tools()
     }
 
-    /// Returns whether live values arrive: the window must be redrawn continuously.
+    /// Returns whether live values arrive, so that the window must be redrawn continuously.
     pub fn is_live(&self) -> bool {
         self.devices.iter().any(|device| device.is_polling()) || self.is_in_control()
     }
@@ -365,7 +365,7 @@ impl Studio {
         }
     }
 
-    /// Stops what runs in tabs that need no device.
+    /// Stops the jobs of tabs that require no device.
     pub(super) fn stop_tools(&mut self) {
         self.tools.iter_mut().for_each(|(_, tool)| tool.stop(&mut self.services));
     }

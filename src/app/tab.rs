@@ -7,12 +7,12 @@ use std::sync::{Mutex, PoisonError};
 use serde::de::{EnumAccess, Error, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Tab of the window: of a kind of device, or of a tool that needs none. It is identified by its name in the settings.
+/// A tab of the window, for a kind of device or a tool, identified by its name in the settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Tab(&'static str);
 
 impl Tab {
-    /// Creates the tab of that name. The name is written to users' settings: it never changes.
+    /// Creates the tab with this name, which is written to users' settings and must never change.
     pub const fn named(name: &'static str) -> Self {
         Tab(name)
     }
@@ -22,7 +22,7 @@ impl Tab {
     }
 }
 
-/// The first tab, for settings that name none.
+/// The first tab, used if the settings name none.
 impl Default for Tab {
     fn default() -> Self {
         Tab("First")
@@ -57,7 +57,7 @@ impl<'de> Visitor<'de> for TabVisitor {
     }
 }
 
-/// The name of a tab, as a settings file has it.
+/// A tab name as stored in settings.
 struct Name(String);
 
 impl<'de> Deserialize<'de> for Name {
@@ -78,8 +78,8 @@ impl<'de> Deserialize<'de> for Name {
     }
 }
 
-/// Interns a name that was read from settings, including tabs that this program does not have: another version continues to
-/// use their links. Each name is kept once for the life of the process.
+/// Interns a tab name read from settings, including tabs that this program does not have, since another version
+/// continues to use their links. Each name is kept once for the life of the process.
 fn intern(name: String) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);

@@ -8,7 +8,7 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::Action;
 
-/// Wakes the window: there are new events.
+/// A callback that wakes the window when there are new events.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// Threads whose results are actions.
@@ -42,7 +42,6 @@ impl Tasks {
         }
     }
 
-    /// Returns a mailbox for a thread that is started elsewhere.
     pub fn mailbox(&self) -> Mailbox {
         Mailbox { sender: self.sender.clone(), wake: self.wake.clone() }
     }

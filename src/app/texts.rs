@@ -15,7 +15,7 @@ pub enum Language {
     German,
 }
 
-/// Text of a catalogue with its arguments, independent of the language.
+/// A text of a catalogue with its arguments, independent of the language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
     catalogue: &'static Catalogue,
@@ -34,7 +34,7 @@ enum Argument {
 }
 
 impl Argument {
-    /// Returns the memory that it points to, in bytes.
+    /// Returns the memory used by the argument's heap data, in bytes.
     fn size(&self) -> usize {
         match self {
             Argument::Words(words) | Argument::Number(words) => words.len(),
@@ -60,7 +60,7 @@ pub struct Catalogue {
     rows: OnceLock<BTreeMap<String, Row>>,
 }
 
-/// The texts that belong to no device, or to several.
+/// Texts that belong to no device, or to several.
 pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/common.ron"));
 
 #[derive(Debug, Deserialize)]
@@ -68,7 +68,7 @@ pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/c
 struct Row {
     en: String,
     de: String,
-    /// English for the command line; empty if it is the same as for the window.
+    /// English text for the command line; empty if it is the same as in the window.
     #[serde(default)]
     terminal: String,
 }
@@ -84,42 +84,42 @@ impl Text {
         COMMON.text(id)
     }
 
-    /// Fills `{name}` with words, a number or a name.
+    /// Replaces `{name}` with a word, a number or a name.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.arguments.push((name, Argument::Words(value.to_string())));
         self
     }
 
-    /// Fills `{name}` with another text.
+    /// Replaces `{name}` with another text.
     #[must_use]
     pub fn with_text(mut self, name: &'static str, text: Text) -> Self {
         self.arguments.push((name, Argument::Text(text)));
         self
     }
 
-    /// Fills `{name}` with a name that is in no catalogue, in English and German.
+    /// Replaces `{name}` with a name that is not in a catalogue, given in English and German.
     #[must_use]
     pub fn with_name(mut self, name: &'static str, english: &str, german: &str) -> Self {
         self.arguments.push((name, Argument::Name(english.to_owned(), german.to_owned())));
         self
     }
 
-    /// Replaces `{name}` with a number that has this many decimals: 1.5 in English, 1,5 in German.
+    /// Replaces `{name}` with a number with the given decimals: 1.5 in English, 1,5 in German.
     #[must_use]
     pub fn with_number(mut self, name: &'static str, value: f64, decimals: usize) -> Self {
         self.arguments.push((name, Argument::Number(format!("{value:.decimals$}"))));
         self
     }
 
-    /// Fills `{name}` with a number that is already written in digits, as in English.
+    /// Replaces `{name}` with a number already formatted as in English.
     #[must_use]
     pub(crate) fn with_digits(mut self, name: &'static str, digits: impl ToString) -> Self {
         self.arguments.push((name, Argument::Number(digits.to_string())));
         self
     }
 
-    /// Fills `{name}` with other texts, separated by commas.
+    /// Replaces `{name}` with other texts, separated by commas.
     #[must_use]
     pub fn with_list(mut self, name: &'static str, texts: impl IntoIterator<Item = Text>) -> Self {
         self.arguments.push((name, Argument::List(texts.into_iter().collect())));
@@ -134,7 +134,7 @@ impl Text {
         self.arguments.iter().any(is_it)
     }
 
-    /// Returns about how much memory it takes, in bytes.
+    /// Returns the approximate memory use in bytes.
     pub(super) fn size(&self) -> usize {
         let arguments = self.arguments.iter().map(|(_, own)| size_of_val(own) + size_of::<&str>() + own.size());
         size_of::<Self>() + arguments.sum::<usize>()
@@ -182,7 +182,7 @@ pub(crate) fn signed(number: &str, language: Language) -> String {
     Argument::Number(number.to_owned()).text_for(Output::Window(language))
 }
 
-/// Returns a number of this many decimals with the language's decimal sign.
+/// Formats a number with the given decimals and the decimal sign of a language.
 pub fn decimal(value: f64, decimals: usize, language: Language) -> String {
     Argument::Number(format!("{value:.decimals$}")).text_for(Output::Window(language))
 }
@@ -198,7 +198,7 @@ impl Catalogue {
         Catalogue { source, rows: OnceLock::new() }
     }
 
-    /// Returns the text of that id: from this catalogue, or else from the common one.
+    /// Returns the text with this id from this catalogue, or else from the common one.
     pub fn text(&'static self, id: &'static str) -> Text {
         let is_own = *self != COMMON && self.rows().contains_key(id);
         let catalogue = if is_own { self } else { &COMMON };
@@ -207,7 +207,7 @@ impl Catalogue {
         Text { catalogue, id, arguments: Vec::new() }
     }
 
-    /// Returns the text of a number of a table, such as `hd_parameter.158`.
+    /// Returns the text for a number of a table, such as `hd_parameter.158`.
     pub(crate) fn numbered(&'static self, area: &str, number: u16) -> Option<Text> {
         let (id, _) = self.rows().get_key_value(&format!("{area}.{number}"))?;
         Some(Text { catalogue: self, id, arguments: Vec::new() })

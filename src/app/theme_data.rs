@@ -12,7 +12,6 @@ use super::ColorScheme;
 #[serde(try_from = "String")]
 pub struct Rgb(pub [u8; 3]);
 
-/// Text sizes in points.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TextSizes {
@@ -75,7 +74,7 @@ impl ThemeData {
     /// Returns the built-in theme.
     ///
     /// # Errors
-    /// What is wrong with the table: a defect of the build, which a test prevents.
+    /// Describes a defect of the theme file, which a test prevents.
     pub fn built_in() -> Result<&'static ThemeData, &'static str> {
         BUILT_IN.as_ref().map_err(String::as_str)
     }
@@ -101,7 +100,7 @@ impl TryFrom<String> for Rgb {
 }
 
 impl Rgb {
-    /// Returns the contrast against another colour, 1 to 21, as WCAG 2 defines it.
+    /// Returns the contrast with another colour, 1 to 21, as defined by WCAG 2.
     pub fn contrast(self, other: Rgb) -> f64 {
         let (a, b) = (self.luminance(), other.luminance());
         (a.max(b) + 0.05) / (a.min(b) + 0.05)

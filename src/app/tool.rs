@@ -131,7 +131,6 @@ impl Studio {
         }
     }
 
-    /// Handles the result of a task of a tool.
     pub(super) fn tool_done(&mut self, tab: Tab, done: Payload) {
         let tool = self.tools.iter_mut().find(|(own, _)| *own == tab);
         if tool.is_none_or(|(_, tool)| tool.done(done, &mut self.services).is_err()) {
@@ -139,7 +138,7 @@ impl Studio {
         }
     }
 
-    /// Opens a file in the tool that takes such files; returns the path if there is none.
+    /// Opens a file in the tool that accepts it, or returns the path if there is none.
     pub(super) fn open_in_tool(&mut self, path: PathBuf) -> Result<(), PathBuf> {
         let Some((tab, tool)) = self.tools.iter_mut().find(|(_, tool)| tool.takes(&path)) else { return Err(path) };
         self.settings.tab = *tab;
@@ -147,8 +146,8 @@ impl Studio {
         Ok(())
     }
 
-    /// Opens a requested capture: in the open tab if that is a tool, else in the first tool. If another tab is open by now,
-    /// it stays open.
+    /// Opens a requested capture in the open tab if that is a tool, or else in the first tool. If another tab is open
+    /// by then, it stays open.
     pub(super) fn open_capture(&mut self, path: PathBuf) {
         let tab = self.settings.tab;
         let at = self.tools.iter().position(|(own, _)| *own == tab).unwrap_or_default();
@@ -157,7 +156,7 @@ impl Studio {
         }
     }
 
-    /// Tools give up a wire that is needed elsewhere.
+    /// Makes tools release a wire that is needed elsewhere.
     pub(super) fn free_wire_of_tools(&mut self, url: &LinkUrl) {
         for (_, tool) in &mut self.tools {
             tool.free_wire(url, &mut self.services);

@@ -10,13 +10,13 @@ use crate::units::Moment;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceLine {
-    /// When its first byte was sent or received, on the session's clock.
+    /// Time at which the first byte was sent or received, on the session's clock.
     pub at: Moment,
     pub direction: Direction,
-    /// Its bytes; `**` is a masked one.
+    /// Bytes of the frame; `**` is a masked byte.
     pub bytes: String,
     pub meaning: Vec<Text>,
-    /// The fault at its end, if any.
+    /// Fault at the end of the frame, if any.
     pub fault: Option<TraceFault>,
 }
 
@@ -25,7 +25,7 @@ pub struct TraceLine {
 pub enum TraceFault {
     /// The device reports an error or a warning.
     Reported,
-    /// It is not a frame, or not a reply to the request before it.
+    /// The bytes are not a frame, or not a reply to the preceding request.
     Broken,
 }
 
@@ -49,7 +49,7 @@ impl From<Vec<Text>> for Explained {
 }
 
 impl TraceLine {
-    /// Returns about how much memory it takes, in bytes.
+    /// Returns the approximate memory use in bytes.
     fn size(&self) -> usize {
         size_of::<Self>() + self.bytes.len() + self.meaning.iter().map(Text::size).sum::<usize>()
     }
@@ -70,10 +70,10 @@ pub struct TraceLog {
 }
 
 impl TraceLog {
-    /// The memory that lines may take, in bytes: about 40,000 readings of a position.
+    /// Maximum memory of the lines in bytes: about 40,000 position readings.
     const MOST: usize = 16 << 20;
 
-    /// Adds frames with their meanings. `dropped` arrived too fast to be shown.
+    /// Adds frames with their meanings. `dropped` frames arrived too fast to be shown.
     pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, Explained)>, dropped: u64) {
         self.dropped += dropped;
         for (entry, Explained { meaning, fault }) in entries {
@@ -90,7 +90,7 @@ impl TraceLog {
         }
     }
 
-    /// Lines that were removed to make room for newer ones.
+    /// Returns the number of lines removed to make room for newer ones.
     pub fn gone(&self) -> u64 {
         self.gone
     }

@@ -22,59 +22,58 @@ pub use watchable::{Watchable, Watching};
 
 /// Maximum number of positions: more than a day at the fastest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
-/// Nanoseconds between positions beyond which they are not joined at any rate: a line would show a motion that was not
-/// observed.
+/// Time in nanoseconds between positions above which they are never joined, because a line would show a motion that was
+/// not observed.
 const APART: i64 = 5_000_000_000;
-/// Additional nanoseconds, besides four intervals, by which a position may be late: a lost reply that was requested again.
+/// Tolerated delay of a position in nanoseconds, in addition to four intervals: a lost reply that was requested again.
 const LATE: i64 = 400_000_000;
-/// Likewise between watched values, which come more slowly.
+/// Time in nanoseconds between watched values, which arrive more slowly, above which they are not joined.
 const WATCHED_APART: i64 = APART;
-/// Values of one watched thing that are kept.
+/// Number of samples kept for a watched value.
 const WATCHED: usize = 500_000;
-/// Nanoseconds that are shown to begin with.
+/// Initially displayed time in nanoseconds.
 const SPAN: i64 = 30_000_000_000;
 
 /// Columns of positions: position, speed, acceleration.
 const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 
-/// A position, or that there is none.
+/// A sampled position, or the fact that there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionSample {
     pub at: Moment,
-    /// Steps, within the range; `None`: the device has none.
+    /// Position in steps within the range, or `None` if the device has none.
     pub position: Option<i64>,
-    /// The device reports it as invalid.
+    /// Whether the device reports the position as invalid.
     pub is_bad: bool,
     pub is_warned: bool,
 }
 
-/// Recorder of a device, with the state for filling it; `W` is the type of values that can be watched.
+/// The recorder of a device with the state for filling it; `W` is the type of values that can be watched.
 #[derive(Debug)]
 pub struct Track<W> {
     pub(crate) recorder: Recorder,
     positions: GroupId,
     lines: [LineId; 3],
     watched: Vec<Watched<W>>,
-    /// The meaning of positions; `None` until the first.
+    /// Meaning of positions, or `None` before the first.
     follower: Option<Follower>,
     dropped: u64,
-    /// When the clock of the first session started, and how much later that of the present one did.
+    /// Start of the first session's clock, and the offset of the present one.
     began: Option<Zoned>,
     shift: i64,
     newest: Option<Time>,
-    /// The last position as received.
+    /// Last position as received.
     last: i64,
-    /// Nanoseconds between two positions from which they are not joined.
+    /// Time in nanoseconds between two positions above which they are not joined.
     apart: i64,
 }
 
-/// Watched value and its line.
 #[derive(Clone, Debug)]
 struct Watched<W> {
     value: W,
     group: GroupId,
     line: LineId,
-    /// It is being recorded; otherwise it was, and its samples remain.
+    /// Whether the value is being recorded; otherwise only its earlier samples remain.
     active: bool,
 }
 
@@ -123,7 +122,7 @@ impl<W: Watchable> Default for Track<W> {
 }
 
 impl<W: Watchable> Track<W> {
-    /// Creates a recorder for positions that have this meaning.
+    /// Creates a recorder for positions with the given meaning.
     fn about(meaning: &Meaning) -> Self {
         let mut recorder = Recorder::new(SPAN);
         let positions = recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
@@ -143,7 +142,7 @@ impl<W: Watchable> Track<W> {
         }
     }
 
-    /// Begins a session. Earlier recordings stay, earlier by the difference of the clocks.
+    /// Begins a session. Earlier recordings are kept, shifted by the difference of the clocks.
     pub fn begin(&mut self, began: &Zoned) {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
@@ -153,12 +152,12 @@ impl<W: Watchable> Track<W> {
         self.gap();
     }
 
-    /// Returns the meaning of positions; `None` until the first.
+    /// Returns the meaning of positions, or `None` before the first.
     pub fn meaning(&self) -> Option<&Meaning> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
 
-    /// Sets the interval of polling; when polling begins, earlier positions are not joined to later ones.
+    /// Sets the polling interval; when polling begins, earlier positions are not joined to later ones.
     pub fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());
         self.apart = interval.map_or(APART, |interval| interval.saturating_mul(4).saturating_add(LATE).min(APART));
@@ -175,7 +174,7 @@ impl<W: Watchable> Track<W> {
         }
     }
 
-    /// Records positions, one after the other.
+    /// Records consecutive positions.
     pub fn add(&mut self, sightings: &[PositionSample], meaning: &Meaning) {
         self.see(meaning);
         let mut columns = Columns::default();
@@ -222,7 +221,7 @@ impl<W: Watchable> Track<W> {
         columns.push(time, next.steps, rates, flags);
     }
 
-    /// Records these values, and no others, in addition to the position. Recordings of others stay.
+    /// Records exactly these values in addition to the position. Recordings of other values are kept.
     pub fn watch(&mut self, watched: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
@@ -295,7 +294,8 @@ impl<W: Watchable> Track<W> {
         all.map_or(0, |all| all.end - all.start)
     }
 
-    /// Forgets the recording of the previous device, unless minutes of it are not exported. Watched values stay watched.
+    /// Discards the recording of the previous device, unless minutes of it have not been exported. Watched values stay
+    /// watched.
     pub fn forget(&mut self) {
         let watched = self.watched();
         if self.recorder.unsaved() >= MUCH {
@@ -310,8 +310,8 @@ impl<W: Watchable> Track<W> {
         self.watch(&watched);
     }
 
-    /// Decodes the recording again, as far as its words are stored; times do not change. If not all words are stored, the
-    /// old recording stays too.
+    /// Decodes the recording again, as far as its words are stored; times do not change. If not all words are stored,
+    /// the old recording is kept as well.
     pub fn begin_again(&mut self, kept: usize) {
         if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
             self.part(&Meaning::of_steps(None));
@@ -323,7 +323,7 @@ impl<W: Watchable> Track<W> {
         self.recorder.act(recorder::RecorderAction::SetSpan(span));
     }
 
-    /// Sets the meaning of later positions. Recordings with another meaning stay unchanged, in lines that end here.
+    /// Sets the meaning of later positions. Recordings with another meaning are kept unchanged in lines that end here.
     fn see(&mut self, meaning: &Meaning) {
         if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_place(meaning)) {
             if own.meaning != *meaning {
@@ -337,7 +337,7 @@ impl<W: Watchable> Track<W> {
         self.follower = Some(Follower::new(meaning.clone()));
     }
 
-    /// Replaces the lines with those for positions of this meaning.
+    /// Replaces the lines with those for positions of the given meaning.
     fn part(&mut self, meaning: &Meaning) {
         let has_samples = self.positions() > 0;
         let group = self.recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
@@ -373,13 +373,12 @@ impl<W: Watchable> Track<W> {
         (Text::new("recorder.until").with_text("name", name).with("time", &until), format!("{heading} until {until}"))
     }
 
-    /// Notes that samples are missing before the next ones.
+    /// Marks a gap before the next samples.
     pub fn gap(&mut self) {
         self.recorder.break_all();
         self.lose_track();
     }
 
-    /// Records that the next position does not continue the last one.
     fn lose_track(&mut self) {
         if let Some(follower) = &mut self.follower {
             follower.lose_track();

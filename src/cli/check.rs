@@ -9,12 +9,12 @@ use crate::app::Text;
 use crate::app::check::{CheckLine, verdict};
 use crate::link::LineQuality;
 
-/// Prints the lines; a bad line makes the command fail.
+/// Prints the results of the check; a fault makes the command fail.
 pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
     show_with(output, lines, None)
 }
 
-/// Prints the lines like `show`, with the quality of the line where it was counted.
+/// Prints the results of the check like `show`, with the line quality where it was measured.
 pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal).collect::<Vec<_>>();
@@ -39,7 +39,7 @@ pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&L
     if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found the faults named above.".to_owned()])) }
 }
 
-/// Returns the word for a verdict that scripts rely on.
+/// Returns the word for a verdict, on which scripts rely.
 fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Skipped => "skipped",

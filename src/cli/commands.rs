@@ -237,13 +237,13 @@ impl Commands {
         self.devices.iter().flat_map(|device| device.common_options())
     }
 
-    /// Returns why an option is refused for a kind of device that does not have it.
+    /// Explains why an option is refused for a kind of device that does not have it.
     pub(super) fn refusal(self, option: &str, chosen: &str) -> String {
         let own = self.devices.iter().find_map(|device| device.refused_option(option));
         own.unwrap_or_else(|| format!("{option} is not for {chosen} devices"))
     }
 
-    /// Returns the refusal of a given option of every command that the chosen kind of device does not have.
+    /// Returns the refusal of a given common option that the chosen kind of device does not have.
     pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &OwnOptions) -> Option<String> {
         let own = chosen.common_options();
         let foreign = self.common_options().find(|option| {
@@ -252,7 +252,7 @@ impl Commands {
         Some(self.refusal(&format!("--{}", foreign.get_long().unwrap_or_default()), chosen.name()))
     }
 
-    /// Returns the commands that are not in the core.
+    /// Returns the commands that do not belong to the core.
     pub(super) fn own(self) -> impl Iterator<Item = &'static dyn OwnCommand> {
         let of_devices = self.devices.iter().flat_map(|device| device.own_commands());
         of_devices.chain(self.further).copied()
@@ -271,7 +271,7 @@ impl Commands {
         named.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {name} devices.")]))
     }
 
-    /// Returns the refusal of an option given to a command that the chosen kind of device or protocol does not have.
+    /// Returns the refusal of an option that the chosen kind of device or protocol does not have.
     pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &OwnOptions) -> Option<String> {
         let has = |device: &&&dyn DeviceCommands, id: &clap::Id| {
             device.options(command).iter().any(|option| option.get_id() == id)
@@ -301,12 +301,12 @@ impl OwnOptions {
         parse(&self.0)
     }
 
-    /// Returns whether an option was given; options with a default do not count.
+    /// Returns whether an option was given; defaults do not count.
     pub(super) fn has(&self, id: &str) -> bool {
         self.0.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
     }
 
-    /// Returns the text of an option that takes one.
+    /// Returns the value of an option.
     pub(super) fn text(&self, id: &str) -> Option<&String> {
         self.0.get_one(id)
     }

@@ -20,13 +20,13 @@ pub fn require_consent(consent: &Consenting) -> Result<()> {
     Err(Failure::Usage("this writes to the device: add --yes, or run it on a terminal; nothing was changed".to_owned()))
 }
 
-/// Returns whether there is a terminal with a user.
+/// Returns whether a user can answer at a terminal.
 pub(crate) fn can_ask() -> bool {
     stdin().is_terminal() && stderr().is_terminal()
 }
 
-/// Shows the plan and the further points that need consent, and asks about each, unless the command line has already
-/// consented. Returns the plan with the consent to it.
+/// Shows the plan and all other points that require consent, and asks about each, unless the command line has already
+/// consented. Returns the approved plan.
 pub fn agreed<P: Planned>(
     output: &Output,
     consent: &Consenting,
@@ -43,7 +43,8 @@ pub fn agreed<P: Planned>(
     Ok(ApprovedPlan { prepared, consent: granted, force_wear: consent.force_wear })
 }
 
-/// Refuses a write into a worn device, or one whose write cycles are not known, before consent is requested.
+/// Refuses a write to a device that has reached its limit of write cycles, or whose write cycles are unknown, before
+/// consent is requested.
 pub fn check_wear<D>(consent: &Consenting, prepared: &impl Planned) -> Result<()>
 where
     D: Runs,
@@ -54,8 +55,8 @@ where
         .map_err(|refused| JobFailure::<D>::Job(Box::new(refused.into())).into_failure())
 }
 
-/// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal it is replaced,
-/// as other tools do, and [`Replaces::report`] says so.
+/// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal it is
+/// replaced, as other tools do, and [`Replaces::report`] states so.
 pub(super) fn replaces(path: &Path, force: bool) -> Result<Replaces> {
     // A pipe or a device is written to, and has no content to replace.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());

@@ -13,12 +13,12 @@ pub(crate) struct Explained {
     pub(crate) shown: String,
     /// The frame as printed in JSON.
     pub(crate) compact: String,
-    /// The meaning, one line each; or why the bytes are not a frame.
+    /// Meaning in one string per line, or the reason why the bytes are not a frame.
     pub(crate) meaning: std::result::Result<Vec<String>, String>,
     pub(crate) more: Map<String, Json>,
 }
 
-/// Prints the meaning of frames. An invalid frame makes the command fail after all are printed.
+/// Prints the meaning of frames. An invalid frame makes the command fail after all frames have been printed.
 pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
     let mut list = Vec::new();
     let mut text = String::new();
@@ -55,7 +55,7 @@ pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
     Err(Failure::Failed(broken))
 }
 
-/// Parses hex bytes: arguments of three bytes or more are separate frames; shorter ones together are one frame.
+/// Parses hex bytes: arguments of three bytes or more are separate frames; shorter ones are combined into one.
 pub(crate) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;
     if parts.iter().all(Vec::is_empty) {

@@ -38,20 +38,20 @@ use crate::profile::Formats;
 /// The successful ends of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Done {
-    /// No differences and no error: status 0.
+    /// Status 0: no differences and no error.
     Well,
-    /// `diff` or `verify` found differences: status 3.
+    /// Status 3: `diff` or `verify` has found differences.
     Differs,
 }
 
 /// The reason why a command failed.
 #[derive(Debug)]
 pub enum Failure {
-    /// Wrong usage: status 2.
+    /// Status 2: incorrect usage.
     Usage(String),
-    /// Failure of the device or the operation: status 1. One to four lines.
+    /// Status 1: failure of the device or the operation, in one to four lines.
     Failed(Vec<String>),
-    /// The reader of the output has closed it: nothing more can be reported.
+    /// The reader of the output has closed it, so nothing more can be reported.
     NobodyReads,
 }
 
@@ -68,12 +68,11 @@ pub enum Invocation {
 pub struct Window {
     pub link: Option<LinkUrl>,
     pub profile: Option<PathBuf>,
-    /// The values of the options for kinds of device.
     pub given: Given,
 }
 
-/// Runs the command in the arguments of a process, the first of which is the program's name; without a command, the window
-/// is requested. `formats` are the readable profiles, and `commands` the kinds of device that have commands.
+/// Runs the command given by the arguments of a process, starting with the program name; without a command, requests
+/// the window. `formats` are the readable profiles, and `commands` the kinds of device with commands.
 pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands: Commands) -> Invocation {
     let arguments = match args::parse_arguments(words, commands) {
         Ok(arguments) => arguments,

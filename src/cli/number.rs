@@ -2,7 +2,7 @@
 
 use super::Failure;
 
-/// Parses a decimal number, or a hexadecimal one with `0x`; a sign may precede it.
+/// Parses a decimal number, or a hexadecimal one with `0x`; a sign may precede.
 pub(crate) fn parse_number(text: &str) -> Option<i64> {
     let (sign, digits) = match text.strip_prefix('-') {
         Some(digits) => (-1, digits),

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::{Commands, Failure};
 use crate::profile::Formats;
 
-/// The context of a command: destination of the output, formats of profiles, and the kinds of device.
+/// Context of a command: output destination, profile formats, and kinds of device.
 pub struct Output {
     json: bool,
     formats: Formats,
@@ -24,7 +24,7 @@ impl Lines {
         self
     }
 
-    /// Returns the lines, their values below each other.
+    /// Returns the lines with their values aligned.
     pub fn text(&self) -> String {
         let width = self.0.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
         self.0.iter().map(|(label, value)| format!("{label:width$}  {value}").trim_end().to_owned() + "\n").collect()
@@ -45,12 +45,11 @@ impl Output {
         self.formats
     }
 
-    /// Returns the kinds of device that there are commands for.
     pub(super) fn commands(&self) -> Commands {
         self.commands
     }
 
-    /// Prints a result in the form that was asked for.
+    /// Prints a result in the requested form.
     pub fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
         if self.json { self.print(&format!("{json}\n")) } else { self.print(&visible(text)) }
     }
@@ -64,7 +63,7 @@ impl Output {
         }
     }
 
-    /// Shows a result like [`show`](Self::show), after a write: the write has to be reported even if the output fails.
+    /// Prints a result like [`show`](Self::show) after a write, which must be reported even if the output fails.
     pub(super) fn show_written(&self, json: &Value, text: &str) -> Result<(), Failure> {
         self.show(json, text).map_err(|failure| match failure {
             Failure::Failed(lines) => {
@@ -75,19 +74,19 @@ impl Output {
         })
     }
 
-    /// Prints something that is not a result.
+    /// Prints a message that is not a result.
     pub fn remark(&self, text: &str) {
         say(&format!("{text}\n"));
     }
 }
 
-/// Returns a number with its noun: `1 data field`, `3 data fields`.
+/// Returns a number with its noun, such as `1 data field` or `3 data fields`.
 pub(crate) fn count(number: usize, noun: &str) -> String {
     let ending = if number == 1 { "" } else { "s" };
     format!("{number} {noun}{ending}")
 }
 
-/// Prints help unchanged, and an error in the arguments in at most four lines, the last of them the usage.
+/// Prints help unchanged, and an argument error in at most four lines, the last of which is the usage.
 pub(super) fn say_usage(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {
@@ -104,13 +103,14 @@ pub(super) fn say_usage(error: &clap::Error) {
     }
 }
 
-/// Writes to stderr. Errors of writing are ignored, as they cannot be reported anywhere.
+/// Writes to stderr, ignoring errors, since they cannot be reported anywhere.
 pub(crate) fn say(text: &str) {
     let mut err = io::stderr().lock();
     let _ = err.write_all(visible(text).as_bytes()).and_then(|()| err.flush());
 }
 
-/// Replaces control characters by visible ones: text from a file, a device or an argument must not control the terminal.
+/// Replaces control characters with visible ones, since text from a file, a device or an argument must not control the
+/// terminal.
 fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -119,7 +119,7 @@ fn visible(text: &str) -> String {
     shown
 }
 
-/// Prints warnings of the program itself to stderr; details are for the log file of the window.
+/// Prints warnings of the program itself to stderr; details are left to the log file of the window.
 pub(super) fn log_to_stderr() {
     let subscriber = tracing_subscriber::fmt()
         .with_writer(io::stderr)

@@ -10,16 +10,15 @@ use crate::profile::{Operation, Plan, Written};
 use crate::store::LogbookError;
 use crate::worker::Committed;
 
-/// A plan as text and as JSON.
 pub struct PlanReport {
     pub operations: Vec<Json>,
-    /// The plan as text, with its cost.
+    /// The plan with its cost as text.
     pub text: String,
     pub write_cycles: u64,
 }
 
 impl PlanReport {
-    /// Creates the report of a plan whose steps are the same in the text and in JSON.
+    /// Creates the report of a plan whose steps are identical in text and JSON.
     pub fn of<Base, Op: Operation>(
         plan: &Plan<Base, Op>,
         steps: Vec<PlanStep>,
@@ -40,7 +39,7 @@ pub struct PlanStep {
     pub item: String,
     pub old: Option<String>,
     pub new: Option<String>,
-    /// Zero for an operation that is saved together with others.
+    /// Number of write cycles; zero for an operation that is saved together with others.
     pub write_cycles: u64,
 }
 
@@ -62,8 +61,7 @@ pub fn lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     lines
 }
 
-/// Formats a plan as text: its lines, its cost in addition to the write cycles that this computer knows of, and the limit
-/// if there is one.
+/// Formats a plan: its lines, its cost in addition to the write cycles known to this computer, and the limit, if any.
 pub fn text<Base, Op: Operation>(
     plan: &Plan<Base, Op>,
     mut lines: Lines,
@@ -87,12 +85,12 @@ pub struct WriteSummary {
     pub written: u64,
     pub verified: u64,
     pub write_cycles: u64,
-    /// `None` if there was nothing to write.
+    /// Path of the backup, or `None` if there was nothing to write.
     pub backup: Option<PathBuf>,
 }
 
 impl WriteSummary {
-    /// Summarises a commit, and prints what the logbook could not record.
+    /// Summarises an executed plan, and prints what the logbook could not record.
     pub fn of(output: &Output, committed: Committed<Written>) -> Self {
         let Committed { written, backup, logbook_warning } = committed;
         warn(output, logbook_warning.as_ref());
@@ -101,7 +99,6 @@ impl WriteSummary {
     }
 }
 
-/// Prints what the logbook could not record.
 pub(crate) fn warn(output: &Output, warning: Option<&LogbookError>) {
     if let Some(why) = warning {
         output.remark(&explain::logbook(why).terminal());

@@ -7,7 +7,7 @@ use super::runner::{JobFailure, Runner, Runs};
 use super::{Done, Result};
 use crate::worker::EndedEarly as _;
 
-/// Runs `job` repeatedly and prints each result with `show`; a failed job ends it.
+/// Runs `job` repeatedly and prints each result with `show`; a failed job ends the loop.
 pub fn readings<D: Runs>(
     runner: &mut Runner<D>,
     position: &Position,
@@ -19,7 +19,7 @@ pub fn readings<D: Runs>(
     })
 }
 
-/// Runs `job` repeatedly and lets `show` print each result or error; `show` returns whether it printed a line.
+/// Runs `job` repeatedly and passes each result or error to `show`, which returns whether it printed a line.
 pub fn try_readings<D: Runs>(
     runner: &mut Runner<D>,
     position: &Position,

@@ -24,7 +24,7 @@ pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
     Ok(document.body)
 }
 
-/// Reads a profile that is to be written into a device: all its entries have to be known.
+/// Reads a profile that is to be written to a device, so its schema must be fully known.
 pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
     let document =
         read_document(output, path)?.known().map_err(|error| failed(&explain::profile(path, &error, Kinds::NONE)))?;
@@ -110,7 +110,7 @@ pub(crate) fn say_mounting_left(output: &Output, items: &[impl Display]) {
     }
 }
 
-/// Writes a plan that restores a profile, or shows it only.
+/// Writes the plan that restores a profile, or only shows it.
 pub fn write_restore(
     output: &Output,
     restore: &Restore,
@@ -168,16 +168,16 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
 
 /// Items that a restore leaves unchanged.
 pub struct Unrestored {
-    /// Number of items that already have the value of the profile.
+    /// Number of items that already have the value in the profile.
     pub unchanged: u64,
-    /// Items that only one side has.
+    /// Items that are present on one side only.
     pub missing: Vec<String>,
-    /// Values from another device that have to be set up again.
+    /// Values from another device that must be set up again.
     pub redo: Vec<String>,
 }
 
 impl Unrestored {
-    /// Prints which values have to be set up again.
+    /// Prints the values that must be set up again.
     fn warn(&self, output: &Output) {
         let items = self.redo.iter().map(explain::plain).collect();
         if let Some(text) = review::redo(items) {
@@ -186,7 +186,7 @@ impl Unrestored {
     }
 }
 
-/// Prints the plan of a restore without running it.
+/// Prints the plan of a restore without executing it.
 fn show_dry_run(output: &Output, plan: &PlanReport, left: &Unrestored) -> Result {
     let json = json!({
         "dry_run": true,
@@ -228,8 +228,7 @@ fn show_restored(output: &Output, spent: &WriteSummary, left: &Unrestored) -> Re
     Ok(Done::Well)
 }
 
-/// Prints the result of writing an item: `operations` are those that were carried out, `changes` their old and new values as
-/// text.
+/// Prints the result of writing an item: `operations` were carried out, `changes` describe old and new values.
 pub(crate) fn show_changed(
     output: &Output,
     item: &str,

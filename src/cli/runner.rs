@@ -22,16 +22,18 @@ use crate::link::{LinkError, LinkUrl, write_entry, write_header};
 use crate::store::Store;
 use crate::worker::{Device, Event, OpenError, Session, Worker};
 
-/// The functions that the command line needs of a device to run jobs on it.
+/// A device on which the command line can run jobs.
 pub trait Runs: Kind {
-    /// State of a session outside its thread.
+    /// Part of a session outside its thread.
     type Context;
-    /// Whether the line has one master, which may be a connected drive: `--only-master` confirms that there is none.
+    /// Whether the line allows a single master, which may be a connected drive: `--only-master` confirms that there is
+    /// none.
     const HAS_ONE_MASTER: bool = false;
     /// The command-line part of the kind.
     const COMMANDS: &'static dyn DeviceCommands;
 
-    /// Returns whether another master may be on the line of a link; the user is then asked before the first byte.
+    /// Returns whether another master may be on the line of a link. If so, the user is asked before the first byte is
+    /// sent.
     fn may_have_other_master(_url: &LinkUrl) -> bool {
         false
     }
@@ -39,10 +41,10 @@ pub trait Runs: Kind {
     /// Prepares a session, with the options of every command.
     fn begin(session: &mut Session<Self>, given: &Given) -> Self::Context;
 
-    /// Prints a message of the device at once; by default none is printed.
+    /// Prints a message of the device immediately; by default, nothing is printed.
     fn print_message(_remark: &Self::DeviceMessage) {}
 
-    /// Returns the text of a step, for the progress bar on a terminal.
+    /// Describes a step for the progress bar on a terminal.
     fn step(doing: &Self::JobStep) -> String;
 
     /// Returns a message about a step for the user at the terminal, printed when it changes.
@@ -50,7 +52,7 @@ pub trait Runs: Kind {
         None
     }
 
-    /// Returns how long replies take, if that is measured and the link has a time-out.
+    /// Returns the reply times, if they are measured and the link has a time-out.
     fn reply_pace(_session: &Session<Self>) -> Option<Pace> {
         None
     }
@@ -62,15 +64,13 @@ pub trait Runs: Kind {
     }
 }
 
-/// A session on its thread.
 pub struct Runner<D: Runs> {
     worker: Worker<D>,
-    /// Whether Ctrl-C was pressed: separate from the worker's cancellation, which applies to one job.
+    /// Whether Ctrl-C was pressed. Separate from the worker's cancellation flag, which applies to a single job.
     interrupted: Arc<AtomicBool>,
     patience: SlowReplyNotice,
-    /// Messages of the device during the last job.
     pub remarks: Vec<D::DeviceMessage>,
-    /// State of the session outside its thread.
+    /// Part of the session outside its thread.
     pub kept: D::Context,
 }
 
@@ -82,7 +82,8 @@ pub enum JobFailure<D: Runs> {
     Worker,
 }
 
-/// The longest time for leaving a state that must not remain: a drive in control, a supply that was switched on.
+/// Maximum time for leaving a state that must not remain, such as a drive under control or a supply that was switched
+/// on.
 const LEAVING: Duration = Duration::from_secs(4);
 
 impl<D: Runs> Drop for Runner<D> {
@@ -140,7 +141,7 @@ impl<D: Runs> Runner<D> {
         self.try_run(job).map_err(JobFailure::into_failure)
     }
 
-    /// Runs a job to its end and lets the caller check the error.
+    /// Runs a job to its end; the caller handles the error.
     pub(super) fn try_run(&mut self, job: D::Job) -> std::result::Result<D::Output, JobFailure<D>> {
         self.remarks.clear();
         let id = self.worker.submit(job).map_err(|_| JobFailure::Worker)?;
@@ -179,7 +180,7 @@ impl<D: Runs> Runner<D> {
         }
     }
 
-    /// Returns the next event; `None` if it is time for a check.
+    /// Returns the next event, or `None` when a check is due.
     fn next_event(&self) -> std::result::Result<Option<Event<D>>, JobFailure<D>> {
         let events = self.worker.events();
         let Some(left) = self.patience.left() else {
@@ -231,7 +232,7 @@ impl<D: Runs> JobFailure<D> {
     }
 }
 
-/// Returns at most four lines: if there are more sentences, all but the first and the last share one line.
+/// Returns at most four lines: if there are more sentences, all but the first and last share a line.
 fn lines(mut sentences: Vec<String>) -> Vec<String> {
     if sentences.len() > 4 {
         let last = sentences.split_off(sentences.len() - 1);
@@ -246,8 +247,8 @@ pub fn failed(text: &Text) -> Failure {
     Failure::Failed(vec![text.terminal()])
 }
 
-/// Destructures the result of a job: `result_of!(runner.run(job)?, Output::Saved(profile) => *profile)`. A result of
-/// another kind ends the function with an error.
+/// Extracts the result of a job: `result_of!(runner.run(job)?, Output::Saved(profile) => *profile)`. A result of
+/// another type ends the function with an error.
 #[macro_export]
 macro_rules! result_of {
     ($result:expr, $wanted:pat => $value:expr) => {
@@ -258,12 +259,13 @@ macro_rules! result_of {
     };
 }
 
-/// Returns the failure for a job with a result of another kind: a defect of this program, reported and not hidden.
+/// Returns the failure for a job result of an unexpected type, which is a defect of this program and is reported as
+/// such.
 pub fn unexpected(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }
 
-/// Asks whether a drive is on the line, if the program runs on a terminal and the user has not confirmed it yet.
+/// Asks whether a drive is on the line, if the program runs on a terminal and the user has not confirmed yet.
 fn ask_for_other_master(common: &Common) -> Result<()> {
     if common.only_master || !can_ask() {
         return Ok(());

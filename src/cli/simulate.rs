@@ -18,18 +18,18 @@ use crate::units::{Baud, CharacterFormat, Moment};
 
 /// Time to wait for bytes while the device is idle; also the latency of an interrupt.
 const PATIENCE: Duration = Duration::from_millis(20);
-/// A socket's own time-out has the resolution of the system tick: shorter waits are slept.
+/// Waiting time below which the thread sleeps, because socket time-outs only have the resolution of the system tick.
 const SHORT: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
 pub trait Simulated: ByteDevice {
-    /// Returns the line format at a moment; `None` if there is no serial line, or while the device does not receive.
+    /// Returns the line format at a moment, or `None` without a serial line or while the device does not receive.
     fn format(&self, _now: Moment) -> Option<CharacterFormat> {
         None
     }
 
-    /// Returns the same device for another simultaneous client at this address; `None` if the device has one line, so that
-    /// clients are served one after the other.
+    /// Returns a device for another simultaneous client at this address, or `None` if the device has a single line, so
+    /// that clients are served one after another.
     fn another(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         None
     }
@@ -103,8 +103,8 @@ impl Device {
         Some(Device { kind: self.kind, simulated, clock: self.clock.clone() })
     }
 
-    /// Serves one client until it disconnects or the program is interrupted. `baud` is the speed of the client's side, if
-    /// it can be read.
+    /// Serves a client until it disconnects or the program is interrupted. `baud` is the baud rate of the client's end,
+    /// if it can be read.
     fn serve(&mut self, client: &mut impl Client, ended: &AtomicBool) -> std::io::Result<()> {
         self.simulated.connect(self.clock.now());
         let mut buffer = [0; 512];
@@ -130,8 +130,8 @@ impl Device {
         Ok(())
     }
 
-    /// Parity cannot be read from this side, and over TCP not even the speed: there the client's format is assumed to be
-    /// right.
+    /// Follows the baud rate of the client. Parity cannot be read from this end, and over TCP not even the baud rate:
+    /// the client's format is then assumed to be correct.
     fn follow_format(&mut self, baud: Option<Baud>) {
         let now = self.clock.now();
         if let Some(own) = self.simulated.format(now) {
@@ -291,7 +291,7 @@ mod terminal {
         Ok(())
     }
 
-    /// A symbolic link that is removed at the end of this program.
+    /// A symbolic link that is removed when the program ends.
     struct Link {
         path: PathBuf,
         target: PathBuf,
@@ -327,7 +327,7 @@ mod terminal {
         }
     }
 
-    /// Returns whether no client has the other side open.
+    /// Returns whether no client has opened the other end.
     fn hung_up(master: &mut TTYPort) -> bool {
         let _ = master.set_timeout(Duration::ZERO);
         matches!(Read::read(master, &mut []), Err(error) if error.kind() != ErrorKind::TimedOut)

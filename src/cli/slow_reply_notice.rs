@@ -8,19 +8,19 @@ use crate::link::Replies;
 const WONDERS: Duration = Duration::from_secs(3);
 /// Interval between the following checks.
 const LOOKS: Duration = Duration::from_millis(500);
-/// A reply that takes as long is a slow one.
+/// Reply time from which a reply is considered slow.
 const SLOW: Duration = Duration::from_millis(100);
 
 /// The measured and the allowed reply time of a device.
 pub struct Pace {
     pub(crate) replies: Replies,
-    /// The allowed reply time, as `timeout=` in the link sets it.
+    /// Allowed reply time, as set by `timeout=` in the link.
     pub(crate) timeout: Duration,
     /// The longest `timeout=`.
     pub(crate) longest: Duration,
 }
 
-/// A monitor of a long command; it reports once that the command is slow.
+/// Monitor of a long command, which reports once that the command is slow.
 pub(super) struct SlowReplyNotice {
     pace: Option<Pace>,
     look: Instant,
@@ -32,12 +32,12 @@ impl SlowReplyNotice {
         SlowReplyNotice { pace, look: Instant::now() + WONDERS }
     }
 
-    /// Returns the time until the next check; `None` for no limit.
+    /// Returns the time until the next check, or `None` without a limit.
     pub(super) fn left(&self) -> Option<Duration> {
         self.pace.as_ref().map(|_| self.look.saturating_duration_since(Instant::now()))
     }
 
-    /// Returns the notice if it is due.
+    /// Returns the notice, if it is due.
     pub(super) fn words(&mut self) -> Option<String> {
         let now = Instant::now();
         let words = self.pace.as_ref().filter(|_| now >= self.look).and_then(Pace::words);

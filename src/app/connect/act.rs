@@ -103,7 +103,6 @@ impl Studio {
         }
     }
 
-    /// Handles the result of a task of a search.
     pub(in crate::app) fn finder_done(&mut self, tab: Tab, done: Payload) {
         let Some(kind) = self.services.world.kinds.of_tab(tab) else { return self.refuse_kind(None) };
         let forms = self.connect.as_mut().map(|connect| &mut connect.forms);
@@ -119,7 +118,7 @@ impl Studio {
         forms.iter().enumerate().find_map(|(at, (tab, form))| is_it(form.as_ref()).then_some((*tab, at)))
     }
 
-    /// Passes the rest of the studio to a form of the dialog, and carries out its requests.
+    /// Lends the rest of the studio to a form of the dialog, and executes the requests of the form.
     fn with_finder(&mut self, tab: Tab, place: usize, act: impl FnOnce(&mut dyn AnyForm, &mut FinderContext<'_>)) {
         let Some(mut connect) = self.connect.take() else { return };
         let link = connect.url();
@@ -136,7 +135,7 @@ impl Studio {
         }
     }
 
-    /// Lists the serial ports; those used before for this kind of device come first.
+    /// Lists the serial ports, starting with those used before for this kind of device.
     fn list_ports(&self) {
         if let Some(connect) = &self.connect {
             list_ports(&self.services, self.settings.links(connect.device));

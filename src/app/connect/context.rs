@@ -9,7 +9,7 @@ use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::link::LinkUrl;
 
-/// Resources that a search may use besides the connection form it belongs to.
+/// Resources that a search may use in addition to its connection form.
 pub struct FinderContext<'a> {
     studio: &'a mut Studio,
     tab: Tab,
@@ -42,21 +42,21 @@ impl<'a> FinderContext<'a> {
     /// Returns the link of the dialog.
     ///
     /// # Errors
-    /// A sentence that tells why it cannot be used.
+    /// Explains why the link cannot be used.
     pub fn link(&self) -> Result<LinkUrl, Text> {
         self.link.clone()
     }
 
-    /// Returns a number that no other search or session has.
+    /// Returns a number that is unique among searches and sessions.
     pub fn new_number(&mut self) -> u32 {
         self.studio.new_number()
     }
 
-    /// Releases the session on this connection, and a tool on it, unless the session writes: `why` is reported there. The
-    /// channel, if any, closes when the connection is free.
+    /// Releases the session and the tool on a connection, unless the session is writing; `why` is reported there. The
+    /// returned channel, if any, closes when the connection is free.
     ///
     /// # Errors
-    /// The session that writes.
+    /// Returns the session that is writing.
     pub fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         let earlier = self.studio.free_wire(url, why)?;
         self.studio.free_wire_of_tools(url);
@@ -74,7 +74,7 @@ impl<'a> FinderContext<'a> {
         self.problem = Some(problem);
     }
 
-    /// Closes the dialog and connects to a device that was found: other masters on its line were asked about before.
+    /// Closes the dialog and connects to a device found on a line that has already been checked for other masters.
     pub fn open_found(&mut self, url: LinkUrl) {
         self.found = Some(url);
     }

@@ -16,7 +16,7 @@ use crate::link::LinkUrl;
 
 /// A link to a kind of device, as form entries. Entries of other connection types are preserved.
 pub trait FormModel: Clone + PartialEq + Send + 'static {
-    /// The search for devices of the form; [`NoFinder`] for none.
+    /// Search for devices, or [`NoFinder`] if there is none.
     type Finder: Finder<Form = Self>;
 
     /// Returns the link to the virtual device, with which the form starts.
@@ -40,11 +40,11 @@ pub trait FormModel: Clone + PartialEq + Send + 'static {
 
 /// A search for devices, started from a connection form, on a serial line or in the network.
 pub trait Finder: Default + 'static {
-    /// The form that it fills in.
+    /// Form that the search fills in.
     type Form;
     /// The actions of the search.
     type Action: Any + Send;
-    /// The results of its tasks.
+    /// Results of the tasks of the search.
     type Done: Any + Send;
 
     /// Executes an action of the search.

@@ -32,11 +32,11 @@ pub enum ConnectAction {
     /// List the serial ports again.
     ListPorts,
     Device(Tab),
-    /// The form of a kind of device was edited; see [`ConnectAction::edit`].
+    /// The form of a kind of device has been edited; see [`ConnectAction::edit`].
     Edit(Payload),
     /// A request to the search for devices; see [`ConnectAction::find`].
     Find(Payload),
-    /// A link was typed, pasted or selected; if it is valid, it fills in the form.
+    /// A link was typed, pasted or selected; a valid one fills in the form.
     Use(String),
     AskRecording,
     Recording(PathBuf),
@@ -58,16 +58,16 @@ pub struct Connect {
     pub device: Tab,
     kinds: Kinds,
     forms: Vec<(Tab, Box<dyn AnyForm>)>,
-    /// The typed link, until the form is edited; `None`: the link is that of the form.
+    /// The typed link until the form is edited, or `None` if the link is that of the form.
     pub typed: Option<String>,
-    /// The ports of this computer; `None` while they are being listed.
+    /// Serial ports of this computer, or `None` while they are being listed.
     pub ports: Option<Result<Vec<Offer>, Text>>,
-    /// Why the last request was not carried out.
+    /// The reason why the last request was not carried out.
     pub problem: Option<Text>,
 }
 
 impl Connect {
-    /// Creates the dialog for a kind of device; `last` returns the link last used for a tab.
+    /// Creates the dialog for a kind of device; `last` returns the link last used in a tab.
     pub(super) fn new(kinds: Kinds, device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
         let forms = kinds.devices().iter().map(|kind| (kind.tab(), kind.form(last(kind.tab())))).collect();
         Connect { device, kinds, forms, typed: None, ports: None, problem: None }
@@ -89,10 +89,10 @@ impl Connect {
         self.forms.iter_mut().map(|(_, form)| form)
     }
 
-    /// Returns the typed link, else that of the form.
+    /// Returns the typed link, or else that of the form.
     ///
     /// # Errors
-    /// A sentence that names what is invalid and what would be allowed.
+    /// Names the invalid part and the allowed values.
     pub fn url(&self) -> Result<LinkUrl, Text> {
         match &self.typed {
             Some(link) => self.read(link),
@@ -106,7 +106,7 @@ impl Connect {
         target::checked(url, |url| self.kinds.of_tab(self.device).map_or(Ok(()), |kind| kind.check(url)))
     }
 
-    /// Takes a typed link; the form follows it if it is valid.
+    /// Adopts a typed link; a valid one fills in the form.
     pub(super) fn take(&mut self, link: String) {
         let (device, url) = (self.device, self.read(&link));
         if let (Ok(url), Some((_, form))) = (url, self.forms.iter_mut().find(|(tab, _)| *tab == device)) {
@@ -120,7 +120,7 @@ impl Connect {
         self.forms.iter().any(|(_, form)| form.is_running())
     }
 
-    /// Returns the link as text: as typed, else of the form; empty if the form has none.
+    /// Returns the link as typed, or else that of the form; empty if the form has none.
     pub fn link(&self) -> String {
         match &self.typed {
             Some(link) => link.clone(),
@@ -128,7 +128,6 @@ impl Connect {
         }
     }
 
-    /// Returns an example of a link to a device of the chosen kind.
     pub fn example(&self) -> &'static str {
         self.own().map(AnyForm::example).unwrap_or_default()
     }

@@ -7,20 +7,20 @@ use crate::app::{Text, explain};
 use crate::link::{LinkUrl, Query, Scheme};
 use crate::parameter::Entry;
 
-/// Parameter of a link with its value.
+/// Name and value of a link parameter.
 pub(crate) type Pair = (String, String);
 
-/// Returns the parameters of a link that have no entry; `take` fills an entry in and returns whether there was one.
+/// Returns the parameters of a link that have no form entry; `take` fills in an entry and returns whether there is one.
 pub(crate) fn without_entry(query: &Query, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
 
-/// The text of the entries of a form, by the keys of their parameters.
+/// Typed values of form entries by parameter name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Typed(BTreeMap<&'static str, String>);
 
 impl Typed {
-    /// Returns the text of a parameter; empty for the default.
+    /// Returns the typed value of a parameter; empty for the default.
     pub fn get(&self, key: &str) -> &str {
         self.0.get(key).map_or("", String::as_str)
     }
@@ -34,14 +34,14 @@ impl Typed {
         };
     }
 
-    /// Fills in the entry of a parameter; returns false if there is none.
+    /// Fills in an entry; returns `false` if there is none.
     pub(crate) fn take(&mut self, entries: &[Entry], name: &str, value: &str) -> bool {
         let entry = entries.iter().find(|entry| entry.key == name);
         entry.inspect(|entry| self.set(entry.key, value)).is_some()
     }
 }
 
-/// Parameters of a link from the entries of its form, in that order. Default values are left out.
+/// Link parameters derived from form entries, in that order. Default values are omitted.
 #[derive(Default)]
 pub(crate) struct Parameters(Vec<Pair>);
 
@@ -50,12 +50,12 @@ impl Parameters {
         self.0.push((name.to_owned(), value.to_owned()));
     }
 
-    /// Adds an entry to the text unless it is empty.
+    /// Adds an entry unless it is empty.
     pub(crate) fn entry(&mut self, name: &str, entry: &str) {
         self.0.extend(filled(entry).map(|value| (name.to_owned(), value)));
     }
 
-    /// Adds the text of these entries; a decimal comma becomes a point.
+    /// Adds typed entries, converting a decimal comma to a point.
     pub(crate) fn typed(&mut self, entries: &[Entry], typed: &Typed) {
         for entry in entries {
             match entry.is_decimal {
@@ -65,12 +65,12 @@ impl Parameters {
         }
     }
 
-    /// Adds a number: a German keyboard has a comma for the decimal point.
+    /// Adds a number, converting a decimal comma to a point.
     pub(crate) fn decimal(&mut self, name: &str, entry: &str) {
         self.entry(name, &entry.replace(',', "."));
     }
 
-    /// Adds the parameters without an entry; those of a virtual device alone only where the link leads to one.
+    /// Adds parameters without an entry; those of a virtual device only if the link leads to one.
     pub(crate) fn rest_of(&mut self, rest: &[Pair], is_virtual: bool, (link, of_the_virtual): (&[&str], &[&str])) {
         self.rest(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
     }
@@ -84,10 +84,10 @@ impl Parameters {
         }
     }
 
-    /// Returns the link with them.
+    /// Returns the link with these parameters.
     ///
     /// # Errors
-    /// A sentence if a character would end a part of the link, or the parts make no link.
+    /// Explains that a character would end a part of the link, or that the parts do not form a link.
     pub(crate) fn link(&self, (scheme, target): (Scheme, String)) -> Result<LinkUrl, Text> {
         let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
         let unfit = unfit(&target, &['?'])
@@ -106,7 +106,7 @@ impl Parameters {
 pub(crate) mod tests {
     use super::*;
 
-    /// Checks that each link fills a form that gives the same link; parameters may be in another order.
+    /// Checks that each link fills in a form that yields an equivalent link.
     pub(crate) fn assert_comes_back(links: &[&str], through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>) {
         let sorted = |url: &LinkUrl| {
             let mut pairs = url.query.pairs().to_vec();

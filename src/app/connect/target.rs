@@ -8,21 +8,20 @@ use crate::link::{LinkUrl, UrlError};
 use crate::sim::ConfigError;
 use crate::worker::OpenError;
 
-/// Returns an entry without the blanks around it.
+/// Returns an entry without surrounding blanks.
 ///
 /// # Errors
-/// `missing`, if it is empty.
+/// `missing`, if the entry is empty.
 pub(crate) fn entered(entry: &str, missing: &'static str) -> Result<String, Text> {
     let entry = entry.trim();
     if entry.is_empty() { Err(Text::new(missing)) } else { Ok(entry.to_owned()) }
 }
 
-/// Returns an entry unless it is empty.
 pub(crate) fn filled(entry: &str) -> Option<String> {
     Some(entry.trim().to_owned()).filter(|entry| !entry.is_empty())
 }
 
-/// Texts that ask for a missing entry.
+/// Messages about missing entries.
 const MISSING: [&str; 6] = [
     "form.port_missing",
     "form.host_missing",
@@ -40,13 +39,13 @@ pub fn is_missing(problem: &Text) -> bool {
 /// Returns the link if its kind of device accepts it.
 ///
 /// # Errors
-/// As [`refused`].
+/// As for [`refused`].
 pub(crate) fn checked(url: LinkUrl, check: impl FnOnce(&LinkUrl) -> Result<(), OpenError>) -> Result<LinkUrl, Text> {
     check(&url).map_err(|error| refused(&url, &error))?;
     Ok(url)
 }
 
-/// Returns why a link cannot be used, in the words of the entry that is wrong if there is one.
+/// Explains why a link cannot be used, in terms of the invalid entry, if any.
 pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     let (name, value, allowed) = match error {
         OpenError::Url(UrlError::Value { name, value, allowed })
@@ -68,15 +67,15 @@ pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     }
 }
 
-/// Returns the text for a link without any invalid entry that cannot be used.
+/// Returns the message for an unusable link without an invalid entry.
 pub(crate) fn other(why: Text) -> Text {
     Text::new("form.other").with_text("why", why)
 }
 
-/// Returns the host and port as a link takes them.
+/// Returns host and port in the format of a link.
 ///
 /// # Errors
-/// A sentence that names the invalid one.
+/// Names the invalid part.
 pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     let host = entered(host, "form.host_missing")?;
     let host = match host.parse::<Ipv6Addr>() {
@@ -93,30 +92,30 @@ pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     }
 }
 
-/// Returns the same, with the default for an empty port.
+/// Returns host and port in the format of a link; an empty port selects the default.
 ///
 /// # Errors
-/// As [`host_and_port`]; `missing`, if no host is entered.
+/// As for [`host_and_port`]; `missing`, if no host is entered.
 pub(crate) fn host_and_usual_port(host: &str, missing: &'static str, port: &str, usual: &str) -> Result<String, Text> {
     host_and_port(&entered(host, missing)?, filled(port).as_deref().unwrap_or(usual))
 }
 
-/// Splits a network address into host and port as in a link; an empty port if it has none.
+/// Splits a network address of a link into host and port; the port is empty if there is none.
 pub(crate) fn parted(place: &str) -> (String, String) {
     let (host, port) = place.rsplit_once(':').unwrap_or((place, ""));
     (host.to_owned(), port.to_owned())
 }
 
-/// Returns the same; the port is empty if it is the default.
+/// Splits a network address of a link into host and port; the port is empty if it is the default.
 pub(crate) fn parted_from_usual(place: &str, usual: &str) -> (String, String) {
     let (host, port) = parted(place);
     (host, Some(port).filter(|port| port != usual).unwrap_or_default())
 }
 
-/// Begins the target of a link to an adapter in the network.
+/// Prefix of the target for an adapter in the network.
 const TCP: &str = "tcp:";
 
-/// Returns the network address of an adapter; `None` for one at a serial port.
+/// Returns the network address of an adapter, or `None` for one at a serial port.
 pub(crate) fn adapter_in_network(target: &str) -> Option<&str> {
     target.strip_prefix(TCP)
 }

@@ -17,7 +17,7 @@ use crate::profile::Document;
 use crate::store::{Backup, DeviceKey, Entry, StatusEntry};
 
 impl AnyDevice {
-    /// Returns the device as its type; `None` if it is of another kind.
+    /// Returns the device as `M`, or `None` if it is of another kind.
     pub fn get<M: Any>(&self) -> Option<&M> {
         (self as &dyn Any).downcast_ref()
     }
@@ -31,7 +31,7 @@ impl AnyDevice {
         self.state().id
     }
 
-    /// Returns the name by which the log and the jobs call it.
+    /// Returns the name used in the log and the job list.
     pub fn name(&self) -> String {
         self.state().name()
     }
@@ -65,32 +65,32 @@ impl AnyDevice {
         &self.state().trace
     }
 
-    /// Returns whether this is the attempt to open its link that counts.
+    /// Returns whether this is the current attempt to open the link of the device.
     pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
         self.state().is_attempt(attempt)
     }
 
-    /// Returns the backups, or why there are none; `None`: not requested yet.
+    /// Returns the backups, or the reason why there are none; `None` if they have not been requested yet.
     pub fn backups(&self) -> Option<&Result<Vec<Backup>, Text>> {
         self.state().backups.as_ref()
     }
 
-    /// Returns the writes of this device in the logbook, or why it has none; `None`: not requested yet.
+    /// Returns the writes of this device in the logbook, or the reason why there are none; `None` if they have not been
+    /// requested yet.
     pub fn writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
         self.state().writes.as_ref()
     }
 
-    /// Status codes of this device that the logbook knows, the newest first.
+    /// Returns the status codes of this device in the logbook, newest first.
     pub fn statuses(&self) -> &[StatusEntry] {
         &self.state().statuses
     }
 
-    /// Returns whether values are written to it, and restored from a profile.
+    /// Returns whether values can be written to the device and restored from a profile.
     pub fn has_memory(&self) -> bool {
         self.memory().is_some()
     }
 
-    /// Returns whether it can be compared with a profile.
     pub fn is_comparable(&self) -> bool {
         !matches!(self.phase(), Phase::Opening)
     }
@@ -100,7 +100,6 @@ impl AnyDevice {
         self.memory().is_some_and(DeviceMemory::is_reviewing)
     }
 
-    /// Returns the review of a write, if there is one.
     pub fn sheet(&self) -> Option<ReviewSheet> {
         self.memory()?.sheet()
     }
@@ -144,7 +143,7 @@ impl AnyDevice {
         self.state().suggested_file()
     }
 
-    /// Notes that a save has led to a question: another one may begin.
+    /// Marks that a save has led to a question, so that another one may begin.
     pub(in crate::app) fn save_waits(&mut self) {
         self.state_mut().is_saving = false;
     }

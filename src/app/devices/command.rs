@@ -20,9 +20,9 @@ pub enum DeviceCommand {
     Poll(Option<Duration>),
     /// Read the position once.
     ReadPosition,
-    /// Take the last edit back.
+    /// Undo the last edit.
     Undo,
-    /// Do it again.
+    /// Redo the last undone edit.
     Redo,
     RevertAll,
     Restore(PathBuf),
@@ -34,7 +34,7 @@ pub enum DeviceCommand {
 }
 
 impl AnyDevice {
-    /// Returns the action by which this device is asked.
+    /// Returns the action that sends a command to this device.
     pub fn command(&self, command: DeviceCommand) -> Action {
         Action::Command(self.id(), command)
     }

@@ -25,16 +25,16 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Entry for the list of kinds.
     const KIND: &'static dyn DeviceKind = &KindOf::<Self>(PhantomData);
 
-    /// Name of its bus, the same in every language.
+    /// Name of the bus, which is the same in every language.
     const BUS: &'static str;
 
     /// Profile in which a device of this kind is saved.
     type Profile: Profile;
 
-    /// Type of its form in the connection dialog.
+    /// Type of the form in the connection dialog.
     type Form: FormModel;
 
-    /// Tables required to read its profiles, besides their text.
+    /// Tables required to read profiles of this kind, in addition to the file.
     type Tables: Send + 'static;
 
     /// Checks whether a link can lead to a device of this kind, as far as possible without opening it.

@@ -24,13 +24,13 @@ type Job<T> = <<T as HasSession>::Device as worker::Device>::Job;
 
 /// State of a device or a profile, with all data known about it.
 pub trait DeviceModel: SessionEvents + Drafted + 'static {
-    /// The tab that shows it.
+    /// Tab in which the device is shown.
     const TAB: Tab;
 
-    /// The actions of this kind alone.
+    /// Actions specific to this kind of device.
     type Action: DeviceAction;
 
-    /// The results of its own tasks.
+    /// Results of the tasks that a device starts.
     type Done: Any + Send;
 
     /// Returns the preparation of a session before it moves to its thread.
@@ -214,13 +214,12 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     }
 }
 
-/// Prepares a session before it goes to its thread.
+/// Preparation of a session before it moves to its thread.
 pub(crate) type Prepare<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
 
 /// Resources that an action may use in addition to the device.
 pub struct ActContext<'a> {
     pub(crate) services: &'a mut Services,
-    /// The other devices that are open.
     others: &'a [Box<AnyDevice>],
     next: Vec<DeviceCommand>,
 }
@@ -230,7 +229,7 @@ impl<'a> ActContext<'a> {
         ActContext { services, others, next: Vec::new() }
     }
 
-    /// Asks the same device for something more, once the action is done.
+    /// Sends a further command to the same device once the action is done.
     pub(crate) fn then(&mut self, command: DeviceCommand) {
         self.next.push(command);
     }
@@ -239,10 +238,10 @@ impl<'a> ActContext<'a> {
         self.next
     }
 
-    /// Returns the profile as edited in another session; `None` if there is none.
+    /// Returns the profile as edited in another session, if there is one.
     ///
     /// # Errors
-    /// The refusal of a read-only profile.
+    /// The profile is read-only.
     pub(crate) fn profile_of(&self, id: SessionId) -> Result<Option<Body>, Text> {
         let Some(other) = self.others.iter().find(|other| other.id() == id) else { return Ok(None) };
         only_looked_at(other.source()).map_or_else(|| Ok(other.wanted_body()), Err)

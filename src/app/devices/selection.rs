@@ -19,7 +19,7 @@ impl Selection {
         self.by_tab.get(&tab).copied()
     }
 
-    /// Returns the device that was shown last, in whichever tab.
+    /// Returns the device shown last in any tab.
     pub(in crate::app) fn last(&self) -> Option<SessionId> {
         self.last
     }
@@ -29,8 +29,8 @@ impl Selection {
         self.last = Some(id);
     }
 
-    /// Removes a device; `left` are the others. Its tab shows the one opened last; the device shown last becomes that of
-    /// the last tab.
+    /// Removes a device; `left` are the remaining ones. Its tab then shows the device opened last; the device shown
+    /// last becomes that of the last tab.
     pub(in crate::app) fn remove(&mut self, kinds: Kinds, left: &[Box<AnyDevice>], id: SessionId) {
         for (tab, shown) in &mut self.by_tab {
             if *shown == id

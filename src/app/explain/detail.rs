@@ -12,7 +12,7 @@ use crate::profile::{ProfileError, SyntaxProblem};
 use crate::sim::{ConfigError, FaultError, VirtualDevice};
 use crate::store::{LogbookError, LogbookProblem};
 
-/// Returns the text for a text that is no link, or a parameter that it does not take.
+/// Explains why a string is not a valid link, or why the link does not accept a parameter.
 pub fn url(error: &UrlError) -> Text {
     match error {
         UrlError::Scheme(text) => Text::new("url.no_link").with("text", format!("{text:?}")),
@@ -38,7 +38,7 @@ pub fn url(error: &UrlError) -> Text {
     }
 }
 
-/// Returns the text for a setting that a virtual device does not take.
+/// Explains why a virtual device does not accept a setting.
 pub fn setting(error: &ConfigError) -> Text {
     match error {
         ConfigError::Key { device, key, known } => {
@@ -61,7 +61,7 @@ pub fn setting(error: &ConfigError) -> Text {
     }
 }
 
-/// Returns the text for a text that is not a profile. `kinds` know why one of them refuses a value.
+/// Explains why a file is not a valid profile. `kinds` supplies the explanations of devices that refuse a value.
 pub fn document(error: &ProfileError, kinds: Kinds) -> Text {
     match error {
         ProfileError::Syntax { line, column, what } => syntax(*line, *column, syntax_problem(what)),
@@ -93,7 +93,7 @@ fn syntax_problem(problem: &SyntaxProblem) -> Text {
     }
 }
 
-/// Digits that are no bytes.
+/// Explains why digits are not valid bytes.
 fn hex(error: &HexError) -> Text {
     match error {
         HexError::Digit(digit) => Text::new("detail.hex_digit").with("digit", format!("{digit:?}")),
@@ -111,7 +111,7 @@ pub fn recording(error: &TraceFileError) -> Text {
     }
 }
 
-/// Returns the text for a logbook that cannot be used.
+/// Explains why the logbook cannot be used.
 pub fn logbook_problem(error: &LogbookError) -> Text {
     let problem = match &error.problem {
         LogbookProblem::Folder(error) => file(error),
@@ -127,7 +127,7 @@ pub fn logbook_problem(error: &LogbookError) -> Text {
     Text::new("detail.logbook").with("path", error.path.display()).with_text("problem", problem)
 }
 
-/// Returns the text of a place in a file, with the error there.
+/// Describes a syntax error and its location in a file.
 pub(crate) fn syntax(line: usize, column: usize, what: Text) -> Text {
     Text::new("detail.syntax").with("line", line).with("column", column).with_text("what", what)
 }

@@ -44,7 +44,7 @@ pub fn link(error: &LinkError) -> Text {
     }
 }
 
-/// Returns the text for a link that cannot be opened.
+/// Explains why a link cannot be opened.
 pub fn open(error: &OpenError) -> Text {
     match error {
         OpenError::Url(why) => Text::new("link.url").with_text("why", url(why)),
@@ -58,8 +58,8 @@ pub fn open(error: &OpenError) -> Text {
     }
 }
 
-/// Returns the text for a link that could not be opened, or had no thread to run on; `open` gives the kind's text for the
-/// former.
+/// Explains why a link could not be opened, including that no thread could be started; `open` supplies the explanation
+/// of the kind.
 pub fn open_failed(failed: &OpenFailed, open: impl Fn(&OpenError) -> Text) -> Text {
     match failed {
         OpenFailed::Link(error) => open(error),
@@ -87,7 +87,7 @@ pub fn file(error: &FileError) -> Text {
     }
 }
 
-/// Returns the text for the program's folders. A device's texts about its own files are used where they are read.
+/// Explains an error of the program's folders. Errors of device-specific files are explained where these are read.
 pub fn store(error: &StoreError) -> Text {
     match error {
         StoreError::NoHome => Text::new("store.no_home"),
@@ -97,8 +97,8 @@ pub fn store(error: &StoreError) -> Text {
     }
 }
 
-/// Returns the text for a profile in a file. `kinds` know why one of them refuses it; the command line, which is in
-/// English, needs none.
+/// Explains why a profile cannot be read. `kinds` supplies the explanations of devices; the command line, which is in
+/// English, requires none.
 pub fn profile(path: &Path, error: &ProfileError, kinds: Kinds) -> Text {
     let path = path.display();
     match error {
@@ -115,7 +115,7 @@ pub fn profile(path: &Path, error: &ProfileError, kinds: Kinds) -> Text {
     }
 }
 
-/// Returns remarks about an opened profile: a newer schema, or entries that the schema does not have.
+/// Returns notes about an opened profile: a newer schema, or entries that the schema does not define.
 pub fn profile_remarks(path: &Path, document: &Document) -> Vec<Text> {
     if document.is_newer() {
         return vec![newer_profile(path, document)];
@@ -125,7 +125,7 @@ pub fn profile_remarks(path: &Path, document: &Document) -> Vec<Text> {
     if document.beyond.is_empty() { Vec::new() } else { vec![beyond()] }
 }
 
-/// Returns the text for a profile of a newer schema, with its unknown content.
+/// Describes a profile with a newer schema and its unknown content.
 pub fn newer_profile(path: &Path, document: &Document) -> Text {
     let id = if document.beyond.is_empty() { "profile.newer" } else { "profile.newer_entries" };
     Text::new(id)
@@ -147,7 +147,7 @@ pub fn not_begun(why: &NotBegun) -> Text {
     }
 }
 
-/// Returns what the logbook could not record.
+/// Describes what the logbook could not record.
 pub fn logbook(why: &LogbookError) -> Text {
     Text::new("write.logbook").with_text("why", logbook_problem(why))
 }
@@ -160,7 +160,7 @@ pub fn parity(parity: Parity) -> Text {
     })
 }
 
-/// Returns a text that is the same in every language: a name, a number, bytes.
+/// Returns a text that is the same in every language, such as a name, a number or bytes.
 pub fn plain(words: impl ToString) -> Text {
     Text::new("plain.words").with("words", words)
 }

@@ -16,7 +16,7 @@ use crate::app::number::decimals;
 use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
 
-/// Returns the text for a file that could not be read as a capture.
+/// Explains why a file could not be read as a capture.
 pub fn read(path: &Path, error: &ReadCaptureError) -> Text {
     match error {
         ReadCaptureError::File(error) => file(error),
@@ -55,7 +55,7 @@ fn capture(path: &Path, error: &CaptureError) -> Text {
     }
 }
 
-/// Returns the text for samples that cannot be analysed; `path` is their file.
+/// Explains why samples cannot be analysed; `path` is their file.
 pub fn analysis(path: &Path, error: &AnalysisError) -> Text {
     let text = |id| Text::new(id).with("path", path.display());
     match error {
@@ -82,7 +82,7 @@ fn fit(path: &Path, error: &FitError) -> Text {
     }
 }
 
-/// Returns why there is no spectrum.
+/// Explains why there is no spectrum.
 pub fn spectrum(error: &SpectrumError) -> Text {
     match error {
         SpectrumError::TooFew { samples: 0 } => Text::new("spectrum.no_times"),
@@ -92,7 +92,7 @@ pub fn spectrum(error: &SpectrumError) -> Text {
     }
 }
 
-/// Returns why a reference gives no deviation over the revolution.
+/// Explains why a reference yields no deviation over the revolution.
 pub fn revolution(error: &RevolutionError) -> Text {
     match error {
         RevolutionError::Periods { found, given } => {
@@ -106,7 +106,7 @@ pub fn revolution(error: &RevolutionError) -> Text {
     }
 }
 
-/// Returns the text of a finding in a signal.
+/// Describes a finding in a signal.
 pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
     let of = |id, which: Channel| {
         Text::new(id).with_text(
@@ -213,7 +213,7 @@ fn changed(id: &'static str, from: f64, to: f64, decimals: usize) -> Text {
     Text::new(id).with_number("from", from, decimals).with_number("to", to, decimals)
 }
 
-/// Returns the text of a parameter of a signal that is out of its limits.
+/// Describes a signal parameter that is outside its limits.
 pub fn finding(finding: &Parameter) -> Text {
     let percent = |id, share: f64| Text::new(id).with_number("percent", share * 100.0, 1);
     match *finding {
@@ -256,7 +256,7 @@ pub fn quantity(quantity: Quantity) -> Text {
     })
 }
 
-/// Returns the text for a setting of the virtual source that is out of range.
+/// Explains why a setting of the virtual source is out of range.
 pub fn setting(error: &SettingError) -> Text {
     let SettingError { quantity: of, value, least, most } = *error;
     let id = if of == Quantity::Periods { "source.not_whole_in_range" } else { "source.out_of_range" };

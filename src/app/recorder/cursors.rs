@@ -5,7 +5,6 @@ use super::{Recorder, Series};
 use crate::analysis::Time;
 use crate::analysis::history::Sample;
 
-/// One of the two cursors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Cursor {
     /// The first.
@@ -25,13 +24,13 @@ impl Cursor {
     }
 }
 
-/// Readings of the cursors on a line, in its unit. `None` without a valid sample.
+/// Readings of the cursors on a line, in its unit; `None` without a valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     pub a: Option<f64>,
     pub b: Option<f64>,
     pub difference: Option<f64>,
-    /// Mean, least, greatest value and standard deviation of the samples from one cursor to the other, both included.
+    /// Mean, minimum, maximum and standard deviation of the samples between the cursors, including both.
     pub between: Option<CursorStatistics>,
 }
 
@@ -62,7 +61,7 @@ impl Recorder {
         Some(self.cursor(Cursor::B)?.nanoseconds_since(self.cursor(Cursor::A)?))
     }
 
-    /// Returns the readings of the cursors on a line; `None` without a cursor.
+    /// Returns the readings of the cursors on a line, or `None` without a cursor.
     pub fn measure(&self, line: &Series) -> Option<Measured> {
         let [a, b] = self.cursors;
         if a.is_none() && b.is_none() {
@@ -97,9 +96,9 @@ impl Recorder {
         })
     }
 
-    /// Returns the raw sample of a line at a point in time: the nearest, if it was recorded then.
+    /// Returns the raw sample of a line nearest to a point in time, if it was recorded then.
     pub fn at(&self, line: &Series, time: Time) -> Option<Sample> {
-        /// Fraction (as divisor) of the visible range by which a cursor may be outside the first or the last sample.
+        /// Divisor of the visible range by which a cursor may be outside the first or last sample.
         const BESIDE: i64 = 200;
         let history = self.history(line)?;
         let all = history.all();
@@ -108,8 +107,8 @@ impl Recorder {
         (time >= first.plus(-beside) && time <= last.plus(beside)).then(|| self.nearest(line, time)).flatten()
     }
 
-    /// Puts a cursor on the nearest sample, so that times and values belong together; where nothing was recorded, it stays
-    /// at the given time.
+    /// Moves a cursor to the nearest sample, so that time and value belong together; where nothing was recorded, it
+    /// stays at the given time.
     pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<Time>) {
         let nearest = |time: Time| {
             let samples = self.visible_series().filter_map(|line| self.at(line, time)).map(|sample| sample.time);

@@ -17,7 +17,7 @@ use crate::store::{FileError, write_by};
 const ROWS: usize = 16_384;
 const WAITING: usize = 2;
 
-/// Table being written. If it is dropped before everything is passed on, nothing is written.
+/// A table being written. If it is dropped before everything has been passed on, no file is written.
 #[derive(Debug)]
 pub struct Export {
     pub path: PathBuf,
@@ -30,7 +30,7 @@ pub struct Export {
     heads: Vec<Head>,
     columns: Vec<Column>,
     lost: u64,
-    /// Everything recorded until then is included; `None`: only the visible part.
+    /// End of the recorded range to include, or `None` for the visible part only.
     until: Option<Time>,
 }
 
@@ -49,7 +49,7 @@ impl ExportNumber {
 pub struct Exported {
     pub(in crate::app) number: ExportNumber,
     pub path: PathBuf,
-    /// Rows in it; `None`: it was cancelled, and there is none.
+    /// Number of rows written, or `None` if the export was cancelled and there is no file.
     pub rows: Result<Option<u64>, FileError>,
 }
 
@@ -71,29 +71,29 @@ struct Column {
     derived: bool,
 }
 
-/// A portion of the samples that are handed over.
+/// A portion of the samples passed on.
 #[derive(Debug)]
 enum Portion {
     Rows(Rows),
-    /// The end: without it the table is incomplete.
+    /// End of the samples; without it the table is incomplete.
     End,
 }
 
-/// Part of the table: for each row a time and one cell per column.
+/// A part of the table: for each row a time and one cell per column.
 #[derive(Debug, Default)]
 struct Rows {
     times: Vec<Time>,
     cells: Vec<Cell>,
 }
 
-/// Cell: empty if the line has no sample at that time, or an invalid one.
+/// A cell, empty if the line has no sample at that time; the sample may be invalid.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     value: Option<f64>,
     flags: Flags,
 }
 
-/// The part that runs on a thread: writes the table as its rows arrive.
+/// The part that runs on a thread and writes the table as its rows arrive.
 pub(in crate::app) struct Writing {
     path: PathBuf,
     number: ExportNumber,
@@ -105,7 +105,7 @@ pub(in crate::app) struct Writing {
 }
 
 impl Export {
-    /// Returns the rows written and those to be written, approximately.
+    /// Returns the approximate number of rows written and to be written.
     pub fn progress(&self) -> (u64, u64) {
         (self.written.load(Ordering::Relaxed).min(self.total), self.total)
     }
@@ -125,9 +125,9 @@ impl Recorder {
         self.export.as_ref()
     }
 
-    /// Begins to write a table of the displayed lines: of the visible part, or of everything recorded. Returns the part to
-    /// run on a thread; [`feed_export`](Self::feed_export) passes the rows on. `None`: there is nothing to write, or a
-    /// table is being written.
+    /// Begins to write a table of the displayed lines: of the visible part, or of everything recorded. Returns the part
+    /// to run on a thread; [`feed_export`](Self::feed_export) passes the rows on. Returns `None` if there is nothing to
+    /// write, or a table is already being written.
     pub(in crate::app) fn begin_export(&mut self, path: &Path, visible: bool) -> Option<Writing> {
         if self.export.is_some() {
             return None;
@@ -185,7 +185,7 @@ impl Recorder {
         Some(writing)
     }
 
-    /// Hands over some rows, as many as fit between two pictures, and waits for nothing.
+    /// Passes on as many rows as fit between two frames, without blocking.
     pub(in crate::app) fn feed_export(&mut self) {
         let Some(mut export) = self.export.take() else { return };
         if let Some(sender) = export.sender.clone() {
@@ -205,7 +205,7 @@ impl Recorder {
         self.export = Some(export);
     }
 
-    /// Notes that the thread has ended. Returns the number of samples that were lost; `None` for an earlier table.
+    /// Handles the end of the thread; returns the number of lost samples, or `None` for an earlier table.
     pub(in crate::app) fn end_export(&mut self, number: ExportNumber, written: bool) -> Option<u64> {
         let export = self.export.take_if(|export| export.number == number)?;
         if written && export.until.is_some() {
@@ -220,7 +220,7 @@ impl Recorder {
         last.nanoseconds_since(self.saved.map_or(first, |saved| saved.max(first)))
     }
 
-    /// Returns the next rows: the samples of all groups in the order of time, those of the same time in one row.
+    /// Returns the next rows: the samples of all groups in time order, those of the same time in one row.
     fn portion(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Portion {
         // In the order of the heads; a removed group no longer has samples.
         let histories: Vec<Option<&History>> =
@@ -261,7 +261,7 @@ fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) ->
     Cell { value, flags }
 }
 
-/// Returns the name and unit as a column of a table has them, which do not depend on the window's language.
+/// Returns the column heading with name and unit, which do not depend on the window language.
 fn heading(line: &Series) -> String {
     match line.scale() {
         Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal()),
@@ -286,7 +286,7 @@ impl Writing {
         Exported { number: self.number, path: self.path, rows }
     }
 
-    /// Returns false if it was cancelled.
+    /// Writes the table; returns `false` if it was cancelled.
     fn write(&self, file: &mut dyn Write, wake: &dyn Fn()) -> io::Result<bool> {
         let mut text = String::from(if self.counts { "sample" } else { "time [s]" });
         for heading in &self.headings {

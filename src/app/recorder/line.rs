@@ -4,7 +4,6 @@ use super::GroupId;
 use crate::analysis::history::{Sample, Value};
 use crate::app::Text;
 
-/// Number of a line in its recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LineId(pub(super) u32);
 
@@ -12,14 +11,14 @@ pub struct LineId(pub(super) u32);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     pub unit: Text,
-    /// Size of one unit of the samples in this unit; not zero.
+    /// Size of this unit in units of the samples; not zero.
     pub factor: f64,
-    /// Decimals that make sense.
+    /// Useful number of decimals.
     pub decimals: usize,
 }
 
 impl Scale {
-    /// Creates a unit of which one of the samples' own unit is `factor`.
+    /// Creates a unit that equals `factor` units of the samples.
     pub fn new(unit: &'static str, factor: f64, decimals: usize) -> Self {
         Scale { unit: Text::new(unit), factor, decimals }
     }
@@ -30,18 +29,18 @@ impl Scale {
 pub struct Series {
     pub id: LineId,
     pub name: Text,
-    /// Its name as a column of a table.
+    /// Column heading in a table.
     pub heading: String,
-    /// The colour, one of eight; further lines start again.
+    /// Index of the colour, one of eight; further lines start again.
     pub colour: usize,
     pub shown: bool,
-    /// The displayed range of values, in the line's unit; `None`: fits the visible samples.
+    /// Displayed range of values in the unit of the line, or `None` to fit the visible samples.
     pub range: Option<(f64, f64)>,
-    /// Nothing more is added to it; it stays for its recorded samples.
+    /// Whether the line has ended and only keeps its recorded samples.
     pub ended: bool,
-    /// Its values are calculated from another line: a missing one is no fault of the device.
+    /// Whether the values are calculated from another line, so that a missing one is not a fault of the device.
     pub derived: bool,
-    /// The present remark: why there are no samples.
+    /// Present remark explaining why there are no samples.
     pub remark: Option<Text>,
     pub(super) group: GroupId,
     pub(super) column: usize,
@@ -50,7 +49,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// Creates a line from a column of a group; the first of the scales, at least one, is displayed.
+    /// Creates a line from a column of a group; the first of at least one scale is displayed.
     pub fn of(group: GroupId, column: usize, name: Text, heading: impl Into<String>, scales: Vec<Scale>) -> Self {
         Series {
             id: LineId::default(),
@@ -87,7 +86,7 @@ impl Series {
         &self.scales
     }
 
-    /// Returns the index of the scale that is shown.
+    /// Returns the index of the displayed scale.
     pub fn scale_number(&self) -> usize {
         self.scale
     }
@@ -96,22 +95,22 @@ impl Series {
         self.scales.get(self.scale)
     }
 
-    /// Returns the unit that the user has chosen; `None` for the default.
+    /// Returns the unit chosen by the user, or `None` for the default.
     pub(super) fn chosen(&self) -> Option<Text> {
         self.scale().filter(|_| self.scale > 0).map(|scale| scale.unit.clone())
     }
 
-    /// Shows this unit; the default if there is no such.
+    /// Displays the given unit, or the default if there is no such unit.
     pub(super) fn choose(&mut self, unit: Option<&Text>) {
         self.scale = self.scales.iter().position(|scale| Some(&scale.unit) == unit).unwrap_or_default();
     }
 
-    /// Returns the size of one unit of the samples in the shown unit.
+    /// Returns the size of the displayed unit in units of the samples.
     pub fn factor(&self) -> f64 {
         self.scale().map_or(1.0, |scale| scale.factor)
     }
 
-    /// Decimals that make sense in the shown unit.
+    /// Returns the useful number of decimals in the displayed unit.
     pub fn decimals(&self) -> usize {
         self.scale().map_or(0, |scale| scale.decimals)
     }
@@ -121,7 +120,7 @@ impl Series {
         sample.value.to_f64() * self.factor()
     }
 
-    /// Returns `later` minus `earlier` in the unit shown: counts are subtracted before they are rounded.
+    /// Returns `later` minus `earlier` in the displayed unit; counts are subtracted before rounding.
     pub fn difference(&self, earlier: &Sample, later: &Sample) -> f64 {
         let difference = match (earlier.value, later.value) {
             (Value::Whole(earlier), Value::Whole(later)) => (i128::from(later) - i128::from(earlier)) as f64,

@@ -24,7 +24,7 @@ impl When {
     }
 }
 
-/// A trigger: its condition, and the range shown around it.
+/// A trigger: its condition, and the range displayed around the event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigger {
     pub line: LineId,
@@ -32,19 +32,19 @@ pub struct Trigger {
     pub level: f64,
     /// Share of the view before the event, 0 to 1.
     pub before: f64,
-    /// After each view wait again; otherwise hold it.
+    /// Whether to wait again after each view instead of holding it.
     pub repeat: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TriggerState {
-    /// It waits.
+    /// Waiting for the event.
     Armed,
-    /// The event was at this time, and later samples are still being recorded.
+    /// The event occurred at this time, and later samples are still being recorded.
     Fired(Time),
-    /// The event was at this time, and the view is complete.
+    /// The event occurred at this time, and the view is complete.
     Held(Time),
-    /// The event did not occur in a recording that is complete.
+    /// The event did not occur in a complete recording.
     Missed,
 }
 
@@ -55,7 +55,7 @@ pub(super) struct Watch {
     when: When,
     level: f64,
     state: TriggerState,
-    /// The last valid value, for an edge; none after a break.
+    /// Last valid value, required to detect an edge; `None` after a break.
     last: Option<f64>,
     /// Nanoseconds of the picture.
     span: i64,
@@ -76,7 +76,7 @@ impl Watch {
         (from, from.plus(self.span))
     }
 
-    /// Checks the next sample. Returns true if the event is there.
+    /// Checks the next sample; returns whether the event has occurred.
     fn is_it(&mut self, sample: &Sample) -> bool {
         let bad = sample.flags.contains(Flags::BAD);
         let value = Some(sample.value.to_f64()).filter(|value| !bad && value.is_finite());
@@ -142,7 +142,7 @@ impl Recorder {
         }
     }
 
-    /// Returns whether a held picture would lose samples if more were added to this group.
+    /// Returns whether adding samples to a group would remove some from a held view.
     pub(super) fn would_lose_picture(&self, group: GroupId, more: usize) -> bool {
         let Some(watch) = self.watch else { return false };
         let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };

@@ -8,10 +8,10 @@ const SHORTEST: i64 = 100;
 /// Maximum length of a view in nanoseconds: a hundred days.
 const LONGEST: i64 = 100 * 86_400 * 1_000_000_000;
 
-/// The range of time that is shown.
+/// The displayed time range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeWindow {
-    /// The newest samples, over this many nanoseconds.
+    /// The newest samples over this many nanoseconds.
     Follow {
         /// Nanoseconds, at least 1.
         span: i64,
@@ -37,7 +37,7 @@ impl Recorder {
         matches!(self.view, TimeWindow::Follow { .. })
     }
 
-    /// Returns the displayed range of time. While there are fewer samples, it begins with the first one.
+    /// Returns the displayed time range. While there are fewer samples, it begins with the first one.
     pub fn window(&self) -> (Time, Time) {
         match self.view {
             TimeWindow::Fixed { from, to } => (from, to),
@@ -49,7 +49,6 @@ impl Recorder {
         }
     }
 
-    /// Nanoseconds that are shown.
     pub fn span(&self) -> i64 {
         let (from, to) = self.window();
         to.nanoseconds_since(from).max(1)
@@ -88,7 +87,7 @@ impl Recorder {
         };
     }
 
-    /// Zooms about a time. While it follows, the newest sample stays in place.
+    /// Zooms around a time. In follow mode the newest sample stays in place.
     pub(super) fn zoom(&mut self, about: Time, factor: f64) {
         if !factor.is_finite() || factor <= 0.0 {
             return;

@@ -2,7 +2,7 @@
 
 use crate::profile::RestoreOptions;
 
-/// A permit that the user may give for a write.
+/// A permit that the user may grant for a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Permit {
     OtherDevice,
@@ -10,11 +10,11 @@ pub enum Permit {
     Mounting,
     /// Delete and create fields again.
     Recreate,
-    /// Copy the bytes of unknown meaning of this data field to another device.
+    /// Copy bytes of unknown meaning in this data field to another device.
     Copy(u8),
 }
 
-/// Something that the user may allow beyond the usual, and that makes another plan.
+/// A permit that results in another plan, and whether it is granted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Toggle {
     pub permit: Permit,
@@ -22,7 +22,7 @@ pub struct Toggle {
 }
 
 impl Permit {
-    /// All permissions in display order, except those of single fields.
+    /// All permits in display order, except those of single fields.
     pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::OtherType, Permit::Mounting, Permit::Recreate];
 
     pub const fn word(self) -> &'static str {
@@ -44,7 +44,7 @@ impl Permit {
         }
     }
 
-    /// Returns the option of a restore for it; `None` if there is none common to all kinds of devices.
+    /// Returns the corresponding option of a restore, or `None` if there is none common to all kinds of devices.
     pub fn option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
         match self {
             Permit::OtherDevice => Some(&mut options.allow_other_device),

@@ -10,7 +10,6 @@ use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::profile::Document;
 use crate::store::{DeviceKey, FileError};
 
-/// Text id of the notice that a profile could not be saved.
 const NOT_SAVED: &str = "session.not_saved";
 
 /// The persistent edits of a device.

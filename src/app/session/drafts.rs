@@ -15,10 +15,9 @@ use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::store::{Claim, Drafts, FileError};
 
-/// Text id of the notice that edits of an earlier session were restored.
 pub(super) const DRAFT_BACK: &str = "session.draft_back";
 
-/// How long another session may take to release its claim: a closed one still writes.
+/// Time allowed for another session to release its claim; a closed one may still be writing.
 const PATIENCE: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_millis(20);
 
@@ -29,12 +28,12 @@ pub struct DraftKey {
 }
 
 impl DraftKey {
-    /// Creates the key of a device by its type and serial number; virtual ones are separate.
+    /// Creates the key of a device from its type and serial number; virtual devices are separate.
     pub(in crate::app) fn of_device(kind: &str, is_virtual: bool, name: String) -> Self {
         DraftKey { kind: if is_virtual { format!("{kind}-virtual") } else { kind.to_owned() }, name }
     }
 
-    /// Creates the key of a profile by its [`file_key`].
+    /// Creates the key of a profile from its [`file_key`].
     pub(in crate::app) fn of_file(kind: &str, key: &str) -> Self {
         DraftKey { kind: format!("{kind}-files"), name: key.to_owned() }
     }
@@ -44,7 +43,7 @@ impl DraftKey {
 pub enum DraftDone {
     Looked {
         key: DraftKey,
-        /// The claim to store it; `None`: it belongs to another window or session.
+        /// Claim to store the draft, or `None` if the draft belongs to another window or session.
         claim: Result<Option<Claim>, FileError>,
         result: Result<Option<String>, FileError>,
     },
@@ -55,7 +54,7 @@ pub enum DraftDone {
 }
 
 pub trait DraftEdits: Serialize + DeserializeOwned + Clone + PartialEq + Default + Send + 'static {
-    /// Returns whether there is nothing to keep.
+    /// Returns whether there are no edits to store.
     fn is_nothing(&self) -> bool;
 }
 
@@ -69,19 +68,20 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
 #[derive(Debug)]
 pub(crate) struct Drafting<E> {
     session: SessionId,
-    /// The edits that were handed over last.
+    /// The edits last passed on for storing.
     kept: E,
     busy: bool,
-    /// The edits may be others than those that were handed over.
+    /// Whether the edits may differ from those last passed on.
     due: bool,
-    /// The earlier draft has been looked up: before that, it is not overwritten.
+    /// Whether the earlier draft has been looked up; it is not overwritten before that.
     is_loaded: bool,
-    /// The claim to store it; without it, the draft belongs to another window or session.
+    /// Claim to store the draft; without it, the draft belongs to another window or session.
     claim: Option<Arc<Claim>>,
     is_failure_reported: bool,
 }
 
-/// Returns the name of a file's draft: of the file itself, whatever path leads to it. Run as a task: it accesses the disk.
+/// Returns the draft name of a file, which does not depend on the path leading to it. Accesses the disk, so run it in a
+/// task.
 pub(in crate::app) fn file_key(path: &Path) -> String {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     // FNV-1a, the same in every version of the program.
@@ -110,7 +110,7 @@ impl<E: DraftEdits> Drafting<E> {
         self.claim(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
     }
 
-    /// Starts again: the saved profile has no edits, and earlier ones belong to the file it replaced.
+    /// Starts again, because the saved profile has no edits, and earlier ones belong to the file it replaced.
     pub(in crate::app) fn begin(&mut self, key: DraftKey, services: &Services) {
         self.claim(key, services, |drafts, key| drafts.remove(&key.kind, &key.name).map(|()| None));
     }
@@ -140,8 +140,8 @@ impl<E: DraftEdits> Drafting<E> {
         });
     }
 
-    /// Takes the result of a task: the edits of an earlier session, if any. A result about another draft than `own` is out
-    /// of date; edits made meanwhile (`dirty`) are newer.
+    /// Handles the result of a task: the edits of an earlier session, if any. A result about a draft other than `own`
+    /// is outdated; edits made in the meantime (`dirty`) take precedence.
     pub(in crate::app) fn take(
         &mut self,
         done: DraftDone,
@@ -191,7 +191,7 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
-    /// Notes that the earlier edits are restored; `edits` are those still valid.
+    /// Records that earlier edits were restored; `edits` are those still valid.
     pub(in crate::app) fn came_back(&mut self, edits: E, name: &str, services: &mut Services) {
         if !edits.is_nothing() {
             services.notify(Severity::Warning, vec![Text::new(DRAFT_BACK)], Some(name));
@@ -216,12 +216,12 @@ impl<E: DraftEdits> Drafting<E> {
         self.due = true;
     }
 
-    /// Returns whether the edits must be checked: there were events since the last time.
+    /// Returns whether the edits must be checked, because events occurred since the last check.
     pub(in crate::app) fn is_due(&self) -> bool {
         self.due && !self.busy
     }
 
-    /// Stores the edits if they have changed. One task at a time: later changes go with the next one.
+    /// Stores the edits if they have changed. Only one task runs at a time: later changes follow in the next one.
     pub(in crate::app) fn save(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         if self.busy {
             return;
@@ -243,17 +243,16 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
-    /// Returns whether the earlier draft has been looked up: edits are then restored after the session is closed.
+    /// Returns whether the earlier draft has been looked up, so that edits are restored after the session is closed.
     pub(crate) fn is_loaded(&self) -> bool {
         self.is_loaded
     }
 
-    /// Returns whether every edit is on disk, as far as the disk accepts it.
     pub(in crate::app) fn is_kept(&self) -> bool {
         !self.busy
     }
 
-    /// Leaves the edits of the previous device on disk: another device is opened, or none.
+    /// Leaves the edits of the previous device on disk because another device, or none, is being opened.
     pub(in crate::app) fn leave(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         let before = std::mem::replace(self, Drafting::new(self.session));
         if let Some(key) = key
@@ -264,7 +263,7 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
-    /// Removes the draft: the edits are in another file now, and those of the previous one are no draft any more.
+    /// Removes the draft, because the edits are now in another file.
     pub(in crate::app) fn forget(&mut self, key: Option<DraftKey>, services: &mut Services) {
         let before = std::mem::replace(self, Drafting::new(self.session));
         if let Some(key) = key
@@ -275,7 +274,7 @@ impl<E: DraftEdits> Drafting<E> {
     }
 }
 
-/// Passes edits on to be stored; the claim lives until they are.
+/// Passes edits on for storing; the claim is held until they are stored.
 fn store_edits<E: DraftEdits>(
     key: DraftKey,
     edits: E,

@@ -13,19 +13,19 @@ use crate::worker::{Device, Event, JobId, OpenError, Session};
 
 /// A kind of device, as required by its sessions.
 pub trait Kind: Device + Sized {
-    /// Its name in profiles.
+    /// Name of the kind in profiles.
     const KIND: &'static str;
 
-    /// The edits that are kept over a crash.
+    /// Edits that survive a crash.
     type Edits: DraftEdits;
 
-    /// The part of a session outside its thread.
+    /// Part of a session outside its thread.
     type SessionHandle: Send;
 
     /// Review of a write: the [`Review`](crate::app::review::Review) of a kind with a memory.
     type Review;
 
-    /// Whether its live values may start by themselves, on a line that has no other master.
+    /// Whether live values may start automatically on a line without another master.
     const STARTS_LIVE: bool = true;
 
     /// Returns the handle that stays with the window when the session moves to its thread.

@@ -51,17 +51,17 @@ pub enum Source {
         key: String,
         /// The document without the edits.
         document: Box<Document>,
-        /// Text in the file: comments, order and line ends belong to the user.
+        /// Source text of the file; comments, order and line endings belong to the user.
         text: String,
     },
-    /// Made here, and in no file yet.
+    /// A new profile that has not been saved.
     New {
         suggested: PathBuf,
     },
 }
 
 impl Source {
-    /// Returns the suggested name of a profile that is in no file yet.
+    /// Returns the suggested name of a profile that has not been saved.
     pub(in crate::app) fn suggested(&self) -> Option<PathBuf> {
         match self {
             Source::New { suggested } => Some(suggested.clone()),
@@ -75,24 +75,23 @@ impl Source {
 pub enum Phase {
     Opening,
     Connected,
-    /// The link is open, and the device does not reply: why, and what to do.
+    /// The link is open, but the device does not reply: the reason and what to do.
     Silent(Text),
-    /// The connection was lost, or could not be opened: why, and what to do.
+    /// The connection was lost or could not be opened: the reason and what to do.
     Lost(Text),
-    /// A profile: there is no connection.
+    /// A profile without a connection.
     Offline,
 }
 
-/// A link that is being opened.
+/// A link being opened.
 pub(crate) struct Opening {
     pub(crate) attempt: Option<u32>,
-    /// Disconnects when it has ended.
+    /// Receiver that disconnects when opening has ended.
     pub(crate) over: crossbeam_channel::Receiver<()>,
-    /// The user has confirmed that no other master is on the line.
     pub(crate) is_sole_master: bool,
 }
 
-/// A device, or profile of one: its state, its connection and its draft.
+/// A device or profile: its state, its connection and its draft.
 pub struct Session<D: Kind> {
     state: SessionState,
     pub(crate) line: Option<LiveSession<D>>,
@@ -100,7 +99,7 @@ pub struct Session<D: Kind> {
     pub review: Option<D::Review>,
 }
 
-/// The state of a session is accessed as a part of it.
+/// Gives access to the session's state as if it were a part of the session.
 impl<D: Kind> Deref for Session<D> {
     type Target = SessionState;
 
@@ -116,7 +115,7 @@ impl<D: Kind> DerefMut for Session<D> {
 }
 
 impl<D: Kind> Session<D> {
-    /// Creates a session for a link that is being opened; `kinds` know which of its parameters are secret.
+    /// Creates a session for a link that is being opened; `kinds` determines which parameters are secret.
     pub fn at_link(id: SessionId, url: LinkUrl, kinds: Kinds) -> Self {
         let mut own = Session::new(id, Source::Link(url), Phase::Opening);
         own.kinds = kinds;
@@ -136,12 +135,11 @@ impl<D: Kind> Session<D> {
         Session { state: SessionState::new(id, source, phase), line: None, drafting: Drafting::new(id), review: None }
     }
 
-    /// Returns the line to the device, while it is connected.
+    /// Returns the line to the device while it is connected.
     pub fn line(&self) -> Option<&LiveSession<D>> {
         self.line.as_ref()
     }
 
-    /// Returns whether the device is simulated in this process.
     pub fn is_virtual(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.is_virtual)
             || matches!(&self.source, Source::Link(url) if url.scheme == Scheme::Sim)
@@ -163,17 +161,17 @@ impl<D: Kind> Session<D> {
         self.phase == Phase::Opening || self.is_busy() || self.is_polling()
     }
 
-    /// Returns whether it is connected and idle: a job may begin.
+    /// Returns whether the device is connected and idle, so that a job may start.
     pub fn is_ready(&self) -> bool {
         self.phase == Phase::Connected && self.line.is_some() && !self.is_busy()
     }
 
-    /// Returns whether it can be read again; also true for a device that did not answer, and for a profile.
+    /// Returns whether the device can be read again; also true for a device that did not reply, and for a profile.
     pub fn is_readable(&self) -> bool {
         self.is_savable() || (matches!(self.phase, Phase::Silent(_)) && self.line.is_some() && !self.is_busy())
     }
 
-    /// Returns whether a profile of it can be saved now.
+    /// Returns whether a profile can currently be saved.
     pub fn is_savable(&self) -> bool {
         self.is_ready() || self.phase == Phase::Offline
     }
@@ -188,7 +186,8 @@ impl<D: Kind> Session<D> {
         self.just_connected = true;
     }
 
-    /// Sets the interval of polling, or ends it. Returns whether polling begins with that; `None` without a line.
+    /// Sets the polling interval, or stops polling. Returns whether polling starts with this call, or `None` without a
+    /// line.
     pub(crate) fn poll(&mut self, interval: Option<Duration>) -> Option<bool> {
         let line = self.line.as_mut()?;
         let begins = line.polling().is_none();
@@ -196,8 +195,8 @@ impl<D: Kind> Session<D> {
         Some(begins)
     }
 
-    /// Notes that polling has ended by itself, why, and whether the device does not reply at all. Polling that was
-    /// requested again since continues.
+    /// Records that polling has stopped, why, and whether the device does not reply at all. Polling that was requested
+    /// again since continues.
     pub(in crate::app) fn polling_failed(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
         if self.is_polling() {
             return;
@@ -211,7 +210,7 @@ impl<D: Kind> Session<D> {
         self.report(Severity::Error, texts, stands_there, services);
     }
 
-    /// Starts a job; reports why not and returns false if it cannot.
+    /// Starts a job; reports the reason and returns `false` if it cannot be started.
     pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
         let (name, what, writes) = (self.name(), D::job_text(&job), D::writes(&job));
         let Some(line) = &mut self.line else {
@@ -232,7 +231,7 @@ impl<D: Kind> Session<D> {
         false
     }
 
-    /// Returns why no plan can be made now; `None` if one can.
+    /// Returns why no plan can be made now, or `None` if one can.
     pub(crate) fn why_not_ready(&self) -> Option<Text> {
         match &self.phase {
             _ if self.is_ready() => None,
@@ -259,7 +258,8 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    /// Releases its thread; the running job is recorded as `end`. A cancelled write ends by itself, and reports how.
+    /// Releases the thread; the running job is recorded as `end`. A cancelled write ends on its own and reports the
+    /// result.
     pub(crate) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.save_to = None;
         let Source::Link(url) = &self.source else { return };

@@ -26,7 +26,7 @@ impl SessionState {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
 
-    /// Handles values read for a file; `edits` are not written to it, and `remarks` name what else is missing from it.
+    /// Handles values read for a file; `edits` are not written to the file, and `remarks` name other missing values.
     pub fn write_read(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
         let Some(path) = self.save_to.take() else { return };
         let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));
@@ -34,12 +34,12 @@ impl SessionState {
         self.write_document(path, document_of(body), remarks, services);
     }
 
-    /// Takes a profile that was read again from its file, or saved to another one.
+    /// Adopts a profile that was read again from its file, or saved to another one.
     pub fn take_document(&mut self, file: ProfileFile, document: Document) {
         self.source = file.source(document);
     }
 
-    /// Reads the profile again, as a task. Returns false if it is none.
+    /// Reads the profile again in a task; returns `false` if the session is not a profile.
     pub(crate) fn read_file_again(&self, services: &mut Services) -> bool {
         let Source::File { path, .. } = &self.source else { return false };
         services.opening_files.push(path.clone());
@@ -48,7 +48,7 @@ impl SessionState {
         true
     }
 
-    /// Writes a profile on a thread; `remarks` name what is missing from it.
+    /// Saves a profile on a thread; `remarks` name the values missing from it.
     pub(crate) fn write_document(
         &mut self,
         path: PathBuf,
@@ -100,22 +100,22 @@ impl SessionState {
     }
 }
 
-/// Backups and writes of a device, as a task found them.
+/// Backups and writes of a device, as found by a task.
 pub struct DeviceHistory {
     /// Backups, the newest first.
     pub backups: Result<Vec<Backup>, FileError>,
-    /// Writes, newest first, or why the logbook has none.
+    /// Writes, newest first, or the reason why the logbook has none.
     pub writes: Result<Vec<Entry>, LogbookError>,
-    /// Total write cycles; `None` if the logbook has no record.
+    /// Total number of write cycles, or `None` if the logbook has no record.
     pub cycles: Option<u64>,
     /// Status codes that were read, newest first. An unreadable logbook is reported with the writes.
     pub statuses: Vec<StatusEntry>,
 }
 
 impl DeviceHistory {
-    /// Readings of status codes that are shown.
+    /// Number of status code readings displayed.
     const STATUSES: u32 = 20;
-    /// Entries of the logbook that are shown.
+    /// Number of logbook entries displayed.
     const WRITES: u32 = 200;
 
     pub(in crate::app) fn of(key: &DeviceKey, store: &Store) -> Self {

@@ -12,7 +12,7 @@ use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 
-/// Profile made from earlier readings, with remarks; or a message for each missing part.
+/// A profile made from earlier readings, with remarks; or a message for each missing part.
 pub type KnownProfile = Result<(Body, Vec<Text>), Vec<Text>>;
 
 /// Returns the remark that a number of edits is not included.
@@ -25,33 +25,33 @@ pub trait Saved: WithMemory {
     /// Creates the job that reads everything that can be restored.
     fn read_all() -> Job<Self>;
 
-    /// Returns the edited profile, if this is one.
+    /// Returns the edited profile, if the session is one.
     fn wanted_body(&self) -> Option<Body>;
 
-    /// Returns the profile of what was read earlier, with remarks; `None` if nothing was.
+    /// Returns the profile of earlier readings with remarks, or `None` if nothing was read.
     ///
     /// # Errors
-    /// Texts for the parts of a profile that were not read.
+    /// Returns a message for each part of a profile that was not read.
     fn known_body(&self) -> Option<KnownProfile>;
 
-    /// Returns whether earlier readings are saved: the device no longer replies.
+    /// Returns whether earlier readings are saved, because the device no longer replies.
     fn saves_what_was_read(&self) -> bool {
         matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.known_body().is_some()
     }
 
-    /// Makes the plan of restoring a profile, for review.
+    /// Requests the plan of restoring a profile for review.
     ///
     /// # Errors
-    /// It is of another kind of device.
+    /// The profile belongs to another kind of device.
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
 
-    /// Returns the remarks about the edited profile when it is saved.
+    /// Returns remarks about the edited profile when it is saved.
     fn remarks(&self) -> Vec<Text> {
         Vec::new()
     }
 
-    /// Saves a profile. A connected device is read again for it; for one that no longer replies, earlier readings are
-    /// written. A profile is written as edited.
+    /// Saves a profile. A connected device is read again; for one that no longer replies, earlier readings are saved.
+    /// An open profile is saved as edited.
     fn save(&mut self, path: PathBuf, services: &mut Services) {
         if let Some(refusal) = only_looked_at(&self.session().source) {
             self.session().refuse(refusal, services);
@@ -108,7 +108,7 @@ pub trait Saved: WithMemory {
 /// Maximum number of remarks of one kind that are listed.
 const SAID: usize = 3;
 
-/// Returns texts of some items: the first of many, with the number of the others.
+/// Lists the first of several items, followed by the number of the others.
 pub(crate) fn some<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
     let more = things.len().saturating_sub(SAID);
     let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));

@@ -11,7 +11,7 @@ use crate::app::{Kinds, Text};
 use crate::profile::{Document, Formats};
 use crate::store::{FileError, FileProblem, read_file, write_text_over};
 
-/// A file with a profile, as it was read or written.
+/// A profile file as last read or written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileFile {
     pub path: PathBuf,
@@ -26,12 +26,12 @@ impl ProfileFile {
     }
 }
 
-/// Expected state of a file before it is written.
+/// Expected state of a file before it is overwritten.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guard {
-    /// Key of the file, whatever path leads to it.
+    /// Key of the file, which does not depend on the path leading to it.
     pub key: String,
-    /// Its content when it was opened.
+    /// Content of the file when it was opened.
     pub text: String,
 }
 
@@ -42,16 +42,16 @@ pub struct Saving {
     pub path: PathBuf,
     pub document: Box<Document>,
     pub remarks: Vec<Text>,
-    /// The open file; another one is replaced as it is.
+    /// The open file; any other is replaced unconditionally.
     pub opened: Option<Guard>,
     /// The user knows that comments will be lost.
     pub may_lose: bool,
-    /// The edits were merged with those of others and are no longer edits.
+    /// Whether the edits were merged with those of others and are no longer edits.
     pub is_merged: bool,
 }
 
 impl Saving {
-    /// Writes the file, as a task, or returns why it is not written yet.
+    /// Writes the file in a task, or returns why it has not been written yet.
     pub(in crate::app) fn run(mut self, kinds: Kinds) -> Action {
         let formats = kinds.formats;
         let key = file_key(&self.path);
@@ -81,14 +81,14 @@ impl Saving {
 /// The content of a file that differs from what was opened.
 #[derive(Debug)]
 pub(in crate::app) struct DivergedFile {
-    /// Its text; empty if it cannot be read.
+    /// File content; empty if it cannot be read.
     pub(in crate::app) text: String,
-    /// Its content as a profile.
+    /// File content as a profile.
     pub(in crate::app) document: Result<Box<Document>, ReadError>,
 }
 
-/// Returns the text to be replaced; or the content of the file if it differs from what was opened and from the wanted one.
-/// A missing file does not differ.
+/// Returns the content to be replaced, or the file content if it differs both from what was opened and from what is to
+/// be written. A missing file does not differ.
 fn changed(path: &Path, opened: &str, wanted: &Document, formats: Formats) -> Result<String, Box<DivergedFile>> {
     let text = match read_file(path) {
         Ok(text) => text,

@@ -197,7 +197,7 @@ pub trait SessionEvents: HasSession {
     }
 }
 
-/// Returns the sentence to show where only one fits.
+/// Returns the sentence to show where there is room for one only.
 pub(crate) fn first(texts: &[Text]) -> Text {
     texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"))
 }

@@ -10,30 +10,30 @@ use crate::app::trace::TraceLog;
 use crate::app::{Severity, Text};
 use crate::store::{Backup, Entry, StatusEntry};
 
-/// State common to all sessions: identity, source of data, connection.
+/// State common to all sessions: identity, data source and connection.
 pub struct SessionState {
     pub id: SessionId,
     pub source: Source,
     pub phase: Phase,
-    /// They know what of a link may be shown.
+    /// The kinds of devices, which determine the secret link parameters.
     pub(super) kinds: Kinds,
     pub(crate) opening: Option<Opening>,
     /// The title of the device, once known.
     pub title: Option<String>,
     pub trace: TraceLog,
-    /// Backups, or why there are none.
+    /// Backups, or the reason why there are none.
     pub backups: Option<Result<Vec<Backup>, Text>>,
-    /// Writes of this device in the logbook, or why it has none.
+    /// Writes of this device in the logbook, or the reason why there are none.
     pub writes: Option<Result<Vec<Entry>, Text>>,
-    /// Write cycles of this device recorded in the logbook; `None` if it has no record, or was not read.
+    /// Write cycles of this device recorded in the logbook, or `None` if there is no record or it was not read.
     pub cycles: Option<u64>,
-    /// Status codes of this device that the logbook knows, the newest first.
+    /// Status codes of this device in the logbook, newest first.
     pub statuses: Vec<StatusEntry>,
     /// Nothing has been read since the link was opened.
     pub just_connected: bool,
-    /// Live values start by themselves as soon as the device was read and nothing runs.
+    /// Whether live values start automatically as soon as the device has been read and its line is idle.
     pub(in crate::app) live_due: bool,
-    /// The file for the profile that is being read.
+    /// File for the profile that is being read.
     pub(crate) save_to: Option<PathBuf>,
     /// A profile is being written to a file, whose content is not known before that ends.
     pub(crate) is_saving: bool,
@@ -60,7 +60,7 @@ impl SessionState {
         }
     }
 
-    /// Returns whether this is the latest attempt to open its link.
+    /// Returns whether this is the latest attempt to open the link of the session.
     pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
         self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
     }
@@ -74,7 +74,7 @@ impl SessionState {
         }
     }
 
-    /// Returns the name by which the log and the jobs call it.
+    /// Returns the name used in the log and the job list.
     pub fn name(&self) -> String {
         match (&self.source, &self.title) {
             (Source::File { path, .. }, _) => {
@@ -101,14 +101,14 @@ impl SessionState {
         }
     }
 
-    /// Notes that the link is open, but the device does not reply: why, and what to do.
+    /// Records that the link is open but the device does not reply: the reason and what to do.
     pub(crate) fn fall_silent(&mut self, why: Vec<Text>, services: &mut Services) {
         self.phase = Phase::Silent(first(&why));
         services.log.settle("session.not_connected", Some(&self.name()));
         services.note(Severity::Error, why, Some(&self.name()));
     }
 
-    /// Reports something about this device; only in the log if it is already shown where it was requested.
+    /// Reports a message about this device; only in the log if it is already shown where it was requested.
     pub(crate) fn report(&self, severity: Severity, texts: Vec<Text>, stands_there: bool, services: &mut Services) {
         match stands_there {
             true => services.note(severity, texts, Some(&self.name())),
@@ -116,7 +116,7 @@ impl SessionState {
         }
     }
 
-    /// Forgets all known data of a device, because another one replies.
+    /// Discards all known data of the device, because another one has replied.
     pub(super) fn forget_device(&mut self) {
         (self.title, self.backups, self.writes, self.cycles) = (None, None, None, None);
         self.statuses.clear();

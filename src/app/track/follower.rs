@@ -12,11 +12,11 @@ pub(super) struct Follower {
     pub(super) meaning: Meaning,
     unwrap: Unwrap,
     motion: Motion,
-    /// The last position, unwrapped.
+    /// Last position, unwrapped.
     last: Option<(Time, i64)>,
-    /// Steps/s between the last two positions, in either direction.
+    /// Rate between the last two positions in steps per second, in either direction.
     pace: Option<f64>,
-    /// Samples without a position have come since the last one.
+    /// Whether samples without a position have arrived since the last one.
     has_missed: bool,
 }
 
@@ -26,8 +26,8 @@ impl Follower {
         Follower { meaning, unwrap, motion: Motion::over(WINDOW), last: None, pace: None, has_missed: false }
     }
 
-    /// Returns whether the next position is joined to the last one: it arrives soon enough, and if there are samples
-    /// without a position in between, the shaft cannot have completed the range unnoticed at its last speed.
+    /// Returns whether the next position is joined to the last one: it arrives soon enough, and across samples without
+    /// a position the shaft cannot have completed the range unnoticed at its last speed.
     pub(super) fn joins(&self, time: Time, apart: i64) -> bool {
         let Some((before, _)) = self.last else { return true };
         if time.nanoseconds_since(before) > apart {
@@ -42,7 +42,7 @@ impl Follower {
         self.has_missed = true;
     }
 
-    /// Returns the next position unwrapped, with its rates; `None` if it is outside the range.
+    /// Unwraps the next position and calculates its rates, or returns `None` if it is outside the range.
     pub(super) fn next(&mut self, time: Time, word: i64) -> Option<(Unwrapped, Rates)> {
         let next = self.unwrap.next(word)?;
         if next.broken {
@@ -62,7 +62,6 @@ impl Follower {
         (self.last, self.has_missed) = (Some((time, steps)), false);
     }
 
-    /// Records that the next position does not continue the last one.
     pub(super) fn lose_track(&mut self) {
         self.unwrap.gap();
         self.motion.reset();

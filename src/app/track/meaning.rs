@@ -3,21 +3,20 @@
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Scale, Series};
 
-/// The meaning of the positions of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meaning {
-    /// Positions from one zero to the next, after which they wrap; `None` for a linear one.
+    /// Number of positions before they wrap, or `None` for a linear encoder.
     pub(in crate::app) range: Option<i64>,
     /// The units of position, speed and acceleration, whose samples are in steps.
     pub scales: [Vec<Scale>; 3],
-    /// It does not turn.
+    /// Whether the encoder is linear.
     pub(in crate::app) is_linear: bool,
-    /// Size of a step, in turns or millimetres; `None` if not known.
+    /// Step size in turns or millimetres, if known.
     step: Option<f64>,
 }
 
 impl Meaning {
-    /// Creates the meaning of steps without a known place in a revolution.
+    /// Creates the meaning of steps whose location within a revolution is unknown.
     pub fn of_steps(range: Option<i64>) -> Self {
         let scales = [
             vec![Scale::new("unit.steps", 1.0, 0)],
@@ -27,7 +26,7 @@ impl Meaning {
         Meaning { range, scales, is_linear: false, step: None }
     }
 
-    /// Creates the meaning for a shaft with this many steps in a revolution, which may be a fraction.
+    /// Creates the meaning for a shaft with the given number of steps per revolution, which may be fractional.
     pub fn of_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
         let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
         let scales = [
@@ -50,7 +49,7 @@ impl Meaning {
         Meaning { range, scales, is_linear: false, step: Some(turns) }
     }
 
-    /// Creates the meaning for a linear encoder with steps of this many millimetres.
+    /// Creates the meaning for a linear encoder with the given step length in millimetres.
     pub fn of_millimetres(millimetres: f64) -> Self {
         let scales = [
             vec![Scale::new("unit.millimetres", millimetres, 4), Scale::new("unit.steps", 1.0, 0)],
@@ -67,7 +66,7 @@ impl Meaning {
         Meaning { range: None, scales, is_linear: true, step: Some(millimetres) }
     }
 
-    /// Returns whether positions of the one are positions of the other, only seen in other units.
+    /// Returns whether both describe the same positions, at most in different units.
     pub(super) fn is_same_place(&self, other: &Meaning) -> bool {
         let own = |meaning: &Meaning| (meaning.range, meaning.is_linear, meaning.step);
         own(self) == own(other)

@@ -9,7 +9,7 @@ use crate::units::Moment;
 
 /// A value that can be watched.
 pub trait Watchable: Clone + PartialEq {
-    /// Returns whether its values are whole numbers.
+    /// Returns whether the values are whole numbers.
     fn is_whole(&self) -> bool;
 
     fn line(&self, group: GroupId) -> Series;
@@ -31,12 +31,12 @@ impl Watchable for Infallible {
     }
 }
 
-/// A watched value, or that there is none at the moment.
+/// A watched value, if there is one at the moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watching {
     pub at: Moment,
     pub value: Option<Value>,
     pub is_warned: bool,
-    /// Why there will never be any.
+    /// Reason why there will never be a value, if so.
     pub never: Option<Text>,
 }

@@ -9,7 +9,7 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Subcommand};
 use super::{COMMON_HEADING, Command, Common, Front};
 use crate::cli::commands::{CommandId, Commands, DeviceCommands, OwnCommand};
 
-/// Display order of options that a kind of device adds: after the shared ones.
+/// Display order of options that a kind of device adds, which follow the shared ones.
 const AFTER_SHARED: usize = 200;
 
 /// The arguments of a process.
@@ -19,13 +19,12 @@ pub(in crate::cli) struct Arguments {
     pub(in crate::cli) command: Option<Called>,
 }
 
-/// The command that is called.
 pub(in crate::cli) enum Called {
     Shared(Command),
     Own(&'static dyn OwnCommand, ArgMatches),
 }
 
-/// Parses the arguments of a process, the first of which is the program's name.
+/// Parses the arguments of a process, starting with the program name.
 pub(in crate::cli) fn parse_arguments(
     words: impl IntoIterator<Item = OsString>,
     commands: Commands,
@@ -91,7 +90,7 @@ fn extended(command: clap::Command, id: CommandId, commands: Commands) -> clap::
     if help.is_empty() { command } else { command.after_long_help(help.join("\n\n")) }
 }
 
-/// Returns the kinds of device that a command takes, and the protocols if it takes them.
+/// Returns the kinds of device that a command accepts, and the protocols if it accepts them.
 fn names(id: CommandId, commands: Commands) -> PossibleValuesParser {
     let devices = commands.devices().iter().filter(|device| id != CommandId::Find || device.is_searchable());
     let devices = devices.map(|device| PossibleValue::new(device.name()).help(device.about()));
@@ -100,7 +99,7 @@ fn names(id: CommandId, commands: Commands) -> PossibleValuesParser {
     PossibleValuesParser::new(devices.chain(protocols).collect::<Vec<_>>())
 }
 
-/// Returns the actions of all kinds of device, each with its meaning for the kinds that have it.
+/// Returns the actions of all kinds of device, each with its meaning for the kinds that support it.
 fn actions(commands: Commands) -> PossibleValuesParser {
     let single = commands.devices().iter().map(|device| (device.name(), device.actions()));
     let combined = commands.devices().iter().map(|device| (device.name(), device.combined_actions()));

@@ -12,14 +12,14 @@ use super::PATIENCE;
 use crate::link::{Clock, RealClock, wake_before_others};
 use crate::sim::DatagramDevice;
 
-/// The longest sleep of the sender: after a request, no packet is due sooner.
+/// Maximum sleep of the sender: no packet is due sooner after a request.
 const REST: Duration = Duration::from_millis(4);
 /// Number of ports to try if any port will do.
 const TRIES: usize = 50;
 /// More than any packet has.
 const ROOM: usize = 2048;
 
-/// Binds a TCP and a UDP socket to the same port of IPv4. Port 0 selects one that is free for both.
+/// Binds a TCP and a UDP socket to the same IPv4 port. Port 0 selects one that is free for both.
 pub(super) fn bind(address: &str) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
     let mut last = std::io::Error::from(ErrorKind::AddrNotAvailable);
     for place in address.to_socket_addrs()? {
@@ -46,7 +46,7 @@ fn both(place: SocketAddrV4) -> std::io::Result<(TcpListener, UdpSocket, SocketA
 /// The datagrams of a device in real time.
 pub(super) struct Served {
     socket: UdpSocket,
-    /// Held from taking packets until they are sent, so that none overtakes another.
+    /// Device, locked from taking packets until they have been sent, so that none overtakes another.
     device: Mutex<Box<dyn DatagramDevice>>,
     clock: Arc<RealClock>,
 }
@@ -96,7 +96,7 @@ impl Served {
         }
     }
 
-    /// Calls `work` with the device, sends what is due, and returns the time until the next packet.
+    /// Calls `work` with the device, sends all due packets, and returns the time until the next one.
     fn pump(&self, work: impl FnOnce(&mut dyn DatagramDevice, &RealClock)) -> Duration {
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut **device, &self.clock);

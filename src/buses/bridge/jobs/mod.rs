@@ -17,14 +17,14 @@ use crate::worker::stream::{Batch, Producer, SampleCount};
 pub(crate) use open::FORMAT;
 pub use open::open_adapter;
 
-/// Configuration of a stream, and its samples.
+/// The configuration of a stream, and the interpretation of its packets.
 pub trait Stretch: Send + 'static {
     /// The samples of a batch.
     type Samples: SampleCount;
 
     fn wanted(&self) -> StreamRequest;
 
-    /// Returns the samples of a packet; `None` if it does not belong to this stream.
+    /// Returns the samples of a packet, or `None` if the packet does not belong to this stream.
     fn read(&self, data: Data, streaming: &Streaming) -> Option<Self::Samples>;
 }
 
@@ -63,13 +63,13 @@ pub struct Bridge<S> {
 }
 
 impl<S: Stretch> Bridge<S> {
-    /// Creates a producer for the adapter on the connection opened by `open`; a reply may arrive `margin` later than the
-    /// protocol specifies. The encoder's supply stays off unless one is given.
+    /// Creates a producer for the adapter on the connection opened by `open`; a reply may arrive `margin` later than
+    /// the protocol specifies. The encoder supply stays off unless `supply` is given.
     pub fn new(stretch: S, supply: Option<SupplyVoltage>, margin: Duration, open: Open) -> Self {
         Bridge { stretch, supply, open: Some(open), wire: None, tap: Tap::new(margin), streaming: Arc::default() }
     }
 
-    /// Returns the adapter and the actual setting as soon as it streams.
+    /// Returns the adapter and its actual settings, available once it streams.
     pub fn streaming(&self) -> Arc<OnceLock<Streaming>> {
         self.streaming.clone()
     }

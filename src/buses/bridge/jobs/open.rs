@@ -13,23 +13,22 @@ use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
 use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, simulated};
 
-/// Link parameter of the virtual adapter that sessions need; there is no other device here.
+/// Link parameter of the virtual adapter that sessions require but streams do not.
 const BRIDGE: &str = "bridge";
 /// The format of an adapter's serial port, which matters only behind a converter.
 pub(crate) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200, parity: Parity::None };
 
 parameters! {
     struct LinkParameters: UrlError {
-        /// Additional delay allowed for a reply beyond the protocol's worst case; `None` for the default of the link.
+        /// Additional delay allowed for a reply beyond the worst case of the protocol, or `None` for the default of the
+        /// link.
         margin: Option<Duration> = None, "margin" => Maybe(MARGIN);
     }
 }
 
-/// Returns the margin for late replies, and the function that opens the connection on any thread. These devices are
-/// attached to a virtual adapter.
-///
-/// # Errors
-/// A link that does not lead to an adapter, or an unsupported parameter; nothing has been opened.
+/// Returns the margin for late replies, and the function that opens the connection on any thread. `devices` can be
+/// attached to a virtual adapter.⎏⎏# Errors⎏The link does not lead to an adapter, or a parameter is unsupported;
+/// nothing has been opened.
 pub fn open_adapter(
     url: &LinkUrl,
     clock: Arc<dyn Clock>,

@@ -4,26 +4,26 @@
 
 use crate::analysis::Time;
 
-/// The offset of the clock of a streaming adapter against ours.
+/// Offset of a streaming adapter's clock from the local one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drift {
-    /// Added to the adapter's time, in nanoseconds; `None` before the first packet.
+    /// Offset added to the adapter's time, in nanoseconds, or `None` before the first packet.
     ahead_ns: Option<i128>,
-    /// The minimum offset of the packets in this section, and in the previous one.
+    /// Minimum offset of the packets in the current section and in the previous one.
     least: Option<(i128, Option<i128>)>,
     since_ns: i128,
     /// The packet before, by the adapter's clock.
     before_ns: i128,
 }
 
-/// Length of a section: among the packets of this time one was hardly delayed.
+/// Length of a section in nanoseconds, long enough for at least one packet to arrive without delay.
 const STRETCH_NS: i128 = 10_000_000_000;
 /// Nanoseconds by which transit times over USB vary.
 const SLACK_NS: i128 = 2_000_000;
-/// Maximum rate of correction as one part of this number: more than the difference of oscillators, too little to affect a
+/// Reciprocal of the maximum correction rate: faster than the difference between oscillators, too slow to affect a
 /// speed, and less than one of the 255 samples of a packet.
 const SLOWNESS: i128 = 4000;
-/// Nanoseconds beyond which a jump is not drift: a clock stood still, or was set.
+/// Size of a jump in nanoseconds above which it is not drift: a clock was stopped or set.
 const JUMP_NS: i128 = 1_000_000_000;
 
 impl Drift {
@@ -45,7 +45,7 @@ impl Drift {
         Time::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
     }
 
-    /// Returns the least of the stretch and of the one before.
+    /// Returns the minimum offset of the current and the previous section.
     fn least_lead(&mut self, own_ns: i128, most: i128) -> i128 {
         let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
         let (least, before) = match self.least {

@@ -10,29 +10,29 @@ use crate::buses::bridge::protocol::{Continuity, Data, Gap, Message, Packet, Rep
 use crate::link::line::LineError;
 use crate::units::Moment;
 
-/// Kind of stream. Its clock and sampling have been configured before.
+/// Kind of stream. The clock and sampling have been configured before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Streamed {
-    /// Words of SSI, with this interval in microseconds.
+    /// SSI words at the given interval in microseconds.
     Ssi { period_us: u32 },
-    /// Frames of BiSS, with this interval in microseconds.
+    /// BiSS frames at the given interval in microseconds.
     Biss { period_us: u32 },
     /// Sine and cosine, with the interval of sampling in nanoseconds.
     Analog { period_ns: i64 },
 }
 
-/// Samples of a stream that follow each other.
+/// Consecutive samples of a stream.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Portion {
     /// Number of the first sample, counted from the start of the stream, including missing ones.
     pub first: u64,
     /// Time of the first sample, by the local clock.
     pub time: Time,
-    /// Nanoseconds from one to the next.
+    /// Sampling interval in nanoseconds.
     pub period_ns: i64,
-    /// Samples that are missing before it.
+    /// Number of samples missing before the first one.
     pub lost: u64,
-    /// The samples, one at least.
+    /// Samples; at least one.
     pub data: Data,
 }
 
@@ -42,17 +42,17 @@ pub(crate) struct Flow {
     period_ns: i64,
     continuity: Continuity,
     next: u64,
-    /// Samples that are missing before the next.
+    /// Number of samples missing before the next one.
     missing: u64,
-    /// No sample is earlier than this.
+    /// Lower bound for the time of any sample.
     not_before: Time,
     heard_at: Moment,
-    /// The last sample.
+    /// Time of the last sample.
     last: Option<Time>,
     drift: Drift,
 }
 
-/// Silence after which a stream counts as ended.
+/// Silence after which a stream is considered to have ended.
 const SILENT: Duration = Duration::from_secs(2);
 const SILENT_SAMPLES: u32 = 256;
 
@@ -84,10 +84,8 @@ impl Streamed {
 }
 
 impl Flow {
-    /// Starts a stream, whose samples are later than `after`.
-    ///
-    /// # Errors
-    /// See [`AdapterError`]; a request refused as busy means that it already runs.
+    /// Starts a stream, whose samples are later than `after`.⎏⎏# Errors⎏See [`AdapterError`]; a refusal as busy means
+    /// that the stream is already running.
     pub(crate) fn begin(
         adapter: &mut Adapter<'_, '_>,
         streamed: Streamed,
@@ -131,16 +129,13 @@ impl Flow {
         self.last
     }
 
-    /// Nanoseconds from one sample to the next, as the adapter has set it.
+    /// Returns the actual sampling interval in nanoseconds.
     pub(crate) const fn period_ns(&self) -> i64 {
         self.period_ns
     }
 
-    /// Returns the next samples; `None` if none have arrived by `until`.
-    ///
-    /// # Errors
-    /// [`AdapterError::Mute`], [`AdapterError::Restarted`], [`AdapterError::Data`], errors of the connection, or
-    /// cancellation.
+    /// Returns the next samples, or `None` if none have arrived by `until`.⎏⎏# Errors⎏[`AdapterError::Mute`],
+    /// [`AdapterError::Restarted`], [`AdapterError::Data`], errors of the connection, or cancellation.
     pub(crate) fn next(&mut self, adapter: &mut Adapter<'_, '_>, until: Moment) -> Result<Option<Portion>, Failure> {
         let mut bytes = Vec::new();
         loop {
@@ -176,8 +171,8 @@ impl Flow {
         adapter.ask(&self.streamed.stop()).map(drop)
     }
 
-    /// Returns whether the adapter has ended the stream itself; one that knows of none was reset, and has to be set again.
-    /// What else failed has to be tried again.
+    /// Returns whether the adapter has ended the stream itself. An adapter that knows of no stream was reset, and must
+    /// be configured again; other failures must be retried.
     pub(crate) fn ended(ended: Result<(), Failure>) -> Result<bool, Failure> {
         match ended {
             Ok(()) => Ok(true),
@@ -191,7 +186,7 @@ impl Flow {
         SILENT + period.saturating_mul(SILENT_SAMPLES)
     }
 
-    /// Returns the samples of a packet, if it belongs to this stream.
+    /// Returns the samples of a packet, if the packet belongs to this stream.
     fn take(&mut self, packet: &Packet, now: Moment) -> Result<Option<Portion>, AdapterError> {
         let data = match Message::parse(packet) {
             Ok(Message::Data(data)) if self.streamed.brings(&data) => data,
@@ -217,8 +212,8 @@ impl Flow {
         Ok(Some(Portion { first, time, period_ns: self.period_ns, lost, data }))
     }
 
-    /// Returns the time of the first sample. The last one cannot be later than its arrival, nor the first before the
-    /// stream began.
+    /// Returns the time of the first sample. The last sample cannot be later than its arrival, nor the first one
+    /// earlier than the start of the stream.
     fn time(&mut self, data: &Data, count: usize, now: Moment) -> Time {
         let t0_us = match data {
             Data::Ssi(data) => data.t0_us,

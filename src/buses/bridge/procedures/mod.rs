@@ -28,13 +28,14 @@ pub use tap::{StreamRequest, Streaming, Tap, TapError};
 /// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).
 pub(crate) const BISS_TIME_OUT_US: u16 = 20;
 
-/// Clocks that can be requested; an adapter uses the nearest one that it supports.
+/// Clocks that can be requested; an adapter uses the nearest supported one.
 pub(crate) const CLOCK: Whole<u32> = Whole(Quantity::Hertz, 80_000..=10_000_000);
 
-/// Data that continues for this long after the reply time, be it noise or a stream, contains no reply.
+/// Time after the reply time during which data continues to arrive, be it noise or a stream, before the reply is
+/// considered missing.
 const ENDLESS: Duration = Duration::from_secs(1);
 
-/// The state of an adapter that is kept between jobs.
+/// State of an adapter that is kept between jobs.
 #[derive(Clone, Debug, Default)]
 pub struct AdapterState {
     receiver: Receiver,
@@ -45,7 +46,7 @@ pub struct AdapterState {
     power: Power,
 }
 
-/// Why an adapter gives no usable reply.
+/// The reason why an adapter does not give a usable reply.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AdapterError {
     /// No reply to two requests.
@@ -61,12 +62,12 @@ pub enum AdapterError {
     NoAnalog { name: String },
     #[error("the adapter {name} cannot supply an encoder")]
     NoSupply { name: String },
-    /// It supplies more than the encoder tolerates; it was told to switch that off.
+    /// The adapter supplies more than the encoder tolerates, and was told to switch the supply off.
     #[error("the adapter supplied {measured} mV instead of {given} mV; the encoder tolerates {greatest} mV")]
     Overvoltage {
-        /// Millivolts that were asked for.
+        /// Requested voltage in millivolts.
         given: u16,
-        /// Millivolts measured by it.
+        /// Measured voltage in millivolts.
         measured: u16,
         /// Millivolts that the encoder tolerates.
         greatest: u16,
@@ -76,19 +77,19 @@ pub enum AdapterError {
     /// The sample numbers of a stream started again.
     #[error("the adapter has restarted")]
     Restarted,
-    /// Streamed data is not of this version.
+    /// Streamed data does not conform to this version.
     #[error("the data from the adapter cannot be decoded: {cause}")]
     Data { cause: BodyError },
     #[error("the adapter refuses operation 0x{:02X} with code {}: {text}", operation.byte(), code.byte())]
     Refused { operation: Operation, code: ErrorCode, text: String },
-    /// Its reply is not of this version.
+    /// The reply does not conform to this version.
     #[error("the reply of the adapter to operation 0x{:02X} cannot be decoded: {cause}", operation.byte())]
     Reply { operation: Operation, cause: BodyError },
     #[error("the adapter answers operation 0x{:02X} with operation 0x{:02X}", requested.byte(), got.byte())]
     Other { requested: Operation, got: Operation },
 }
 
-/// An adapter's fault, or that of the wire to it.
+/// A failure of an adapter, or of the connection to it.
 #[derive(Debug)]
 pub(crate) enum Failure {
     Adapter(AdapterError),
@@ -96,7 +97,7 @@ pub(crate) enum Failure {
 }
 
 impl AdapterError {
-    /// Returns the error for a reply to another operation than the one requested.
+    /// Returns the error for a reply to an operation other than the requested one.
     pub fn other(requested: Operation, reply: &Reply) -> Self {
         AdapterError::Other { requested, got: reply.operation() }
     }
@@ -114,7 +115,7 @@ impl From<LineError> for Failure {
     }
 }
 
-/// A reply, and between which moments it was made.
+/// A reply, and the interval in which it was made.
 pub(crate) struct TimedReply {
     pub(crate) reply: Reply,
     sent_at: Moment,
@@ -122,7 +123,7 @@ pub(crate) struct TimedReply {
 }
 
 impl AdapterState {
-    /// Returns the adapter's identity; `None` before it was read.
+    /// Returns the identity of the adapter, or `None` before it was read.
     pub const fn hello(&self) -> Option<&Hello> {
         self.hello.as_ref()
     }
@@ -132,13 +133,13 @@ impl AdapterState {
         self.power.after = after;
     }
 
-    /// Forgets the identity, so that it is read again. The known state of the encoder's supply stays: HELLO does not
-    /// switch it.
+    /// Discards the identity, so that it is read again. The known state of the encoder supply is kept, since HELLO does
+    /// not switch it.
     pub(crate) fn forget(&mut self) {
         *self = AdapterState { power: self.power, ..AdapterState::default() };
     }
 
-    /// Returns whether the encoder had power before the session; `None` while not known.
+    /// Returns whether the encoder was supplied before the session, or `None` if unknown.
     pub(crate) const fn found_supplied(&self) -> Option<bool> {
         self.power.found
     }
@@ -148,23 +149,23 @@ impl AdapterState {
         self.power.found = Some(is_supplied);
     }
 
-    /// Returns whether the supply has to be switched off at the end of the session.
+    /// Returns whether the supply must be switched off at the end of the session.
     pub(crate) fn supply_goes_off(&self) -> bool {
         self.power.goes_off()
     }
 
-    /// Returns whether anything has ever arrived from it, even damaged.
+    /// Returns whether anything has been received from the adapter, even if damaged.
     pub(crate) const fn has_spoken(&self) -> bool {
         self.has_spoken
     }
 
-    /// Returns the local time at which the adapter's clock was at `t_us`, by the reply with this time.
+    /// Returns the local time at which the adapter's clock was at `t_us`, according to the reply with this time.
     pub(crate) fn moment_of(&mut self, t_us: u64, answered: &TimedReply) -> Moment {
         self.clocks.moment_of(t_us, answered.sent_at, answered.received_at)
     }
 }
 
-/// The host's side, for one exchange.
+/// Host side of an adapter for a single exchange.
 pub(crate) struct Adapter<'m, 'a> {
     pub(crate) line: &'m mut SerialLine<'a>,
     pub(crate) state: &'m mut LineState,
@@ -172,10 +173,8 @@ pub(crate) struct Adapter<'m, 'a> {
 }
 
 impl Adapter<'_, '_> {
-    /// Identifies the adapter once per session: HELLO ends streams. It does not switch the supply.
-    ///
-    /// # Errors
-    /// [`AdapterError::Version`] among others.
+    /// Identifies the adapter, once per session, because HELLO ends streams. The supply is not switched.⎏⎏#
+    /// Errors⎏Includes [`AdapterError::Version`].
     pub(crate) fn hello(&mut self) -> Result<(), Failure> {
         if self.adapter.hello.is_none() {
             // The empty packet before it ends anything that the adapter may have received from another host.
@@ -192,11 +191,9 @@ impl Adapter<'_, '_> {
         Ok(())
     }
 
-    /// Switches the encoder's supply on; returns the measured millivolts and milliamperes. If the voltage is more than the
-    /// encoder tolerates, it is switched off again.
-    ///
-    /// # Errors
-    /// [`AdapterError::NoSupply`], [`AdapterError::Overvoltage`] among others.
+    /// Switches the encoder supply on; returns the measured millivolts and milliamperes. If the voltage exceeds what
+    /// the encoder tolerates, the supply is switched off again.⎏⎏# Errors⎏Includes [`AdapterError::NoSupply`] and
+    /// [`AdapterError::Overvoltage`].
     pub(crate) fn supply(&mut self, voltage: SupplyVoltage) -> Result<(u16, u16), Failure> {
         if let Some(hello) = self.adapter.hello().filter(|hello| !hello.capabilities.has(Capabilities::SUPPLY)) {
             return Err(AdapterError::NoSupply { name: hello.name.clone() }.into());
@@ -215,10 +212,8 @@ impl Adapter<'_, '_> {
         Ok((measured, milliampere))
     }
 
-    /// Switches the encoder's supply off at the end of a session, unless it is to stay on.
-    ///
-    /// # Errors
-    /// See [`AdapterError`].
+    /// Switches the encoder supply off at the end of a session, unless it is to remain on.⎏⎏# Errors⎏See
+    /// [`AdapterError`].
     pub(crate) fn leave_supply(&mut self) -> Result<(), Failure> {
         if self.adapter.supply_goes_off() { self.switch_off() } else { Ok(()) }
     }
@@ -246,10 +241,7 @@ impl Adapter<'_, '_> {
         Err(AdapterError::Silent.into())
     }
 
-    /// Sends a request once; `None` if no reply arrives.
-    ///
-    /// # Errors
-    /// See [`AdapterError`].
+    /// Sends a request once; returns `None` if no reply arrives.⎏⎏# Errors⎏See [`AdapterError`].
     pub(crate) fn ask_once(&mut self, request: &Request) -> Result<Option<TimedReply>, Failure> {
         self.exchange(request, &[])
     }
@@ -296,7 +288,7 @@ impl Adapter<'_, '_> {
         }
     }
 
-    /// Returns the reply in a packet, if it belongs to this request: late ones have another sequence number.
+    /// Returns the reply in a packet, if it belongs to this request; late replies have another sequence number.
     fn judge(&mut self, request: &Request, seq: u8, packet: &Packet) -> Result<Option<Reply>, AdapterError> {
         let operation = request.operation();
         let parsed = Message::parse(packet);
@@ -316,7 +308,7 @@ impl Adapter<'_, '_> {
     }
 }
 
-/// Offset of the adapter's clock from the local one, in nanoseconds, between these two bounds: an adapter samples after the
+/// Bounds of the offset between the adapter's clock and the local one, in nanoseconds: an adapter samples after the
 /// request was sent and before the reply arrived.
 #[derive(Clone, Copy, Debug, Default)]
 struct Clocks {

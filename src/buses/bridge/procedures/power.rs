@@ -2,14 +2,14 @@
 
 use crate::parameter::Words;
 
-/// The state of the supply at the end of a session.
+/// State of the supply after a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SupplyAfter {
     /// As found: a supply switched on by this session is switched off.
     #[default]
     AsFound,
     On,
-    /// Off, even if it was on before.
+    /// Off, even if the supply was on before.
     Off,
 }
 
@@ -25,13 +25,13 @@ impl SupplyAfter {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Power {
     pub(super) after: SupplyAfter,
-    /// The encoder had power before the session; `None` if it is not known.
+    /// Whether the encoder was supplied before the session, if known.
     pub(super) found: Option<bool>,
     pub(super) given: bool,
 }
 
 impl Power {
-    /// Returns whether the supply has to be switched off at the end of the session.
+    /// Returns whether the supply must be switched off at the end of the session.
     pub(super) fn goes_off(self) -> bool {
         let found = self.found == Some(true);
         match self.after {
@@ -42,7 +42,7 @@ impl Power {
     }
 }
 
-/// Logs that the supply could not be left as requested: the session has ended, and no result is waited for.
+/// Logs that the supply could not be left as requested, since the ended session no longer reports results.
 pub(crate) fn warn_of_supply(left: Result<(), impl std::fmt::Display>) {
     if let Err(error) = left {
         tracing::warn!("the encoder's supply could not be switched off: {error}");

@@ -9,7 +9,7 @@ use crate::link::line::{LineError, LineState, SerialLine};
 use crate::link::{Ctx, LinkError};
 use crate::units::{Moment, SupplyVoltage};
 
-/// Stream and how its signals are sampled.
+/// A stream, and the sampling of its signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StreamRequest {
     Biss {
@@ -18,7 +18,7 @@ pub enum StreamRequest {
         /// Position, error and warning, without the CRC.
         data_bits: u8,
         crc_bits: u8,
-        /// Microseconds from one to the next.
+        /// Sampling interval in microseconds.
         period_us: u32,
     },
     Analog {
@@ -30,19 +30,19 @@ pub enum StreamRequest {
 /// Time until the signals of an encoder are valid: HIPERFACE, figure 38, up to 900 ms.
 const POWER_UP: Duration = Duration::from_secs(1);
 
-/// The streaming adapter and its actual setting.
+/// A streaming adapter and its actual settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Streaming {
     pub hello: Hello,
-    /// Nanoseconds from one sample to the next.
+    /// Sampling interval in nanoseconds.
     pub period_ns: i64,
-    /// For sine and cosine: the voltage of a value of 32 767; otherwise 0.
+    /// Full scale of sine and cosine in microvolts, the voltage of the value 32 767; otherwise 0.
     pub full_scale_microvolt: u32,
-    /// Millivolts and milliamperes with which the adapter supplies the encoder; `None`: it does not.
+    /// Measured encoder supply in millivolts and milliamperes, or `None` if the adapter does not supply the encoder.
     pub supplied: Option<(u16, u16)>,
 }
 
-/// Why there is no stream, or no longer.
+/// The reason why there is no stream, or why it has ended.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TapError {
     #[error("cancelled")]
@@ -74,15 +74,14 @@ impl From<Failure> for TapError {
 }
 
 impl Tap {
-    /// Creates a tap on an unidentified adapter; replies may arrive later than the protocol specifies by this margin.
+    /// Creates a tap for an unidentified adapter, whose replies may arrive later than the protocol specifies by the
+    /// given margin.
     pub fn new(margin: Duration) -> Self {
         Tap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None }
     }
 
-    /// Identifies the adapter, switches the encoder's supply on if requested, configures it and starts the stream.
-    ///
-    /// # Errors
-    /// [`AdapterError::Version`], [`NoSsi`](AdapterError::NoSsi), [`NoBiss`](AdapterError::NoBiss),
+    /// Identifies the adapter, switches the encoder supply on if requested, configures the adapter and starts the
+    /// stream.⎏⎏# Errors⎏[`AdapterError::Version`], [`NoSsi`](AdapterError::NoSsi), [`NoBiss`](AdapterError::NoBiss),
     /// [`NoAnalog`](AdapterError::NoAnalog) or [`NoSupply`](AdapterError::NoSupply), a refusal, or errors of the
     /// connection.
     pub fn begin(
@@ -126,10 +125,8 @@ impl Tap {
         Ok(Streaming { hello, period_ns, full_scale_microvolt, supplied })
     }
 
-    /// Returns the next samples; `None` if none have arrived by `until`, or nothing streams.
-    ///
-    /// # Errors
-    /// Why the stream has ended.
+    /// Returns the next samples, or `None` if none have arrived by `until` or no stream is running.⎏⎏# Errors⎏The
+    /// reason why the stream has ended.
     pub fn next(&mut self, ctx: Ctx<'_>, until: Moment) -> Result<Option<Portion>, TapError> {
         let Some(flow) = &mut self.flow else { return Ok(None) };
         let mut line = SerialLine::new(ctx);
@@ -137,10 +134,8 @@ impl Tap {
         Ok(flow.next(&mut adapter, until)?)
     }
 
-    /// Ends the stream at the adapter, even after cancellation, and leaves the encoder's supply as it was found.
-    ///
-    /// # Errors
-    /// Errors of the adapter or the connection.
+    /// Ends the stream, even after cancellation, and restores the encoder supply to its original state.⎏⎏#
+    /// Errors⎏Errors of the adapter or the connection.
     pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), TapError> {
         let mut line = SerialLine::new(ctx);
         line.shield(true);

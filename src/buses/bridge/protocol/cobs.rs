@@ -1,7 +1,7 @@
 //! Consistent overhead byte stuffing (Cheshire & Baker, IEEE/ACM Transactions on Networking 7, 1999). Encoded bytes
 //! contain no 00, which therefore can terminate a packet.
 
-/// Bytes that one code byte can be followed by.
+/// Maximum number of bytes that follow a code byte.
 const BLOCK: usize = 254;
 
 /// The reason why bytes are not valid COBS.

@@ -76,7 +76,7 @@ impl Data {
         }
     }
 
-    /// Parses a packet; `None` if it is not part of a stream.
+    /// Parses a packet, or returns `None` if it is not part of a stream.
     pub(super) fn parse(packet: &Packet) -> Result<Option<Self>, BodyError> {
         let mut fields = Fields::new(packet.op, &packet.body);
         let data = match packet.op {

@@ -121,7 +121,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Appends a text of at most 255 bytes with its length; a longer one is truncated between two characters.
+/// Appends a string of at most 255 bytes with its length; longer strings are truncated between characters.
 pub(super) fn push_text(body: &mut Vec<u8>, text: &str) {
     let end = (0..=text.len().min(255)).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
     // At most 255.

@@ -85,7 +85,7 @@ pub fn crc16(bytes: &[u8]) -> u16 {
     })
 }
 
-/// The remainder of eight bits at the upper end of the register.
+/// CRC remainders of all values of the upper eight register bits.
 const TABLE: [u16; 256] = table();
 
 #[expect(clippy::indexing_slicing, reason = "iterators cannot run while compiling; the index is that of the loop")]

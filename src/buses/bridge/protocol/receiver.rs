@@ -8,10 +8,10 @@ pub struct Receiver {
     bytes: Vec<u8>,
     /// Start of the search for the next 00.
     searched: usize,
-    /// The present packet is too long: its bytes are dropped until it ends.
+    /// Whether the current packet is too long, so that its bytes are dropped until it ends.
     overlong: bool,
     dropped: u64,
-    /// The damaged packet dropped last, until it is taken.
+    /// Last damaged packet, until it is taken.
     broken: Option<Vec<u8>>,
 }
 

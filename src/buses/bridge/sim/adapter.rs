@@ -22,7 +22,7 @@ use crate::sim::sine_cosine::{Checked, Quantity, Settings};
 use crate::sim::{ByteDevice, Faults, Motor};
 use crate::units::{CharacterFormat, Moment};
 
-/// Adapter with its attached devices, as seen from the host.
+/// An adapter with its attached devices, as seen from the host.
 #[derive(Clone)]
 pub struct Adapter {
     bus: Bus,
@@ -40,9 +40,9 @@ pub struct Adapter {
     requests: u32,
     pushed: u8,
     now: Moment,
-    /// The last reply is in transit until then.
+    /// Time until which the last reply is in transit.
     replied: Moment,
-    /// Bytes by the moment in which they have arrived.
+    /// Bytes by time of arrival.
     to_host: Queue<Vec<u8>>,
     inbox: Vec<u8>,
 }
@@ -60,13 +60,13 @@ impl Adapter {
     const MAX_SAMPLE_HZ: u32 = 1_000_000;
     const LATENCY: Duration = Duration::from_micros(250);
     const CONTROL_CYCLES: u32 = 47;
-    /// Maximum number of waiting replies: the memory of a small controller. Further requests are lost.
+    /// Maximum number of pending replies, limited by the memory of a small controller. Further requests are lost.
     const WAITING: usize = 16;
     /// The encoder's supply (manual, chapter 2).
     const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
     const SUPPLY_MILLIWATT: u32 = 300;
 
-    /// Creates the virtual adapter from `config`, with these devices; of several at one connector the last is used.
+    /// Creates the virtual adapter from `config` with the given devices; of several at one connector, the last is used.
     pub(super) fn new(config: &Config, shared: &Shared, shaft: &Shaft, attached: Vec<Attached>) -> Self {
         let mut adapter = Adapter {
             bus: Bus::new(config, shared, shaft),
@@ -104,7 +104,7 @@ impl Adapter {
         adapter
     }
 
-    /// Returns the device on BiSS, if it is of this type: to read it, to heat it or to set its errors.
+    /// Returns the BiSS device, if it has type `T`, so that tests can inspect it and set its temperature or errors.
     pub fn device<T: BissDevice>(&self) -> Option<&T> {
         let device: &dyn Any = &**self.bus.biss.as_ref()?;
         device.downcast_ref()
@@ -142,7 +142,7 @@ impl Adapter {
         }
     }
 
-    /// Replaces the faults; requests and stores keep their counts.
+    /// Replaces the faults; the counts of requests and stores are kept.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.faults = faults.clone();
         if let Some(device) = &mut self.bus.biss {
@@ -423,7 +423,7 @@ impl ByteDevice for Adapter {
         [self.to_host.due(), clocked, sampled].into_iter().flatten().min()
     }
 
-    /// A serial port over USB has no speed of its own.
+    /// Does nothing: a serial port over USB has no baud rate.
     fn set_host_format(&mut self, now: Moment, _format: CharacterFormat) {
         self.advance(now);
     }

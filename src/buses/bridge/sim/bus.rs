@@ -10,7 +10,7 @@ use crate::buses::bridge::protocol::BissStatus;
 use crate::sim::Motor;
 use crate::units::Moment;
 
-/// The wires with their encoders.
+/// The wires of a bus with their encoders.
 #[derive(Clone)]
 pub(super) struct Bus {
     pub(super) biss: Option<Box<dyn BissDevice>>,
@@ -51,12 +51,12 @@ impl Bus {
         self.follow_motor(now);
     }
 
-    /// Turns the adapter's own shaft with its motor from `now` on; a device follows at its next access.
+    /// Lets the adapter's own shaft follow its motor from `now` on; a device follows at its next access.
     pub(super) fn follow_motor(&mut self, now: Moment) {
         self.shaft.follow(now);
     }
 
-    /// Returns the position of the shaft in steps, and the steps per revolution; `None` without power.
+    /// Returns the shaft position in steps, and the number of steps per revolution, or `None` without power.
     fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
         match &mut self.biss {
             Some(device) => device.place(at),
@@ -97,13 +97,13 @@ impl Bus {
         }
     }
 
-    /// Inverts one bit in some frames.
+    /// Inverts one bit in some frames, as configured.
     fn damaged(&mut self, frame: u64, bits: u8) -> u64 {
         if bits > 0 && self.rng.f64() < self.noise { frame ^ 1 << self.rng.u8(..bits) } else { frame }
     }
 }
 
-/// Returns `wanted` bits of a frame of `bits` bits, in the order of transmission; after its end the line is low.
+/// Returns `wanted` bits of a frame of `bits` bits in transmission order; the line is low after the end of the frame.
 fn clocked(frame: u64, bits: u8, wanted: u8) -> u64 {
     let shifted =
         if wanted >= bits { frame.checked_shl((wanted - bits).into()) } else { Some(frame >> (bits - wanted)) };

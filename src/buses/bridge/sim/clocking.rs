@@ -5,7 +5,7 @@ use std::time::Duration;
 /// The fastest clock.
 pub(super) const MAX_CLOCK_HZ: u32 = 10_000_000;
 const MIN_CLOCK_HZ: u32 = 80_000;
-/// Clocks are whole parts of this.
+/// Frequency of which available clocks are integer fractions.
 const CRYSTAL_HZ: u32 = 60_000_000;
 /// Longest time that the encoder works on a frame.
 const ACKNOWLEDGE_US: u32 = 7;
@@ -35,20 +35,20 @@ pub(super) struct SsiSetting {
 }
 
 impl SsiSetting {
-    /// Returns the duration of the clocks of a word.
+    /// Returns the duration of a word's clocks.
     pub(super) fn burst(self) -> Duration {
         let nanoseconds = u64::from(self.clocks) * 1_000_000_000;
         Duration::from_nanos(nanoseconds.div_ceil(self.clock_hz.max(1).into()))
     }
 
-    /// Returns the minimum period in whole microseconds: word and pause.
+    /// Returns the minimum period of word and pause, in whole microseconds.
     pub(super) fn least_period_us(self) -> u32 {
         let microseconds = self.burst().as_nanos().div_ceil(1000);
         u32::try_from(microseconds).unwrap_or(u32::MAX).saturating_add(self.pause_us.into())
     }
 }
 
-/// Returns the fastest available clock not above the requested one; `None` below the slowest.
+/// Returns the fastest available clock not above the requested one, or `None` below the slowest.
 pub(super) fn actual_clock(clock_hz: u32) -> Option<u32> {
     let wanted = clock_hz.min(MAX_CLOCK_HZ);
     (wanted >= MIN_CLOCK_HZ).then(|| CRYSTAL_HZ / CRYSTAL_HZ.div_ceil(wanted))

@@ -7,7 +7,7 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED};
 
 parameters! {
-    /// Settings of a virtual adapter. By default it has no faults, and the encoder's supply is external.
+    /// Settings of a virtual adapter. By default there are no faults, and the encoder is supplied externally.
     pub(super) struct Config: ConfigError {
         pub(super) line: EncoderWiring = EncoderWiring::Good,
             "line" => Words(&[("good", EncoderWiring::Good), ("open", EncoderWiring::Open), ("low", EncoderWiring::Low), ("high", EncoderWiring::High)]);
@@ -20,7 +20,7 @@ parameters! {
 }
 
 parameters! {
-    /// Settings that attached devices may use as well: the seed of the noise, and faults of the line and the device.
+    /// Settings that attached devices may share: the noise seed, and faults of the line and the device.
     pub(super) struct Shared: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -28,7 +28,7 @@ parameters! {
 }
 
 parameters! {
-    /// The shaft, if no attached device has this setting.
+    /// Shaft settings, used if no attached device has them.
     pub(super) struct Shaft: ConfigError {
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
     }

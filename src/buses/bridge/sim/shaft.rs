@@ -3,14 +3,14 @@
 use crate::sim::Motor;
 use crate::units::Moment;
 
-/// Shaft with its motor. A copy gets a motor of its own.
+/// A shaft with its motor. A copy has a separate motor.
 #[derive(Debug)]
 pub(super) struct Shaft {
     motor: Motor,
     /// Speed of the motor since then.
     rpm: f64,
     since: Moment,
-    /// Revolutions from its zero at that moment.
+    /// Revolutions from the zero of the shaft at that moment.
     revolutions: f64,
 }
 
@@ -23,10 +23,10 @@ impl Clone for Shaft {
 impl Shaft {
     /// Steps of a revolution.
     const PER_TURN: u64 = 1 << 25;
-    /// Number of revolutions after which it wraps.
+    /// Number of revolutions after which the position wraps.
     const TURNS: f64 = 65_536.0;
 
-    /// Creates a shaft at its zero that turns at a speed.
+    /// Creates a shaft at its zero that turns at the given speed.
     pub(super) fn turning(rpm: f64) -> Self {
         Shaft { motor: Motor::at(rpm), rpm, since: Moment::START, revolutions: 0.0 }
     }
@@ -35,7 +35,7 @@ impl Shaft {
         &self.motor
     }
 
-    /// Turns with its motor from `now` on.
+    /// Follows the motor from `now` on.
     pub(super) fn follow(&mut self, now: Moment) {
         let rpm = self.motor.rpm();
         if rpm != self.rpm {

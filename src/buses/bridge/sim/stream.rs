@@ -10,7 +10,7 @@ use crate::units::Moment;
 
 /// Longest wait for a packet to fill.
 const FLUSH: Duration = Duration::from_millis(5);
-/// The data that the adapter buffers for a host that does not fetch it.
+/// Amount of data that the adapter buffers for a host that does not fetch it.
 const BACKLOG: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ struct Pace {
 }
 
 impl Pace {
-    /// Creates a stream with this many bytes before the samples and in each sample.
+    /// Creates a stream with the given numbers of bytes before the samples and per sample.
     fn new(start: Moment, period: Duration, head: usize, size: usize) -> Self {
         let fit = (MAX_BODY - head) / size.max(1);
         let in_time = FLUSH.as_nanos() / period.as_nanos().max(1);
@@ -45,7 +45,6 @@ impl Pace {
         self.start + Duration::from_nanos(u64::try_from(nanoseconds).unwrap_or(u64::MAX))
     }
 
-    /// Returns the time of the last sample of the next packet.
     fn due(&self) -> Moment {
         self.moment(self.first + self.capacity - 1)
     }
@@ -62,7 +61,8 @@ impl Pace {
         }
     }
 
-    /// Returns the number of the first sample, its time, and the samples lost before it; advances to the next packet.
+    /// Returns the number and time of the first sample in the next packet, and the number of samples lost before it;
+    /// advances to the following packet.
     fn next(&mut self) -> (u32, u64, u16) {
         let first = (self.first % (1 << 32)) as u32;
         let t0_us = u64::try_from(self.moment(self.first).since_start().as_micros()).unwrap_or(u64::MAX);
@@ -73,7 +73,6 @@ impl Pace {
     }
 }
 
-/// A stream of SSI words or BiSS frames.
 #[derive(Clone, Debug)]
 pub(super) struct Clocked {
     pub(super) kind: Kind,
@@ -157,7 +156,7 @@ impl Analog {
         self.source.change(u64::try_from(index).unwrap_or(u64::MAX), settings);
     }
 
-    /// Returns the packets that are complete at a moment, each with its own. An encoder without supply has no signals.
+    /// Returns the packets that are complete by a moment, each with its time. An encoder without supply has no signals.
     pub(super) fn run(&mut self, to: Moment, is_supplied: bool) -> Vec<(Moment, Data)> {
         let mut packets = Vec::new();
         self.pace.skip(to);
@@ -180,7 +179,7 @@ impl Analog {
     }
 }
 
-/// Returns parts of the full scale; values beyond it are clamped.
+/// Converts a voltage to a fraction of full scale; values beyond it are clamped.
 fn raw(volts: f64) -> i16 {
     // Saturates like the converter.
     (volts * 1e6 / f64::from(Analog::FULL_SCALE_MICROVOLT) * 32_767.0).round() as i16

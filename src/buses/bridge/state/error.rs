@@ -5,7 +5,7 @@ use crate::buses::bridge::procedures::AdapterError;
 use crate::buses::bridge::protocol::{BodyError, ErrorCode, Operation};
 use crate::buses::bridge::state::TEXTS;
 
-/// Returns the text for an adapter that does not reply, or not as requested.
+/// Explains why an adapter does not reply, or not as requested.
 pub fn adapter(error: &AdapterError) -> Text {
     match error {
         AdapterError::Silent => TEXTS.text("adapter.silent"),

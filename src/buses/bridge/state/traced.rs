@@ -5,13 +5,13 @@ use crate::app::{Explained, Text, TraceFault};
 use crate::buses::bridge::protocol::{Message, Packet, Reply, Request};
 use crate::buses::bridge::state::TEXTS;
 
-/// Parses the packet in transmitted bytes; `None` if they are not one.
+/// Parses the packet in transmitted bytes, or returns `None` if they do not contain one.
 pub fn packet(bytes: &[u8]) -> Option<Packet> {
     let stuffed = bytes.split(|byte| *byte == 0).find(|stuffed| !stuffed.is_empty())?;
     Packet::parse(stuffed).ok()
 }
 
-/// Explains a received packet that is damaged or a refusal; `None` for any other.
+/// Explains a received packet that is damaged or a refusal, or returns `None` for others.
 pub fn received(bytes: &[u8]) -> Option<Explained> {
     let Some(packet) = packet(bytes) else { return Some(Explained::broken(TEXTS.text("trace.no_packet"))) };
     match Message::parse(&packet) {
@@ -32,7 +32,7 @@ pub fn request_text(request: &Request) -> Text {
     }
 }
 
-/// Returns the text of a packet from an adapter; `None` if it is not a message.
+/// Describes a packet from an adapter, or returns `None` if it is not a message.
 pub fn message_text(packet: &Packet) -> Option<Text> {
     Some(match Message::parse(packet).ok()? {
         Message::Reply(Reply::BissRead { raw, .. } | Reply::SsiRead { raw, .. }) => plain(format!("0x{raw:X}")),

@@ -170,7 +170,7 @@ impl Transport {
 }
 
 impl ConnectionTimeout {
-    /// The largest number: 512 intervals.
+    /// Maximum exponent: 512 intervals.
     const MOST: u8 = 7;
 
     /// Creates the multiplier with this exponent, or `None` beyond 7.

@@ -159,8 +159,8 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Appends a text whose length fits into one byte: SHORT_STRING. Non-ASCII bytes become question marks, in both directions;
-/// a text longer than 255 is truncated.
+/// Appends a SHORT_STRING, whose length fits into one byte. Non-ASCII bytes become question marks, in both directions;
+/// strings longer than 255 bytes are truncated.
 pub(super) fn push_short_text(bytes: &mut Vec<u8>, text: &str) {
     let ascii: Vec<u8> = ascii(text).take(0xFF).collect();
     // At most 255.
@@ -168,7 +168,7 @@ pub(super) fn push_short_text(bytes: &mut Vec<u8>, text: &str) {
     bytes.extend(ascii);
 }
 
-/// Returns the characters of a text as they are sent.
+/// Returns the characters of a string as they are sent.
 pub(super) fn ascii(text: &str) -> impl Iterator<Item = u8> {
     text.chars().map(|c| if c.is_ascii() { c as u8 } else { b'?' })
 }

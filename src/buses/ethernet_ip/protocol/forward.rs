@@ -282,7 +282,7 @@ impl ForwardClosed {
     }
 }
 
-/// The length in words, a reserved byte, words.
+/// Parses application data: length in words, a reserved byte, and the words.
 fn application(fields: &mut Fields<'_>) -> Result<Vec<u16>, PacketError> {
     let words = fields.u8()?;
     fields.u8()?;

@@ -177,7 +177,7 @@ impl SocketAddress {
         SocketAddress { family: SocketAddress::INTERNET, port, address }
     }
 
-    /// Parses 16 bytes; the last eight are ignored.
+    /// Parses 16 bytes, ignoring the last eight.
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::SocketAddress, bytes);
         let family = u16::from_be_bytes(fields.array()?);

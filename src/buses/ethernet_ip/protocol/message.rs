@@ -40,7 +40,6 @@ const NAMES: [(Service, &str); 5] = [
     (Service::GET, "Get_Attribute_Single"),
     (Service::SET, "Set_Attribute_Single"),
 ];
-/// Those of the connection manager.
 const CONNECTION_NAMES: [(Service, &str); 4] = [
     (Service::FORWARD_OPEN, "ForwardOpen"),
     (Service::FORWARD_CLOSE, "ForwardClose"),

@@ -69,7 +69,7 @@ const KINDS: [(u8, LogicalKind); 4] = [
     (0x2C, LogicalKind::ConnectionPoint),
     (0x30, LogicalKind::Attribute),
 ];
-/// The only format of an electronic key, and its first bytes: type, format.
+/// The first bytes of an electronic key: type and the only format.
 const KEY: [u8; 2] = [0x34, 0x04];
 const DATA: u8 = 0x80;
 const WHAT: Structure = Structure::Path;
@@ -132,7 +132,7 @@ impl Path {
         Path::parse(fields.bytes(usize::from(words) * 2)?)
     }
 
-    /// Appends the length in words, then the path; nothing for a path beyond 255 words.
+    /// Appends the length in words and the path; nothing for a path beyond 255 words.
     pub(super) fn push_to(&self, bytes: &mut Vec<u8>) {
         let mut path = self.emit();
         path.truncate(usize::from(u8::MAX) * 2);

@@ -8,7 +8,7 @@ use super::fields::PacketError;
 pub struct Receiver {
     bytes: Vec<u8>,
     broken: Option<PacketError>,
-    /// Bytes that are not a frame, until they are taken.
+    /// Bytes that do not form a frame, until they are taken.
     rest: Vec<u8>,
 }
 

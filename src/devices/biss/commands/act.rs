@@ -133,7 +133,7 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     }
 }
 
-/// Returns whether an operation passed: it is done, and its result, if any, is good.
+/// Returns whether an operation is complete and its result, if any, is good.
 fn passes(outcome: &Outcome) -> bool {
     match outcome {
         Outcome::Tested(report) => report.result.passes(),
@@ -146,8 +146,8 @@ fn passes(outcome: &Outcome) -> bool {
     }
 }
 
-/// Parses the arguments of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. If neither calibration nor
-/// test is given, both are run.
+/// Parses the arguments of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. If neither calibration
+/// nor test is given, both are run.
 fn mounting(output: &Output, words: &[&str]) -> Result<MountingRun> {
     let mut run = MountingRun::default();
     let (mut tests, mut saves) = (false, false);
@@ -184,7 +184,7 @@ fn place(text: &str) -> Result<PresetValue> {
     }
 }
 
-/// Parses a value within what the registers can hold; the encoder's widths may allow less.
+/// Parses a value that fits into the registers; the field widths of the encoder may be smaller.
 fn value(singleturn: &str, multiturn: &str) -> Result<PresetValue> {
     let part = |name: &str, text: &str| {
         let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{name}: {text:?} is not a number")))?;
@@ -222,7 +222,8 @@ impl<'a> PresetArguments<'a> {
         Ok(PresetArguments { singleturn, multiturn, parts })
     }
 
-    /// Returns the change. A multiturn that is not given is 0; if it is not preset, the stored one stays.
+    /// Returns the change. A multiturn that is not given is 0; if only the singleturn is preset, the stored multiturn
+    /// is kept.
     fn change(&self, runner: &mut Runner) -> Result<Change> {
         let stored = |runner: &mut Runner| -> Result<String> {
             let Ok(range) = BissProfile::PRESET.parse::<RegisterRange>() else { return Ok("0".to_owned()) };

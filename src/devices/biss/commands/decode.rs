@@ -17,9 +17,9 @@ use crate::cli::{Failure, Result};
 
 /// The kind of an argument.
 enum Captured {
-    /// The bits of a position frame, as they were written.
+    /// The bits of a position frame as written.
     Bits(String, u64),
-    /// A position word, as it was written.
+    /// A position word as written.
     Word(String, u64),
     Bytes(Vec<u8>),
 }
@@ -37,8 +37,8 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     show(output, &explained)
 }
 
-/// Parses the arguments. Nine hex digits with 0x, a `raw=` prefix or a final h make a position word; 11 hex digits, or
-/// others with 0x, are the bits of a frame; all others are bytes.
+/// Parses the arguments. Nine hex digits with 0x, a `raw=` prefix or a final h form a position word; 11 hex digits, or
+/// others with 0x, form the bits of a frame; all others are bytes.
 fn captured(words: &[String]) -> Result<Vec<Captured>> {
     let is_bits = |word: &String| match digits(word) {
         (true, digits) => (3..=2 * position::BYTES).contains(&digits.len()),
@@ -62,7 +62,6 @@ fn captured(words: &[String]) -> Result<Vec<Captured>> {
     words.iter().map(one).collect()
 }
 
-/// Prefix of a position word in JSON and tables.
 const RAW: &str = "raw=";
 
 fn position_word(word: &str) -> Result<u64> {
@@ -74,7 +73,7 @@ fn position_word(word: &str) -> Result<u64> {
         .ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, such as 0x024698000 or raw=610893824")))
 }
 
-/// Refuses a word with an odd number of digits: it is not bytes, but may be a decimal or hexadecimal position word, which
+/// Refuses an argument with an odd number of digits: it does not consist of bytes, but may be a position word, which
 /// must be marked.
 fn ensure_no_word(word: &str) -> Result<()> {
     let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());
@@ -86,7 +85,7 @@ fn ensure_no_word(word: &str) -> Result<()> {
     Err(Failure::Usage(format!("{word:?} {why}")))
 }
 
-/// Returns whether a word begins with 0x, and the rest of it.
+/// Returns whether an argument begins with 0x, and the remaining digits.
 fn digits(word: &str) -> (bool, &str) {
     match word.strip_prefix("0x").or_else(|| word.strip_prefix("0X")) {
         Some(digits) => (true, digits),
@@ -94,7 +93,7 @@ fn digits(word: &str) -> (bool, &str) {
     }
 }
 
-/// Explains bytes by the protocol whose checksum matches, else by their form.
+/// Explains bytes by the protocol whose checksum matches, or else by their form.
 fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
     let ubicom = ubicom::explain(bytes, requested);
     let bridge = bridge::explain(bytes);

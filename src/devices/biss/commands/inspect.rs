@@ -21,7 +21,7 @@ use crate::devices::biss::protocol::{KIND, Name, Role};
 use crate::devices::biss::state::explain as explained;
 use crate::result_of;
 
-/// Time without a good frame after which the line counts as noise only.
+/// Time without a valid frame after which the line is considered to carry only noise.
 const NOISE: Duration = Duration::from_secs(5);
 
 pub(super) fn identify(common: &Common, output: &Output) -> Result {
@@ -89,7 +89,7 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     lines.text()
 }
 
-/// Returns the serial number and its bytes: no manual says which byte is the highest.
+/// Returns the serial number with its bytes, since no manual defines the byte order.
 fn serial(identity: &Identity) -> String {
     format!("{} ({})", identity.serial_number, hex(&identity.serial_bytes))
 }

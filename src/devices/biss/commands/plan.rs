@@ -25,7 +25,7 @@ use crate::result_of;
 pub(super) const CALIBRATION: &str =
     "counterclockwise, then clockwise; if the clockwise run fails, the calibration table is lost";
 
-/// Makes a plan for a change. Writes nothing.
+/// Prepares the plan of a change without writing.
 pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
     Ok(result_of!(runner.run(BissJob::Prepare(change))?, BissOutput::Prepared(prepared) => *prepared))
 }
@@ -56,13 +56,13 @@ pub(super) fn commit(
     Ok((WriteSummary { written, verified, write_cycles, backup: committed.backup }, outcomes))
 }
 
-/// Returns the plan as text and JSON: each operation old → new, and the cost.
+/// Describes the plan as text and JSON: each operation old → new, and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
-/// Returns the operations as JSON; registers that are saved together have no cost of their own.
+/// Returns the operations as JSON; registers that are saved together have no separate cost.
 pub(super) fn operations(plan: &BissPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }

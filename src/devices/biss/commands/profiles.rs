@@ -52,7 +52,7 @@ impl ProfileCommands for BissCommands {
         })
     }
 
-    /// Reads the encoder for a comparison; refused if it shows values that were never saved.
+    /// Reads the encoder for a comparison; refused if its registers show values that were never saved.
     fn present(&self, common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
     }

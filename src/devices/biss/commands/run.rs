@@ -14,7 +14,6 @@ use crate::devices::biss::state::explain as words;
 use crate::result_of;
 use crate::worker::Session;
 
-/// A session with a BiSS encoder on its thread.
 pub(super) type Runner = runner::Runner<Biss>;
 
 impl Runs for Biss {
@@ -40,7 +39,7 @@ impl Runs for Biss {
         }
     }
 
-    /// Returns the text of each step of an operation, and of each task of the user.
+    /// Describes each step of an operation, and each task of the operator.
     fn announce(doing: &JobStep) -> Option<String> {
         match doing {
             JobStep::Operation { item, progress: news } => {
@@ -51,7 +50,7 @@ impl Runs for Biss {
     }
 }
 
-/// Returns the detail of a step: what prevents the start, how long it takes.
+/// Describes the details of a step: what prevents its start, or how long it takes.
 fn detail(news: &ProcedureProgress) -> String {
     match &news.detail {
         Detail::Begins => String::new(),
@@ -72,7 +71,7 @@ pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     Ok(result_of!(runner.run(BissJob::Identify)?, BissOutput::Identity(identity) => identity))
 }
 
-/// Returns the number of frames with a wrong checksum in the last job, apart from those in its reading.
+/// Returns the number of frames with a wrong checksum in the last job, except those in its reading.
 pub(super) fn crc_errors(runner: &Runner) -> u64 {
     let count = |remark: &DeviceMessage| match remark {
         DeviceMessage::CrcErrors(count) => u64::from(*count),
@@ -85,7 +84,7 @@ pub(super) fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec
     read_registers(runner, range).map(|read| read.bytes)
 }
 
-/// Reads consecutive registers, and whether they may show values that were never saved.
+/// Reads consecutive registers; returns also whether they may show values that were never saved.
 pub(super) fn read_registers(runner: &mut Runner, range: RegisterRange) -> Result<ReadRegisters> {
     match runner.run(BissJob::Read(range))? {
         BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read),

@@ -17,13 +17,13 @@ pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
     register(address).map(|register| register.name.english()).or_else(area)
 }
 
-/// Returns the meaning of the bytes at an address, if they are a whole register with a meaning beyond its number.
+/// Describes the bytes at an address, if they form a complete register with a meaning beyond its number.
 pub(super) fn register_meaning(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
     let register = register(address).filter(|register| register.address == address)?;
     words(register, bytes)
 }
 
-/// Returns the meaning of a described register, if the bytes of a run are its own.
+/// Describes a register, if the bytes of a run are exactly its own.
 pub(super) fn of_run(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
     let own = register.address == range.start() && register.width == range.count();
     own.then(|| words(register, bytes)).flatten()
@@ -37,7 +37,7 @@ pub(super) fn quantity(register: &Register, bytes: &[u8]) -> Option<f64> {
     }
 }
 
-/// Returns the word for a filter, as `do biss filter` takes it.
+/// Returns the keyword of a filter, as accepted by `do biss filter`.
 pub(super) fn filter(filter: Filter) -> String {
     match filter {
         Filter::Balanced => "balanced".to_owned(),
@@ -46,7 +46,7 @@ pub(super) fn filter(filter: Filter) -> String {
     }
 }
 
-/// Returns the meaning of a register's bytes; `None` for a code without meaning.
+/// Describes the bytes of a register, or returns `None` for a code without a meaning.
 fn words(register: &Register, bytes: &[u8]) -> Option<String> {
     let unit = if register.unit.is_empty() { String::new() } else { format!(" {}", register.unit) };
     Some(match register.decode(bytes)? {

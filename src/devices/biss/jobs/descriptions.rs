@@ -4,8 +4,8 @@ use crate::devices::biss::protocol::{Descriptions, KIND};
 use crate::profile::Cause;
 use crate::store::{Store, StoreError, read_folder};
 
-/// Returns the descriptions of encoders, the user's own before the built-in ones, and the errors of those that cannot be
-/// used (a `DescriptionError` each).
+/// Returns the descriptions of encoders, user-defined ones before the built-in ones, and the errors of unusable ones (a
+/// `DescriptionError` each).
 pub fn descriptions(store: &Store) -> (Descriptions, Vec<StoreError>) {
     let (files, unread) = read_folder(&store.device_folder(KIND), "ron");
     let (own, broken) = Descriptions::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));

@@ -6,13 +6,13 @@ use crate::buses::bridge::protocol::Data;
 use crate::devices::biss::procedures::{Frame, frames};
 use crate::devices::biss::protocol::Layout;
 
-/// Position frames of BiSS, with their checksums checked.
+/// BiSS position frames with verified checksums.
 #[derive(Clone, Debug)]
 pub struct BissFrames {
     pub layout: Layout,
     /// Clock in hertz.
     pub clock_hz: u32,
-    /// Microseconds from one to the next.
+    /// Sampling interval in microseconds.
     pub period_us: u32,
 }
 

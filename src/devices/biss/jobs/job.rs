@@ -18,24 +18,25 @@ use crate::devices::biss::protocol::{Area, DeviceMode, Filter, KIND, PresetValue
 use crate::store::{DeviceKey, StoreError};
 use crate::worker::commit::{ApprovedPlan, wear};
 
-/// Persistent writes after which an encoder counts as worn (manual 6.1: "1000 write cycles should not be exceeded").
+/// Number of persistent writes at which an encoder has reached its limit (manual 6.1: "1000 write cycles should not be
+/// exceeded").
 pub const WEAR_LIMIT: u64 = 1000;
-/// Number of persistent writes from which the user is warned of wear.
+/// Number of persistent writes from which the user is warned.
 pub const WEAR_WARNING: u64 = 800;
 
 /// A job of a session with a BiSS encoder.
 #[derive(Debug)]
 pub enum BissJob {
-    /// Reads everything that is displayed: for a window, after connecting.
+    /// Read everything that is displayed after connecting.
     Survey,
     Identify,
     /// Mode, errors, warnings, temperature, filter.
     Status,
-    /// Checks the encoder against its description, its data sheet and the line, with one verdict per item.
+    /// Check the encoder against its description, its data sheet and the line, with a verdict for each item.
     Check,
     /// The position, once.
     Position,
-    /// Reads consecutive registers; those of a data area only at standstill.
+    /// Read consecutive registers; those of a data area only at standstill.
     Read(RegisterRange),
     /// Reads all direct registers, 40h…7Fh.
     ReadDirect,
@@ -44,13 +45,13 @@ pub enum BissJob {
     ReadArea(Area),
     /// Reads everything that can be restored, at standstill. Values that were never saved are marked.
     Save,
-    /// The same for a comparison: refused if there may be values that were never saved.
+    /// Save for a comparison, which is refused if there may be values that were never saved.
     SaveToCompare,
-    /// Makes a plan; writes nothing.
+    /// Prepare a plan without writing.
     Prepare(Change),
     /// Carries a plan out.
     Commit(Box<Commit>),
-    /// Leads the encoder back to operation and clears the password, whoever changed it.
+    /// Return the encoder to operation and clear the password, whoever changed the mode.
     LeadBack,
 }
 
@@ -61,10 +62,10 @@ pub enum Change {
         profile: Box<BissProfile>,
         options: RestoreOptions,
     },
-    /// Writes registers: addresses and bytes. Those of a data area are saved together.
+    /// Write registers, given as addresses and bytes. Those of a data area are saved together.
     Write(Vec<(RegisterRange, Vec<u8>)>),
     SelectFilter(Filter),
-    /// Stores this preset value, if given; then sets the given parts of the position at the shaft's present place to the
+    /// Store this preset value, if given; then set the given parts of the position at the present shaft angle to the
     /// stored value.
     Preset {
         value: Option<PresetValue>,
@@ -76,17 +77,17 @@ pub enum Change {
     },
 }
 
-/// Kind of change, by how an interrupted one is completed.
+/// Kind of change, which determines how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edited bytes: those not yet written remain edits.
+    /// Edited bytes; those not yet written remain edits.
     Bytes,
-    /// Guided procedures: those not completed are started again.
+    /// Guided procedures; incomplete ones are started again.
     Guided,
-    /// The same with a calibration among them: no backup contains its table.
+    /// Guided procedures including a calibration, whose table no backup contains.
     Calibration,
-    /// Wiegand test alone: it stores only its result.
+    /// Only the Wiegand test, which stores nothing but its result.
     WiegandTest,
     Filter,
     /// Preset: its value, its execution, or both.
@@ -112,9 +113,9 @@ pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: BissPlan,
     pub identity: Identity,
-    /// Number of persistent writes of the encoder recorded on this computer; `None` if the logbook has no record.
+    /// Number of persistent writes to the encoder recorded on this computer, or `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
-    /// Registers that are as they should be already.
+    /// Number of registers that already have the intended value.
     pub unchanged: u64,
     /// Settings of a profile that the encoder does not have.
     pub missing: Vec<String>,
@@ -123,12 +124,12 @@ pub struct Prepared {
     /// Device mode in which the profile to restore was read, if it may contain values that were never saved.
     pub unsaved: Option<DeviceMode>,
     pub other_type: Option<OtherType>,
-    /// Values of another device's mounting that are written: they must be set up again.
+    /// Written values that belong to the mounting of another device and must be set up again.
     pub mounting_written: Vec<RegisterRange>,
 }
 
 impl Prepared {
-    /// Returns the minimum number of write cycles of the flash, if the user should be warned of wear.
+    /// Returns the minimum number of write cycles of the flash, if the user should be warned.
     pub fn wear(&self) -> Option<u64> {
         wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
@@ -166,18 +167,18 @@ impl Operator for OperatorPresence {
 
 pub type Committed = crate::worker::Committed<Written>;
 
-/// Registers as they were read.
+/// Registers as last read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadRegisters {
     /// The first.
     pub start: RegisterAddress,
-    /// Their values, in the order of their addresses.
+    /// Values in address order.
     pub bytes: Vec<u8>,
-    /// Device mode in which they were read, if they may show values that were never saved.
+    /// Device mode during the reading, if the registers may show values that were never saved.
     pub unsaved: Option<DeviceMode>,
 }
 
-/// A message of a BiSS encoder during a job, or of the program about it.
+/// A message of a BiSS encoder during a job, or of the program about the encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     /// Frames with a wrong checksum that belong to no reading.
@@ -186,7 +187,7 @@ pub enum DeviceMessage {
     Descriptions(Vec<StoreError>),
 }
 
-/// Step of a running BiSS job. Its text is that of the command line.
+/// A step of a running BiSS job. It displays as on the command line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JobStep {
     Register(RegisterAddress),
@@ -220,7 +221,7 @@ pub enum BissOutput {
     Registers(ReadRegisters),
     Area {
         banks: Vec<Bank>,
-        /// Device mode in which they were read, if they may show values that were never saved.
+        /// Device mode during the reading, if the registers may show values that were never saved.
         unsaved: Option<DeviceMode>,
     },
     Saved(Box<BissProfile>),

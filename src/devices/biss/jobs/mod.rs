@@ -33,7 +33,7 @@ use crate::store::{Store, StoreError};
 use crate::worker::commit::cycles_seen;
 use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
-/// BiSS encoder with its connection.
+/// A BiSS encoder with its connection.
 pub struct Biss {
     wire: Box<dyn ByteLink>,
     station: Station,
@@ -41,11 +41,11 @@ pub struct Biss {
     /// The user's own descriptions that cannot be used; reported once.
     broken: Vec<StoreError>,
     motor: Option<Motor>,
-    /// Interval of the frames in a stream, in microseconds, if it is shorter than single requests allow.
+    /// Interval of streamed frames in microseconds, if it is shorter than single requests allow.
     streamed_us: Option<u32>,
 }
 
-/// Interval below which positions come as a stream, if there is an adapter.
+/// Interval below which positions are streamed, if there is an adapter.
 const STREAMED: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Biss {
@@ -59,7 +59,7 @@ impl Biss {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 
-    /// Identifies the encoder if it is not known in this session yet: frame and registers depend on it.
+    /// Identifies the encoder if this session has not done so yet, since frame and registers depend on its identity.
     fn ensure_identified(&mut self, context: &mut SessionContext) -> Result<(), Error> {
         if self.station.description.is_none() {
             let types = self.types.clone();
@@ -70,8 +70,8 @@ impl Biss {
 }
 
 impl Session<Biss> {
-    /// Creates a session on an open connection, with the descriptions of `store`. With a motor the encoder is a virtual one
-    /// in this process, and its writes are counted separately.
+    /// Creates a session on an open connection, with the descriptions of `store`. A motor denotes a virtual encoder in
+    /// this process, whose writes are counted separately.
     pub fn over(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -94,7 +94,7 @@ impl Session<Biss> {
         &self.device.station
     }
 
-    /// Returns the motor of the shaft, if the encoder is in this process.
+    /// Returns the motor of the shaft, if the encoder is simulated in this process.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }

@@ -14,7 +14,7 @@ use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
 
-/// Link parameter for schemes that do not show whether there is an adapter.
+/// Link parameter for schemes that do not reveal whether there is an adapter.
 const BRIDGE: &str = "bridge";
 /// Checks a link to a BiSS encoder without opening it.
 ///
@@ -42,7 +42,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     Ok(Session::over(wire, clock, station, store, motor))
 }
 
-/// Returns the line, and the virtual encoder, which counts for a link to it alone.
+/// Parses the line settings and the virtual encoder, which is only relevant for a link to one.
 fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     let way = transport(url)?;
     let is_virtual = url.scheme == Scheme::Sim;
@@ -75,7 +75,7 @@ fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
     }
 }
 
-/// Refuses parameters that neither the line nor the virtual device has, and names those that need an adapter.
+/// Refuses parameters that neither the line nor the virtual device has, and names those that require an adapter.
 fn check_virtual(query: &Query, way: Transport) -> Result<(), UrlError> {
     let own = |way: Transport| {
         let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));
@@ -92,7 +92,7 @@ fn check_virtual(query: &Query, way: Transport) -> Result<(), UrlError> {
     Err(UrlError::Unknown { name, scheme: Scheme::Sim.word(), known: known.join(", ") })
 }
 
-/// The virtual encoder created from its parameters, behind the pin or the adapter.
+/// A virtual encoder created from its parameters, behind the pin or the adapter.
 enum Simulated {
     Pin(Box<Config>),
     Bus(Box<Adapter>),

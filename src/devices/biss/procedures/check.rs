@@ -10,7 +10,6 @@ use crate::devices::biss::protocol::{
 
 pub use crate::analysis::check::{Verdict, Wear};
 
-/// One line of the check.
 pub type BissStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,36 +17,36 @@ pub enum CheckStep {
     Identity,
     /// Errors, warnings, device mode, password.
     Status,
-    /// The position with its error and warning bits.
+    /// Position with its error and warning bits.
     Position,
-    /// The checksums of the data sheet, and its frame.
+    /// Checksums of the data sheet, and its frame.
     DataSheet,
     /// Temperature and supply, compared with the limits of the data sheet.
     Limits,
     Wiegand,
-    /// Readings of the position, and the number of damaged ones.
+    /// Position readings, and the number of damaged ones.
     Readings,
     Wear,
 }
 
-/// One fact that the check found.
+/// A finding of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
     Name(String),
     SerialNumber(String),
     Firmware(Firmware),
-    /// No description matches it.
+    /// No description matches the encoder.
     Mismatch(Mismatch),
     Error(u8, Option<Name>),
     Warning(u8, Option<Name>),
-    /// It has no registers for errors and warnings, or not with this firmware.
+    /// The encoder has no registers for errors and warnings, or not with this firmware.
     NotTold,
     Mode(DeviceMode),
     Open,
     Position(PositionReading),
-    /// The position has its error bit set.
+    /// The error bit of the position is set.
     ErrorBit,
-    /// The position has its warning bit set.
+    /// The warning bit of the position is set.
     WarningBit,
     /// No readable position.
     NoPosition,
@@ -55,9 +54,9 @@ pub enum CheckFinding {
     SumsFit,
     /// A bank of the data sheet, or both together, cannot be relied upon.
     Sheet(EdsError),
-    /// There is no data sheet known to this program.
+    /// The encoder has no data sheet known to this program.
     NoSheet,
-    /// The frame of the data sheet differs from that of the description: bits of turns and steps.
+    /// The frames of the data sheet and the description differ in the widths of multiturn and singleturn.
     OtherFrame {
         sheet: (u8, u8),
         description: (u8, u8),
@@ -68,7 +67,7 @@ pub enum CheckFinding {
         low: i32,
         high: i32,
     },
-    /// Millivolts measured by the adapter when it switched the supply on, and the limits of the data sheet.
+    /// Supply voltage in millivolts, measured by the adapter when it was switched on, and the limits of the data sheet.
     Supply {
         millivolt: u16,
         low: u32,
@@ -80,9 +79,9 @@ pub enum CheckFinding {
         high: u32,
     },
     Wiegand(WiegandResult),
-    /// None was saved.
+    /// No test result has been saved.
     NotTested,
-    /// Number of readings of the position, and of damaged frames or replies.
+    /// Number of position readings, and of damaged frames or replies.
     Readings {
         requested: u32,
         damaged: u64,
@@ -95,10 +94,10 @@ pub enum CheckFinding {
     },
 }
 
-/// Number of readings of the position for assessing the line.
+/// Number of position readings for assessing the line.
 const READINGS: u32 = 50;
 
-/// Runs the check. It ends early only if the line fails. `wear` is called once the encoder is identified.
+/// Runs the check, which ends early only if the line fails. `wear` is called once the encoder has been identified.
 ///
 /// # Errors
 /// Errors of the exchange, or cancellation.
@@ -190,7 +189,7 @@ fn data_sheet(identity: &Identity) -> BissStepResult {
     BissStepResult::of(CheckStep::DataSheet, findings)
 }
 
-/// Offsets of the limits in the encoder's bank of the data sheet.
+/// Offsets of the limits in the encoder bank of the data sheet.
 mod offset {
     pub(super) const COLDEST: u8 = 0x30;
     pub(super) const HOTTEST: u8 = 0x32;
@@ -199,7 +198,7 @@ mod offset {
     pub(super) const MOST_CURRENT: u8 = 0x38;
 }
 
-/// Checks the limits of the data sheet, as far as they can be measured; `None` if nothing can be compared.
+/// Checks the limits of the data sheet, as far as they can be measured, or returns `None` if nothing can be compared.
 fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult> {
     let sheet = survey.identity.data_sheet.as_ref()?.encoder.eds.as_ref().ok()?;
     let judge = |fits: bool| if fits { Verdict::Good } else { Verdict::Attention };
@@ -229,7 +228,7 @@ fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
     sheet.values().find(|(field, _)| field.offset == offset).map(|(_, value)| value)
 }
 
-/// Checks the saved test; `None` for an encoder that has none.
+/// Checks the saved test result, or returns `None` for an encoder without one.
 fn wiegand(survey: &Survey) -> Option<BissStepResult> {
     let saved = survey.wiegand_saved?;
     let finding = match saved.emit() {

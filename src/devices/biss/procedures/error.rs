@@ -36,16 +36,11 @@ pub enum Error {
     NoReply {
         requested: RequestedItem,
         tries: u32,
-        /// The sent bytes came back: the adapter echoes, so the line itself works.
+        /// Whether the sent bytes came back: the adapter echoes, so the line itself works.
         echo_heard: bool,
     },
     #[error("damaged reply while {requested} (attempts: {tries}): {cause}")]
-    Damaged {
-        requested: RequestedItem,
-        tries: u32,
-        /// Damage of the last reply.
-        cause: Damage,
-    },
+    Damaged { requested: RequestedItem, tries: u32, cause: Damage },
     /// Bytes keep arriving during the required silence.
     #[error("the line is never silent")]
     NeverSilent,
@@ -55,7 +50,7 @@ pub enum Error {
     #[error("no encoder acknowledges on the bus (attempts: {tries})")]
     NoAcknowledge {
         tries: u32,
-        /// The adapter could supply the encoder, but was not told to.
+        /// Whether the adapter could supply the encoder, but was not told to.
         supply_off: bool,
     },
     /// The data line stays low.
@@ -64,43 +59,43 @@ pub enum Error {
     /// The data line stays high.
     #[error("the data line stays high (attempts: {tries})")]
     StuckHigh { tries: u32 },
-    /// No frame ever had a right checksum: the widths are not those of the encoder.
+    /// No frame ever had a correct checksum: the widths do not match the encoder.
     #[error("{frames} frames in a row have a wrong CRC: the encoder's have not {data_bits}+{crc_bits} bits")]
     WrongWidths {
         frames: u32,
-        /// Position, error and warning bits, as they were taken.
+        /// Assumed number of position, error and warning bits.
         data_bits: u8,
-        /// Bits of the checksum, as they were taken.
+        /// Assumed width of the checksum in bits.
         crc_bits: u8,
     },
     /// The widths of the frame are not known, and no length fits.
     #[error("no length of the frames fits their CRC")]
     WidthsUnknown { moving: bool },
-    /// The encoder replies, but not for this register: it does not have it.
+    /// The encoder does not have the register: it replies, but not for this address.
     #[error("the encoder has no register {address}")]
     NoSuchRegister { address: RegisterAddress },
-    /// Registers of a data area are not watched: they are read at standstill only.
+    /// Registers of a data area cannot be watched, because they are only read at standstill.
     #[error("register {address} is data, which is not read while the shaft may turn")]
     NotWatched { address: RegisterAddress },
-    /// The encoder did not take a value.
+    /// The encoder has not accepted a value.
     #[error("the encoder refuses 0x{value:02X} for register {address}")]
     Refused {
         address: RegisterAddress,
         value: u8,
-        /// The value that the register has instead, if the connection shows it.
+        /// Value of the register instead, if the connection reveals it.
         reads: Option<u8>,
     },
-    /// It is not known whether a value was accepted: reading the register back does not show it, or is not possible.
+    /// It is unknown whether a value was accepted: reading the register back does not reveal it, or is not possible.
     #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
     Unclear {
         address: RegisterAddress,
         value: u8,
-        /// Why it is not known.
+        /// Reason for the uncertainty.
         cause: Box<Error>,
     },
     #[error("cancelled")]
     Cancelled,
-    /// Neither order of a register number's two bytes gives an answer that the manual knows.
+    /// Neither byte order of a register number yields a reply that the manual defines.
     #[error("the encoder's answer 0x{answer:02X} does not tell the byte order of register numbers")]
     OrderUnknown { answer: u8 },
     /// A position with more bits than the known frame of the encoder.
@@ -113,23 +108,24 @@ pub enum Error {
         /// Bits within a revolution.
         singleturn: u8,
     },
-    /// Registers after the last address.
+    /// The registers extend beyond the last address.
     #[error("{count} registers from {start} on are more than there can be")]
     OutOfRange {
         /// The first.
         start: RegisterAddress,
         count: usize,
     },
-    /// Neither a description for this encoder nor a general one exists.
+    /// There is neither a description for this encoder nor a general one.
     #[error("no description fits the encoder, which says {0}")]
     NoDescription(Identity),
     /// The encoder has not been identified yet.
     #[error("the encoder was not identified")]
     NotIdentified,
-    /// The shaft turns but must stand still.
+    /// The shaft is turning but must be at rest.
     #[error("the shaft moves")]
     Moving {
-        /// Revolutions per minute, positive clockwise; `None` if the encoder counts too few turns to tell.
+        /// Speed in revolutions per minute, positive clockwise, or `None` if the encoder counts too few turns to
+        /// determine it.
         rpm: Option<f64>,
     },
     /// The encoder is in a device mode in which its registers may show values that were never saved.
@@ -156,7 +152,7 @@ pub enum Error {
         expected: usize,
         got: usize,
     },
-    /// The encoder does not return to operation, or keeps its password set.
+    /// The encoder does not return to operation, or its password remains set.
     #[error("the encoder stays in device mode {mode}, or its password stays set")]
     StaysUnlocked { mode: DeviceMode },
 }
@@ -168,15 +164,15 @@ impl Error {
     }
 }
 
-/// Returns the register of a request over the configuration pin; the bank selection if the number names none.
+/// Returns the register of a request over the configuration pin, or the bank selection if the number names none.
 pub(super) fn asked_register(number: u16) -> RegisterAddress {
     RegisterAddress::from_global(number).unwrap_or(RegisterAddress::BANK_SELECT)
 }
 
-/// Returns exactly the registers that were requested.
+/// Returns exactly the requested registers.
 ///
 /// # Errors
-/// [`Error::TooFew`] if there are fewer or more.
+/// [`Error::TooFew`] if their number differs.
 pub(super) fn exactly<const N: usize>(start: RegisterAddress, bytes: Vec<u8>) -> Result<[u8; N], Error> {
     bytes.try_into().map_err(|bytes: Vec<u8>| Error::TooFew { start, expected: N, got: bytes.len() })
 }
@@ -184,13 +180,13 @@ pub(super) fn exactly<const N: usize>(start: RegisterAddress, bytes: Vec<u8>) ->
 /// The damage of a reply.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    /// Bytes that are no frame.
+    /// The bytes are not a frame.
     #[error("bytes without a complete frame: {bytes}")]
     NoFrame {
         /// Number of bytes.
         bytes: usize,
     },
-    /// A frame that is not a reply to the request.
+    /// The frame is not a reply to the request.
     #[error(transparent)]
     Reply(#[from] ReplyError),
     /// A reply arrived before the echo, or the echo was changed.
@@ -228,7 +224,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the encoder can no longer be reached, so that further attempts are useless.
+    /// Returns whether the encoder is out of reach, so that further attempts are useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_)

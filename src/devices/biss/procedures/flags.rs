@@ -7,17 +7,17 @@ use super::{Error, Master, PositionReading};
 use crate::devices::biss::protocol::Role;
 use crate::units::Moment;
 
-/// The last values of the registers.
+/// Last values of the error and warning registers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flags {
     error: Option<bool>,
     warning: Option<bool>,
     looked_at: Moment,
-    /// If set, the error register was read last.
+    /// Whether the error register was read last.
     errors_last: bool,
 }
 
-/// Interval of reading one of the two registers while positions are polled: hardly any position is lost for it.
+/// Interval of reading one of the two registers while positions are polled; hardly any position is lost for it.
 const EVERY: Duration = Duration::from_millis(500);
 
 /// Reads the position once, with the present errors and warnings of the encoder.
@@ -53,7 +53,7 @@ pub(super) fn with_flags(master: &mut Master<'_>, reading: PositionReading) -> R
     Ok(PositionReading { error: flags.error, warning: flags.warning, ..reading })
 }
 
-/// Returns whether a bit of the register is set; `None` if the encoder has no such register.
+/// Returns whether a bit of the register is set, or `None` if the encoder has no such register.
 fn is_set(master: &mut Master<'_>, role: Role) -> Result<Option<bool>, Error> {
     let (description, firmware) = (master.station().description.clone(), master.station().firmware.unwrap_or_default());
     let register = description.as_ref().and_then(|own| own.with_role(role)).filter(|own| firmware >= own.since);

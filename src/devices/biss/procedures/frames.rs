@@ -14,10 +14,10 @@ pub enum NoReading {
     /// No encoder acknowledged.
     #[error("no encoder acknowledges on the bus")]
     NoAcknowledge,
-    /// Its bits are not a frame: a wrong checksum, or a line that does not change.
+    /// The bits are not a frame: the checksum is wrong, or the line does not change.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The adapter reports a status unknown to this version.
+    /// The adapter reports an unknown status.
     #[error("the adapter has no frame, status {}", .0.byte())]
     Status(BissStatus),
 }
@@ -25,20 +25,20 @@ pub enum NoReading {
 /// A frame of a stream.
 pub type Frame = Result<PositionData, NoReading>;
 
-/// Frames of a stream that follow each other at equal distances.
+/// Consecutive frames of a stream at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameRun {
     /// Number of the first frame, counted from the start of the stream, including missing ones.
     pub first: u64,
     /// Time of the first frame.
     pub at: Moment,
-    /// Nanoseconds from one to the next.
+    /// Sampling interval in nanoseconds.
     pub period_ns: i64,
-    /// Frames that are missing before it.
+    /// Number of frames missing before the first one.
     pub lost: u64,
-    /// The frames, one at least.
+    /// Frames; at least one.
     pub frames: Vec<Frame>,
-    /// Layout of their bits.
+    /// Layout of the frames.
     pub layout: Arc<Layout>,
     /// Whether the number of turn bits is known.
     pub is_split_known: bool,
@@ -49,7 +49,7 @@ pub struct FrameRun {
 }
 
 impl FrameRun {
-    /// Creates the frames of a packet, requested at this interval.
+    /// Creates the frames of a packet, requested at the given interval.
     pub(super) fn new(
         portion: &Portion,
         frames: Vec<Frame>,
@@ -68,7 +68,7 @@ impl FrameRun {
         self.first == self.lost
     }
 
-    /// Returns each frame with the moment in which it was taken.
+    /// Returns each frame with the moment at which it was taken.
     pub fn timed(&self) -> impl Iterator<Item = (Moment, &Frame)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.frames).map(move |(number, frame)| (self.at + period * number, frame))

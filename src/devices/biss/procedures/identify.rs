@@ -19,38 +19,38 @@ use crate::profile::Unknown;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
     pub kind: Kind,
-    /// The serial number, high byte first (`U`), as a decimal number; empty if there is no register for it.
+    /// Serial number in decimal, assuming big-endian bytes (`U`); empty if there is no register for it.
     pub serial_number: String,
-    /// Its bytes as received.
+    /// Bytes of the serial number as received.
     pub serial_bytes: Vec<u8>,
-    /// Its firmware; `None` if it has no registers for it.
+    /// Firmware, or `None` if there are no registers for it.
     pub firmware: Option<Firmware>,
     pub description: Arc<Description>,
-    /// A description of the same manufacturer is for another device ID.
+    /// A description of the same manufacturer for another device ID, if there is one.
     pub mismatch: Option<Mismatch>,
-    /// Its data sheet; `None` if it has none known to this program.
+    /// Data sheet, or `None` if there is none known to this program.
     pub data_sheet: Option<DataSheet>,
     pub layout: Layout,
     pub source: FrameSource,
-    /// The adapter, if it is connected over one.
+    /// Adapter, if the encoder is connected over one.
     pub adapter: Option<Hello>,
     /// Byte order of register numbers over the configuration pin.
     pub order: Option<ByteOrder>,
 }
 
-/// The source of the frame of a position.
+/// Source of the frame of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameSource {
     DataSheet,
     Description,
     Given,
-    /// Checksum of the frames while the shaft turned: the number of turn bits is not known.
+    /// Checksums of frames while the shaft turned; the width of the multiturn is unknown.
     Checksum,
     Assumed,
 }
 
 impl FrameSource {
-    /// Returns whether it states how many bits of a position are turns.
+    /// Returns whether the source determines the width of the multiturn.
     pub const fn is_known(self) -> bool {
         match self {
             FrameSource::DataSheet | FrameSource::Description | FrameSource::Given => true,
@@ -59,21 +59,21 @@ impl FrameSource {
     }
 }
 
-/// The data sheet: two banks of registers.
+/// The data sheet, which consists of two register banks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheet {
     pub common: DataSheetBank,
     pub encoder: DataSheetBank,
-    /// The frame given by both banks, or why there is none.
+    /// Frame according to both banks, or the reason why there is none.
     pub layout: Result<Layout, EdsError>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheetBank {
     pub bank: u8,
-    /// Its registers as received.
+    /// Registers as received.
     pub bytes: [u8; 64],
-    /// Its content, if the checksum is right.
+    /// Parsed content, if the checksum is correct.
     pub eds: Result<Eds, EdsError>,
 }
 
@@ -92,12 +92,12 @@ impl Identity {
         }
     }
 
-    /// Returns the number of turn bits; `None` if not known.
+    /// Returns the width of the multiturn in bits, if known.
     pub fn multiturn_bits(&self) -> Option<u8> {
         self.is_told().then_some(self.layout.multiturn_bits())
     }
 
-    /// Returns the number of bits within a turn; `None` if not known.
+    /// Returns the width of the singleturn in bits, if known.
     pub fn singleturn_bits(&self) -> Option<u8> {
         self.is_told().then_some(self.layout.singleturn_bits())
     }
@@ -107,7 +107,7 @@ impl Identity {
     }
 }
 
-/// Position in the common bank of the number of the encoder bank.
+/// Offset in the common bank of the encoder bank's number.
 const ENCODER_BANK: usize = 0x14;
 
 /// Identifies the encoder and its frame; both are known from then on.
@@ -118,7 +118,7 @@ pub fn identify(master: &mut Master<'_>, types: &Descriptions) -> Result<Identit
     identify_with(master, types, &mut Registers::default())
 }
 
-/// Identifies like [`identify`] and keeps all that was read.
+/// Identifies the encoder like [`identify`] and keeps everything that was read.
 pub(super) fn identify_with(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -165,8 +165,8 @@ pub(super) fn identify_with(
     })
 }
 
-/// Determines an unknown frame: that of the kit encoder if its checksum fits, else one is searched for. Over the
-/// configuration pin it cannot be observed.
+/// Determines an unknown frame: that of the kit encoder if its checksum matches, otherwise the result of a search.
+/// Frames cannot be observed over the configuration pin.
 fn look_at_frames(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     if master.station().transport == Transport::ConfigPin {
         return Ok(FrameSource::Assumed);
@@ -199,7 +199,7 @@ fn read_kind(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind,
     })
 }
 
-/// Returns a description of the same manufacturer and profile that is for another device.
+/// Returns a description of the same manufacturer and profile for another device.
 fn near_miss(types: &Descriptions, kind: &Kind) -> Option<Mismatch> {
     let is_near = |own: &Kind| own.manufacturer == kind.manufacturer && own.profile == kind.profile;
     types
@@ -216,7 +216,7 @@ fn firmware_of(description: &Description, registers: &Registers) -> Option<Firmw
     }
 }
 
-/// Reads the two banks, if the profile is the one whose data sheet this program knows.
+/// Reads both banks, if the profile is the one whose data sheet this program supports.
 fn read_data_sheet(
     master: &mut Master<'_>,
     profile: ProfileId,
@@ -236,7 +236,7 @@ fn read_data_sheet(
     Ok(Some(DataSheet { common, encoder, layout }))
 }
 
-/// Reads a data sheet; `None` if there is no such bank.
+/// Reads a data sheet, or returns `None` if the bank does not exist.
 fn read_sheet(
     master: &mut Master<'_>,
     which: EdsBank,

@@ -23,11 +23,11 @@ use crate::link::Ctx;
 use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
 
-/// Number of missing replies, while another register replies, after which a register counts as missing: a bad line loses
-/// single replies.
+/// Number of missing replies, while another register replies, after which a register is considered missing, since a bad
+/// line loses single replies.
 const SILENCES: u32 = 3;
 
-/// The host's side of the line to a BiSS encoder, over either way.
+/// Host side of the line to a BiSS encoder, over either transport.
 pub struct Master<'a> {
     line: SerialLine<'a>,
     station: &'a mut Station,
@@ -45,18 +45,18 @@ enum ExchangeError {
     NoFrame(NoFrame),
 }
 
-/// Result of one exchange. The outer error is final; the inner one may be retried.
+/// Result of an exchange. The outer error is final; the inner one may be retried.
 type Attempt<T> = Result<Result<T, ExchangeError>, Error>;
 
 /// An encoder's reaction to a value.
 enum WriteReaction {
     Yes,
-    /// It refused; with the value that the register returns, if the connection shows it.
+    /// The encoder refused; with the value that the register returns, if the connection reveals it.
     No(Option<u8>),
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master for one job, with the whole time limit ahead.
+    /// Creates a master for one job with the full time limit.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         // The encoder may have restarted since the last job.
@@ -102,7 +102,7 @@ impl<'a> Master<'a> {
         self.line.shield(shielded)
     }
 
-    /// Runs `work`, during which an encoder may not reply for this long; reads are repeated until then.
+    /// Runs `work`, during which the encoder may not reply for `patience`; reads are repeated until then.
     pub fn with_patience<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.patience.replace(patience);
         let result = work(self);
@@ -110,7 +110,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Runs `work`, which reads values to be stored; every register must give the same value twice.
+    /// Runs `work`, which reads values to be stored; every register must yield the same value twice.
     pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -118,10 +118,11 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Reads a register. If the line has damaged anything in this session, it must give the same value twice.
+    /// Reads a register. If the line has damaged anything in this session, the register must yield the same value
+    /// twice.
     ///
     /// # Errors
-    /// If every attempt failed, the register does not exist, or the user cancelled.
+    /// Every attempt failed, the register does not exist, or the user cancelled.
     pub fn read(&mut self, address: RegisterAddress) -> Result<u8, Error> {
         self.be_ready()?;
         let requested = RequestedItem::Read(address);
@@ -132,10 +133,10 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reads registers one after the other by their global addresses, across the end of a bank.
+    /// Reads consecutive registers by their global addresses, across bank boundaries.
     ///
     /// # Errors
-    /// As [`read`](Self::read); [`Error::OutOfRange`] after the last address.
+    /// As for [`read`](Self::read); [`Error::OutOfRange`] after the last address.
     pub fn read_run(&mut self, start: RegisterAddress, count: usize) -> Result<Vec<u8>, Error> {
         let none = || Error::OutOfRange { start, count };
         let count_16 = u16::try_from(count).map_err(|_| none())?;
@@ -145,12 +146,12 @@ impl<'a> Master<'a> {
         places.into_iter().map(|address| self.read(address)).collect()
     }
 
-    /// Writes a register. If no reply shows whether the value was accepted, it is read back if that can show it; it is sent
-    /// again only if it was not accepted.
+    /// Writes a register. If no reply confirms the value, it is read back where that can show it; it is sent again only
+    /// if it was not accepted.
     ///
     /// # Errors
-    /// [`Error::Refused`]; [`Error::Unclear`] if nothing shows whether it was accepted, as with a command; or it was not
-    /// accepted after five attempts. After [`Error::Cancelled`] it was not written.
+    /// [`Error::Refused`]; [`Error::Unclear`] if nothing shows whether the value was accepted, as with a command, or it
+    /// was not accepted after five attempts. After [`Error::Cancelled`] nothing was written.
     pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
         self.be_ready()?;
         let requested = RequestedItem::Write(address, value);
@@ -195,7 +196,7 @@ impl<'a> Master<'a> {
     /// Reads the position.
     ///
     /// # Errors
-    /// If every attempt failed, or the user cancelled; [`Error::TooWide`] if it does not fit the widths.
+    /// Every attempt failed, or the user cancelled; [`Error::TooWide`] if the position does not fit the widths.
     pub fn position(&mut self) -> Result<PositionReading, Error> {
         if self.station.transport == Transport::ConfigPin {
             return self.ask(RequestedItem::Position, |master| master.pin_position_once());
@@ -207,7 +208,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reads a frame of this many bits over an adapter, unchecked, right-justified.
+    /// Reads a frame of the given widths over an adapter, unchecked and right-justified.
     pub(super) fn frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
         self.be_ready_for(data_bits, crc_bits)?;
         self.ask(RequestedItem::Position, |master| master.frame_once()).map(|(raw, _)| raw)
@@ -227,7 +228,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Prepares the first access: determines the order of a register number's bytes, or configures the bus.
+    /// Prepares the first access: determines the byte order of register numbers, or configures the bus.
     fn be_ready(&mut self) -> Result<(), Error> {
         match self.station.transport {
             Transport::Adapter => self.be_ready_on_bus(),
@@ -244,7 +245,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
+    /// Sends a request that changes nothing in the encoder, and repeats it when the line fails.
     fn ask<T>(&mut self, requested: RequestedItem, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
         let mut tries = 0;
         loop {
@@ -262,7 +263,8 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sends a request like [`ask`](Self::ask); if the line has damaged anything before, the reply must come twice.
+    /// Sends a request like [`ask`](Self::ask); if the line has damaged anything before, the same reply must arrive
+    /// twice.
     fn read_confirmed(
         &mut self,
         requested: RequestedItem,
@@ -282,7 +284,7 @@ impl<'a> Master<'a> {
         Err(Error::Damaged { requested, tries: TRIES, cause: Damage::Inconsistent })
     }
 
-    /// Returns the error of a failed attempt that is the last.
+    /// Returns the error of the last failed attempt.
     fn failed(&self, requested: RequestedItem, tries: u32, trouble: &ExchangeError) -> Error {
         match trouble {
             ExchangeError::Silence { echo_heard } => Error::NoReply { requested, tries, echo_heard: *echo_heard },
@@ -291,7 +293,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Prepares the line for the next attempt; returns `failed` if there is none.
+    /// Prepares the line for the next attempt, or returns `failed` if none is left.
     fn may_try_again(&mut self, tries: u32, trouble: ExchangeError, failed: Error) -> Result<(), Error> {
         self.station.noisy |= matches!(trouble, ExchangeError::Damage(_));
         let quality = &mut self.station.line.quality;
@@ -317,8 +319,8 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Checks, after a register gave no reply, whether another one replies repeatedly, so that only this one is missing.
-    /// Not done if the encoder may be silent for long.
+    /// Checks, after a register gave no reply, whether another one replies repeatedly, so that only this one is
+    /// missing. Skipped if the encoder may be silent for long.
     fn is_silent_only_there(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
             return Ok(false);

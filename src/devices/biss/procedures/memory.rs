@@ -16,17 +16,18 @@ use crate::profile::Unknown;
 /// Number of positions for detecting standstill; the interval is below.
 const READINGS: usize = 3;
 const BETWEEN: Duration = Duration::from_millis(100);
-/// Bits of counted turns with which a motor cannot complete the range unnoticed between readings: at 12,000 rpm it turns
-/// forty times.
+/// Width of a multiturn, in bits, whose range a motor cannot complete unnoticed between readings: at 12,000 rpm it
+/// turns forty times.
 const COUNTED: u8 = 7;
-/// Motion up to 1/8192 of a revolution counts as standstill: the position jitters (`U`).
+/// Reciprocal of the motion, in revolutions, up to which a shaft is considered at rest despite jitter (`U`).
 const TREMBLE: u64 = 8192;
 
-/// How to treat values that were entered in a device mode and never saved: the encoder shows them as if they were stored.
+/// Treatment of values that were entered in a device mode and never saved, which the encoder shows as if they were
+/// stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsaved {
     Marked,
-    /// They are refused: they would be compared as the encoder's content.
+    /// Refused, because they would be compared as the content of the encoder.
     Refused,
 }
 
@@ -37,7 +38,7 @@ pub enum ReadStage {
     Bank(u8),
 }
 
-/// Reads the position three times, a tenth of a second apart, and returns the last if the shaft stands still.
+/// Reads the position three times, a tenth of a second apart, and returns the last one if the shaft is at rest.
 ///
 /// # Errors
 /// [`Error::Moving`], or errors of reading.
@@ -59,8 +60,8 @@ pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Err
     }
 }
 
-/// Returns the revolutions per minute between the first and the last reading, positive clockwise; `None` if a shaft could
-/// have completed the range unnoticed between two of them.
+/// Returns the speed in revolutions per minute between the first and the last reading, positive clockwise, or `None` if
+/// the shaft could have completed the range unnoticed between two of them.
 fn speed(readings: &[PositionReading]) -> Option<f64> {
     let (first, last) = (readings.first()?, readings.last()?);
     if first.multiturn_bits < COUNTED || !first.is_split_known {
@@ -75,7 +76,8 @@ fn speed(readings: &[PositionReading]) -> Option<f64> {
     (minutes > 0.0).then(|| turns / minutes)
 }
 
-/// Returns the steps between two positions, the shorter way round: a shaft at rest may jitter across zero.
+/// Returns the number of steps between two positions along the shorter way, since a shaft at rest may jitter across
+/// zero.
 fn distance(a: u64, b: u64, range: Option<u64>) -> u64 {
     let straight = a.abs_diff(b);
     range.map_or(straight, |range| straight.min(range.saturating_sub(straight)))
@@ -93,7 +95,7 @@ pub fn read_registers(master: &mut Master<'_>, start: RegisterAddress, count: u8
     certainly(master, |master| master.read_run(start, count.into()))
 }
 
-/// Reads a data area; the shaft must stand still.
+/// Reads a data area; the shaft must be at rest.
 ///
 /// # Errors
 /// Errors of reading.
@@ -107,7 +109,7 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(
     Ok(banks)
 }
 
-/// Reads an area of data for itself.
+/// Reads a data area after checking that the shaft is at rest.
 ///
 /// # Errors
 /// [`Error::Moving`], or errors of reading.
@@ -120,8 +122,8 @@ pub fn read_area_surely(
     certainly(master, |master| read_area(master, area, progress))
 }
 
-/// Reads everything that can be restored, and the identity. The device mode is left as it is: leading back would
-/// discard entered values.
+/// Reads the identity and everything that can be restored. The device mode is left unchanged, since returning to
+/// operation would discard entered values.
 ///
 /// # Errors
 /// Errors of the exchange, [`Error::Moving`], or [`Error::NotInOperation`] if unsaved values are refused.
@@ -165,8 +167,8 @@ pub fn save(
     })
 }
 
-/// Reads again if the line has damaged anything meanwhile, because it may have damaged more unnoticed: then everything must
-/// come twice.
+/// Reads again if the line has damaged anything in the meantime, because more damage may have gone unnoticed; then
+/// everything must be read twice with the same result.
 fn certainly<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,
@@ -176,7 +178,7 @@ fn certainly<T>(
     if was_sure || !master.station().reads_twice() { Ok(value) } else { master.thoroughly(read) }
 }
 
-/// Creates the profile of an encoder with these data, with the device mode in which they were read if it was not operation.
+/// Creates the profile of an encoder from a reading, with the device mode of the reading if it was not operation.
 pub fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
     let identity = &survey.identity;
     let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);

@@ -9,32 +9,32 @@ use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionReading {
-    /// When the encoder sampled it.
+    /// Time at which the encoder sampled the position.
     pub at: Moment,
-    /// Revolutions, as many bits as there are.
+    /// Number of revolutions, limited by the width of the multiturn.
     pub turns: u32,
-    /// Place within the revolution, in parts of 2 to the power of [`singleturn_bits`](Self::singleturn_bits).
+    /// Position within the revolution, in fractions of 2 to the power of [`singleturn_bits`](Self::singleturn_bits).
     pub steps: u32,
-    /// The error bit: the position is invalid; `None` if it is not known. Over the configuration pin it is read from a
-    /// register in addition to the position.
+    /// Error bit: the position is invalid; `None` if unknown. Over the configuration pin it is read from a register in
+    /// addition to the position.
     pub error: Option<bool>,
-    /// The warning bit; `None` if it is not known.
+    /// Warning bit, or `None` if unknown.
     pub warning: Option<bool>,
-    /// Number of frames with a wrong CRC since the last reading.
+    /// Number of frames with a wrong CRC since the previous reading.
     pub crc_errors: u32,
     /// Bits of the revolutions, 0…32.
     pub multiturn_bits: u8,
     /// Bits within a revolution, 0…32.
     pub singleturn_bits: u8,
-    /// Whether the number of turn bits is known; otherwise turns and steps are only the upper and the lower part of the
-    /// position.
+    /// Whether the width of the multiturn is known; otherwise turns and steps are merely the upper and lower part of
+    /// the position.
     pub is_split_known: bool,
-    /// The whole frame, with its flags and its CRC; `None` over the configuration pin.
+    /// Complete frame with flags and CRC, or `None` over the configuration pin.
     pub frame: Option<Word>,
 }
 
 impl PositionReading {
-    /// Creates a reading without the data that only one kind of connection has.
+    /// Creates a reading without the data that only one transport provides.
     pub(super) fn new(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             at,
@@ -60,17 +60,18 @@ impl PositionReading {
         }
     }
 
-    /// Returns the position word as it was received: the bits of the turns above those of the steps, without flags and CRC.
+    /// Returns the position word as received: the multiturn bits above the singleturn bits, without flags and CRC.
     pub const fn raw(&self) -> Word {
         Word { value: self.position(), bits: self.multiturn_bits + self.singleturn_bits }
     }
 
-    /// Revolutions and place as one number of steps.
+    /// Returns the position as a single number of steps.
     pub const fn position(&self) -> u64 {
         (self.turns as u64) << self.singleturn_bits | self.steps as u64
     }
 
-    /// Returns the degrees within the revolution, from 0 up to 360; `None` if the steps per revolution are not known.
+    /// Returns the angle within the revolution in degrees, from 0 up to 360, or `None` if the steps per revolution are
+    /// unknown.
     pub fn angle(&self) -> Option<f64> {
         self.is_split_known.then(|| self.degrees())
     }
@@ -89,7 +90,7 @@ impl PositionReading {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     Position(PositionReading),
-    /// Frames arrived, none with a right checksum.
+    /// Frames have arrived, none with a correct checksum.
     Missed {
         /// Time of the last frame.
         at: Moment,
@@ -97,16 +98,17 @@ pub enum Sample {
         crc_errors: u32,
     },
     Frames(FrameRun),
-    /// Registers that are watched in addition to the position.
+    /// Values of watched registers.
     Watched(WatchedReading),
 }
 
-/// Registers that are watched, as they were read.
+/// Watched registers as last read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
     pub at: Moment,
     pub range: RegisterRange,
-    /// Their values in the order of addresses, or why there are none: no such register, or data.
+    /// Values in address order, or the reason why there are none: the register does not exist, or belongs to a data
+    /// area.
     pub value: Result<Vec<u8>, Error>,
 }
 

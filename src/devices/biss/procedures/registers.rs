@@ -14,13 +14,13 @@ impl Registers {
         self.0.get(&address).copied()
     }
 
-    /// Returns consecutive registers by global address; `None` if one was not read.
+    /// Returns consecutive registers by global address, or `None` if any of them has not been read.
     pub fn run(&self, start: RegisterAddress, count: u8) -> Option<Vec<u8>> {
         let first = start.global();
         (first..first.saturating_add(count.into())).map(|at| self.get(RegisterAddress::from_global(at)?)).collect()
     }
 
-    /// Returns the bytes of a described register; `None` if one was not read.
+    /// Returns the bytes of a described register, or `None` if any of them has not been read.
     pub fn bytes(&self, register: &Register) -> Option<Vec<u8>> {
         self.run(register.address, register.width)
     }
@@ -44,16 +44,16 @@ impl Registers {
         self.0.iter().map(|(address, value)| (*address, *value))
     }
 
-    /// Takes a run of bytes that was read.
+    /// Stores a run of bytes that was read.
     pub(super) fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
         let places = (start.global()..).map_while(RegisterAddress::from_global);
         self.0.extend(places.zip(bytes.iter().copied()));
     }
 
-    /// Reads a run and keeps it.
+    /// Reads a run of registers and stores it.
     ///
     /// # Errors
-    /// As [`Master::read_run`].
+    /// As for [`Master::read_run`].
     pub(super) fn read(
         &mut self,
         master: &mut Master<'_>,
@@ -69,8 +69,8 @@ impl Registers {
         self.read(master, register.address, register.width)
     }
 
-    /// Reads all registers of a description that this firmware has and that are not read yet. Returns the addresses that
-    /// the encoder does not have regardless.
+    /// Reads all registers of a description that this firmware has and that have not been read yet. Returns the
+    /// addresses that the encoder nevertheless lacks.
     ///
     /// # Errors
     /// Errors of the exchange.

@@ -276,48 +276,48 @@ pub struct WiegandResult {
     pub average_cw: PulseVoltage,
     /// Clockwise average minus four standard deviations.
     pub lowest_cw: PulseVoltage,
-    /// Average of the pulses, counterclockwise.
+    /// Average pulse voltage, counterclockwise.
     pub average_ccw: PulseVoltage,
-    /// The same less four standard deviations.
+    /// Counterclockwise average minus four standard deviations.
     pub lowest_ccw: PulseVoltage,
 }
 
 impl PulseVoltage {
-    /// The limit for the average less four standard deviations: 5.3 V.
+    /// Minimum for the average minus four standard deviations: 5.3 V.
     pub const LIMIT: PulseVoltage = PulseVoltage(53);
 
-    /// Creates it: any byte is a voltage.
+    /// Creates a voltage from tenths of a volt; every byte is valid.
     pub const fn new(tenths: u8) -> Self {
         PulseVoltage(tenths)
     }
 
-    /// Returns the register's value.
+    /// Returns the raw register value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Returns the volts, from 0 to 25.5.
+    /// Returns the voltage in volts, 0 to 25.5.
     pub fn volts(self) -> f64 {
         f64::from(self.0) / 10.0
     }
 }
 
 impl WiegandResult {
-    /// Revolutions in each direction that its pulses are of (manual 6.3).
+    /// Number of revolutions in each direction over which pulses are measured (manual 6.3).
     pub const REVOLUTIONS: u16 = 515;
 
-    /// Parses the registers in the order of their addresses.
+    /// Parses the four registers in address order.
     pub fn parse(bytes: [u8; 4]) -> Self {
         let [average_cw, lowest_cw, average_ccw, lowest_ccw] = bytes.map(PulseVoltage);
         WiegandResult { average_cw, lowest_cw, average_ccw, lowest_ccw }
     }
 
-    /// Returns the registers in the order of their addresses.
+    /// Returns the four registers in address order.
     pub fn emit(&self) -> [u8; 4] {
         [self.average_cw, self.lowest_cw, self.average_ccw, self.lowest_ccw].map(PulseVoltage::byte)
     }
 
-    /// Returns whether both directions are above the limit.
+    /// Returns whether the results of both directions are above the limit.
     pub fn passes(&self) -> bool {
         self.lowest_cw > PulseVoltage::LIMIT && self.lowest_ccw > PulseVoltage::LIMIT
     }
@@ -328,7 +328,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Reference 5.5: 270°, 180°, 90°, 1° and 0° of 17 bits.
+    /// Expected values from reference 5.5: 270°, 180°, 90°, 1° and 0° at 17 bits.
     #[test]
     fn published_preset_values_match() {
         for (singleturn, bytes) in [
@@ -353,7 +353,7 @@ mod tests {
         assert_eq!(PulseVoltage::LIMIT.volts(), 5.3);
     }
 
-    /// Manual 6.3: greater than 5.3 V is recommended, in either direction.
+    /// Manual 6.3 recommends more than 5.3 V in either direction.
     #[test]
     fn a_wiegand_result_is_compared_with_the_limit() {
         for (bytes, passes) in [
@@ -369,7 +369,7 @@ mod tests {
         assert_eq!(WiegandResult::parse([1, 2, 3, 4]).lowest_ccw.byte(), 4);
     }
 
-    /// Codes of the manual's tables, and codes that are in none of them.
+    /// Codes from the manual's tables, and codes that appear in none of them.
     #[test]
     fn codes_match_the_manual_and_unknown_ones_are_kept() {
         assert_eq!(

@@ -1,9 +1,9 @@
-//! Single-cycle data, which an encoder sends in every cycle. Multiturn, singleturn, error and warning bit (both active
-//! low), checksum; the highest bit first (manual 3.1.1, figure 2). Each encoder defines the number of bits.
+//! Single-cycle data, which an encoder sends in every cycle: multiturn, singleturn, error and warning bit (both active
+//! low), and checksum, most significant bit first (manual 3.1.1, figure 2). The field widths depend on the encoder.
 
 use super::crc::{Crc, CrcError};
 
-/// The bits of a frame after its start and control bit.
+/// Bit layout of a frame, after the start and control bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     multiturn_bits: u8,
@@ -13,72 +13,74 @@ pub struct Layout {
     crc: Option<Crc>,
 }
 
-/// The reason why a layout is not possible.
+/// Reason why a layout is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
-    /// More bits than a number has that they are kept in.
+    /// The field is wider than 32 bits.
     #[error("{field} must have at most 32 bits, not {bits}")]
     Field {
-        /// `multiturn` or `singleturn`.
+        /// Name of the field: `multiturn` or `singleturn`.
         field: &'static str,
-        /// Bits asked for.
+        /// Requested width in bits.
         bits: u8,
     },
-    /// No position.
+    /// The layout contains no position bits.
     #[error("multiturn and singleturn must have at least one bit together")]
     Empty,
-    /// The whole frame, checksum included, does not fit into 64 bits.
+    /// The whole frame, including the checksum, does not fit into 64 bits.
     #[error("the frame must have at most 64 bits with its CRC, not {0}")]
     Long(u32),
-    /// The checksum is none.
+    /// The CRC parameters are invalid.
     #[error(transparent)]
     Crc(#[from] CrcError),
 }
 
-/// The content of a frame with a valid checksum.
+/// Contents of a frame with a valid checksum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PositionData {
-    /// Revolutions, as many bits as the layout has.
+    /// Revolution count, as wide as the layout's multiturn field.
     pub multiturn: u32,
-    /// Place within the revolution, in parts of 2 to the power of the layout's singleturn bits.
+    /// Position within the revolution, in steps; a revolution has 2 to the power of the layout's singleturn bits.
     pub singleturn: u32,
     /// Whether the encoder reports that the position is invalid (the bit on the line is 0).
     pub error: bool,
-    /// Whether the encoder warns; the position is valid (the bit on the line is 0).
+    /// Whether the encoder reports a warning (the bit on the line is 0); the position remains valid.
     pub warning: bool,
 }
 
-/// The reason why bits are not a frame.
+/// Reason why received bits are not a valid frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// All bits are 0, which is no frame of this layout: no encoder, a short circuit, or an encoder that is not ready.
+    /// All bits are 0, which is not a valid frame in this layout: no encoder, a short circuit, or an encoder that is
+    /// not ready.
     #[error("the data line stays low")]
     StuckLow,
-    /// All bits are 1, which is no frame of this layout: no encoder, or a broken wire.
+    /// All bits are 1, which is not a valid frame in this layout: no encoder, or a broken wire.
     #[error("the data line stays high")]
     StuckHigh,
     /// Bits above the frame's length are set.
     #[error("the frame has more than {bits} bits")]
     Long {
-        /// Bits of the layout.
+        /// Frame length of the layout, in bits.
         bits: u8,
     },
-    /// The checksum does not fit.
+    /// The checksum does not match.
     #[error("CRC {got:02X} where {expected:02X} was expected")]
     Crc {
-        /// The checksum calculated from the other bits.
+        /// Checksum calculated from the other bits.
         expected: u32,
-        /// The checksum received.
+        /// Checksum received.
         got: u32,
     },
 }
 
 impl Layout {
-    /// Creates a layout with these numbers of bits; the error bit follows the position, and the warning bit follows the
-    /// error bit.
+    /// Creates a layout with the given field widths; the error bit follows the position, and the warning bit follows
+    /// the error bit.
     ///
     /// # Errors
-    /// [`LayoutError`] if a number does not fit into 32 bits or the frame into 64.
+    /// [`LayoutError`] if a field is wider than 32 bits, the frame is longer than 64 bits, or the layout is otherwise
+    /// invalid.
     pub fn new(
         multiturn_bits: u8,
         singleturn_bits: u8,
@@ -99,50 +101,50 @@ impl Layout {
         if bits > 64 { Err(LayoutError::Long(bits)) } else { Ok(layout) }
     }
 
-    /// Returns the number of bits of the revolutions, 0…32.
+    /// Returns the width of the multiturn field, 0 to 32 bits.
     pub const fn multiturn_bits(&self) -> u8 {
         self.multiturn_bits
     }
 
-    /// Returns the number of bits within a revolution, 0…32.
+    /// Returns the width of the singleturn field, 0 to 32 bits.
     pub const fn singleturn_bits(&self) -> u8 {
         self.singleturn_bits
     }
 
-    /// Returns whether there is an error bit.
+    /// Returns whether frames contain an error bit.
     pub const fn has_error_bit(&self) -> bool {
         self.error_bit
     }
 
-    /// Returns whether there is a warning bit.
+    /// Returns whether frames contain a warning bit.
     pub const fn has_warning_bit(&self) -> bool {
         self.warning_bit
     }
 
-    /// Returns the checksum; `None` if the encoder sends none.
+    /// Returns the checksum parameters, or `None` if the encoder sends no checksum.
     pub const fn crc(&self) -> Option<&Crc> {
         self.crc.as_ref()
     }
 
-    /// Returns the number of bits of position, error and warning, without the checksum.
+    /// Returns the combined width of position, error and warning bits, without the checksum.
     pub const fn data_bits(&self) -> u8 {
         self.multiturn_bits + self.singleturn_bits + self.error_bit as u8 + self.warning_bit as u8
     }
 
-    /// Returns the number of bits of the checksum.
+    /// Returns the width of the checksum in bits.
     pub fn crc_bits(&self) -> u8 {
         self.crc.as_ref().map_or(0, Crc::width)
     }
 
-    /// Returns the number of bits of the whole frame, 1…64.
+    /// Returns the length of the whole frame, 1 to 64 bits.
     pub fn bits(&self) -> u8 {
         self.data_bits() + self.crc_bits()
     }
 
-    /// Parses a frame: its bits right-justified, the last one received in bit 0.
+    /// Parses a right-justified frame, with the last received bit in bit 0.
     ///
     /// # Errors
-    /// [`FrameError`]; a line that does not change is distinguished from a wrong checksum.
+    /// [`FrameError`]; a stuck line is distinguished from a wrong checksum.
     pub fn parse(&self, raw: u64) -> Result<PositionData, FrameError> {
         let whole = ones(self.bits());
         if raw & !whole != 0 {
@@ -163,7 +165,7 @@ impl Layout {
         }
     }
 
-    /// Returns the frame of a reading, right-justified. Bits without a place in the layout are left out.
+    /// Returns the right-justified frame for a reading. Bits that do not fit the layout are dropped.
     pub fn emit(&self, reading: &PositionData) -> u64 {
         let mut data = u64::from(reading.multiturn) & ones(self.multiturn_bits);
         data = data << self.singleturn_bits | u64::from(reading.singleturn) & ones(self.singleturn_bits);
@@ -179,12 +181,12 @@ impl Layout {
         }
     }
 
-    /// Returns the degrees within the revolution, from 0 up to 360.
+    /// Returns the angle within the revolution in degrees, from 0 up to but not including 360.
     pub fn degrees(&self, reading: &PositionData) -> f64 {
         f64::from(reading.singleturn) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
-    /// Returns the multiturn and singleturn as one number of steps.
+    /// Returns the multiturn and singleturn position as a single step count.
     pub fn steps(&self, reading: &PositionData) -> u64 {
         u64::from(reading.multiturn) << self.singleturn_bits | u64::from(reading.singleturn)
     }
@@ -198,7 +200,7 @@ impl Layout {
         };
         let warning = self.warning_bit && take(1) == 0;
         let error = self.error_bit && take(1) == 0;
-        // Fields have at most 32 bits.
+        // Fields are at most 32 bits wide.
         let singleturn = take(self.singleturn_bits) as u32;
         let multiturn = take(self.multiturn_bits) as u32;
         PositionData { multiturn, singleturn, error, warning }
@@ -213,7 +215,7 @@ impl Default for Layout {
     }
 }
 
-/// Returns this many ones at the lower end, 0…64.
+/// Returns a mask with the lowest `bits` bits set, 0 to 64.
 const fn ones(bits: u8) -> u64 {
     match bits {
         0 => 0,
@@ -231,7 +233,7 @@ mod tests {
         PositionData { multiturn, singleturn, error, warning }
     }
 
-    /// Reference 2: the table of 41-bit frames.
+    /// Expected values from the table of 41-bit frames in reference 2.
     #[test]
     fn published_frames_match() {
         let cases = [
@@ -255,7 +257,7 @@ mod tests {
         }
     }
 
-    /// Reference 7: any bit of 024698000CF.
+    /// Frame 024698000CF is from reference 7; each of its bits is flipped in turn.
     #[test]
     fn every_flipped_bit_is_detected() {
         let layout = Layout::default();
@@ -263,7 +265,7 @@ mod tests {
             let damaged = 0x024_6980_00CF ^ 1 << bit;
             assert!(matches!(layout.parse(damaged), Err(FrameError::Crc { .. })), "bit {bit}");
         }
-        // A CRC6 detects every two flipped bits too, up to 63 bits of length.
+        // A CRC6 also detects any two flipped bits, up to a length of 63 bits.
         for (one, other) in (0..41).flat_map(|one| (0..one).map(move |other| (one, other))) {
             assert!(layout.parse(0x024_6980_00CF ^ 1 << one ^ 1 << other).is_err(), "bits {one}, {other}");
         }
@@ -276,7 +278,7 @@ mod tests {
         assert_eq!(layout.parse((1 << 41) - 1), Err(FrameError::StuckHigh));
         assert_eq!(layout.parse(1 << 41), Err(FrameError::Long { bits: 41 }));
         assert_eq!(layout.parse(0x0FB), Err(FrameError::Crc { expected: 0x3A, got: 0x3B }));
-        // If a frame of all zeros is valid, as with a checksum that is not inverted, it is a frame.
+        // With a checksum that is not inverted, all zeros is a valid frame and must be accepted as one.
         let plain = Layout::new(0, 12, false, false, Crc::new(0x43, 0, false).ok()).unwrap();
         assert_eq!(plain.parse(0), Ok(PositionData::default()));
         let bare = Layout::new(0, 12, false, false, None).unwrap();

@@ -1,9 +1,9 @@
-//! Single registers of the kit encoder: errors, warnings, temperature, device mode, filter, firmware (manual 6.1, 6.2,
-//! 6.6, 6.8 and appendix).
+//! Individual registers of the kit encoder: errors, warnings, temperature, device mode, filter, firmware (manual 6.1,
+//! 6.2, 6.6, 6.8 and appendix).
 
 use std::fmt;
 
-/// The error register (68h); any of its bits makes the position's error bit 0.
+/// The error register (68h). Any set bit drives the position's error bit to 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ErrorRegister(u8);
 
@@ -23,42 +23,42 @@ const UNKNOWN_ERROR: &str = "unknown error";
 const UNKNOWN_WARNING: &str = "unknown warning";
 
 impl ErrorRegister {
-    /// Bit 1: the multiturn counter has lost its synchronisation.
+    /// Bit 1: the multiturn counter has lost synchronisation.
     pub const MULTITURN: ErrorRegister = ErrorRegister(0x02);
-    /// Bit 4: no magnet, or one too far away.
+    /// Bit 4: the magnet is missing or too far away.
     pub const FIELD_TOO_LOW: ErrorRegister = ErrorRegister(0x10);
 
-    /// Creates a register: every byte is one; bits that the manual does not use are kept.
+    /// Creates an error register; every byte is valid, and bits that the manual does not use are kept.
     pub const fn new(byte: u8) -> Self {
         ErrorRegister(byte)
     }
 
-    /// Returns the register's value.
+    /// Returns the raw register value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Returns the bits that are set, the lowest first, with their meanings.
+    /// Returns the set bits with their meanings, lowest bit first.
     pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
         set_bits(self.0, &ERRORS, UNKNOWN_ERROR)
     }
 }
 
 impl WarningRegister {
-    /// Bit 0: set from 125 °C on, cleared below 123 °C.
+    /// Bit 0: set at 125 °C and above, cleared below 123 °C.
     pub const TEMPERATURE: WarningRegister = WarningRegister(0x01);
 
-    /// Creates a register: every byte is one; bits that the manual does not use are kept.
+    /// Creates a warning register; every byte is valid, and bits that the manual does not use are kept.
     pub const fn new(byte: u8) -> Self {
         WarningRegister(byte)
     }
 
-    /// Returns the register's value.
+    /// Returns the raw register value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Returns the bits that are set, the lowest first, with their meanings.
+    /// Returns the set bits with their meanings, lowest bit first.
     pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
         set_bits(self.0, &WARNINGS, UNKNOWN_WARNING)
     }
@@ -74,14 +74,14 @@ fn set_bits(
         .map(move |bit| (bit, names.get(usize::from(bit)).copied().unwrap_or(unknown)))
 }
 
-/// The temperature register (66h): 50 more than degrees Celsius. The sensor is accurate to 5 °C, from −40 to 130 °C.
+/// The temperature register (66h): degrees Celsius plus 50. The sensor is accurate to 5 °C, from −40 to 130 °C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Temperature(u8);
 
 impl Temperature {
     const OFFSET: i16 = 50;
 
-    /// Creates it: any byte is a temperature.
+    /// Creates a temperature from a register byte; every byte is valid.
     pub const fn new(byte: u8) -> Self {
         Temperature(byte)
     }
@@ -91,41 +91,41 @@ impl Temperature {
         Temperature(u8::try_from(celsius.saturating_add(Self::OFFSET).clamp(0, 0xFF)).unwrap_or(0))
     }
 
-    /// Returns the register's value.
+    /// Returns the raw register value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Returns whole degrees Celsius, −50…205.
+    /// Returns the temperature in whole degrees Celsius, −50 to 205.
     pub fn celsius(self) -> i16 {
         i16::from(self.0) - Self::OFFSET
     }
 
-    /// Returns degrees Fahrenheit. The manual's formula omits the 50.
+    /// Returns the temperature in degrees Fahrenheit. The manual's formula omits the offset of 50.
     pub fn fahrenheit(self) -> f64 {
         1.8 * f64::from(self.celsius()) + 32.0
     }
 }
 
-/// The device mode (6Ah). Other modes than these are kept by their number.
+/// The device mode (6Ah). Modes without a constant are kept as their raw code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct DeviceMode(u8);
 
 impl DeviceMode {
-    /// Positions only.
+    /// Normal operation: the encoder only sends positions.
     pub const OPERATION: DeviceMode = DeviceMode(0x00);
-    /// Calibration of the singleturn.
+    /// Singleturn calibration.
     pub const CALIBRATION: DeviceMode = DeviceMode(0x01);
-    /// Test of the Wiegand sensor.
+    /// Wiegand sensor test.
     pub const WIEGAND_TEST: DeviceMode = DeviceMode(0x02);
-    /// OEM data and EDS motor data may be written.
+    /// Write access to OEM data and EDS motor data.
     pub const DATA_WRITE: DeviceMode = DeviceMode(0x04);
-    /// Another filter.
+    /// Selection of another position filter.
     pub const FILTER: DeviceMode = DeviceMode(0x05);
-    /// Preset.
+    /// Preset of the position.
     pub const PRESET: DeviceMode = DeviceMode(0x07);
 
-    /// Every mode of the manual with its name, in the manual's order.
+    /// All modes listed in the manual with their names, in the manual's order.
     pub const TABLE: &'static [(u8, &'static str)] = &[
         (DeviceMode::OPERATION.0, "operation"),
         (DeviceMode::CALIBRATION.0, "calibration"),
@@ -135,20 +135,20 @@ impl DeviceMode {
         (DeviceMode::PRESET.0, "preset"),
     ];
 
-    /// Opens the mode register, written to 6Bh.
+    /// Password that unlocks the mode register, written to 6Bh.
     pub const PASSWORD: u8 = 0x2A;
 
-    /// Creates it: any byte is a mode.
+    /// Creates a device mode from a register byte; every byte is valid.
     pub const fn new(byte: u8) -> Self {
         DeviceMode(byte)
     }
 
-    /// Returns the register's value.
+    /// Returns the raw register value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Returns whether the manual knows this mode.
+    /// Returns whether the manual lists this mode.
     pub fn is_known(self) -> bool {
         Self::TABLE.iter().any(|(byte, _)| *byte == self.0)
     }
@@ -161,19 +161,19 @@ impl fmt::Display for DeviceMode {
     }
 }
 
-/// The filter of the position (6Eh).
+/// The position filter (6Eh).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Filter {
-    /// 03h, the factory setting: little noise.
+    /// 03h, the factory setting: low noise.
     Balanced,
-    /// 04h: little latency, more noise.
+    /// 04h: low latency, more noise.
     Dynamic,
-    /// A value that the manual does not know.
+    /// A value that the manual does not define.
     Unknown(u8),
 }
 
 impl Filter {
-    /// Returns the status for this code.
+    /// Returns the filter for a register value.
     pub const fn from_byte(byte: u8) -> Self {
         match byte {
             0x03 => Filter::Balanced,
@@ -182,7 +182,7 @@ impl Filter {
         }
     }
 
-    /// Returns the code, in 6Eh and as a command.
+    /// Returns the code, which is used both in 6Eh and as a command.
     pub const fn byte(self) -> u8 {
         match self {
             Filter::Balanced => 0x03,
@@ -192,19 +192,19 @@ impl Filter {
     }
 }
 
-/// A firmware's release (74h…76h), ordered by age.
+/// A firmware release (74h to 76h), ordered from oldest to newest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Firmware {
-    /// Major release.
+    /// Major release number.
     pub major: u8,
-    /// Minor release.
+    /// Minor release number.
     pub minor: u8,
     /// Patch level.
     pub patch: u8,
 }
 
 impl Firmware {
-    /// Creates a release.
+    /// Creates a firmware release from its three numbers.
     pub const fn new(major: u8, minor: u8, patch: u8) -> Self {
         Firmware { major, minor, patch }
     }
@@ -216,22 +216,22 @@ impl fmt::Display for Firmware {
     }
 }
 
-/// The profile identification (42h and 43h, high byte first): the kind of the encoder's electronic data sheet.
+/// The profile identification (42h and 43h, high byte first), which identifies the kind of electronic data sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ProfileId(u16);
 
 impl ProfileId {
-    /// Creates it: any two bytes are a profile.
+    /// Creates a profile identification; every 16-bit value is valid.
     pub const fn new(word: u16) -> Self {
         ProfileId(word)
     }
 
-    /// Returns both bytes, the first the higher.
+    /// Returns both bytes as one word, with the first byte in the high half.
     pub const fn word(self) -> u16 {
         self.0
     }
 
-    /// Returns whether bits 15 to 13 are 011: the standard encoder profile BP3, whose data sheet this program reads.
+    /// Returns whether bits 15 to 13 are 011, the standard encoder profile BP3, whose data sheet this program can read.
     pub const fn is_standard_encoder(self) -> bool {
         self.0 >> 13 == 0b011
     }
@@ -247,7 +247,7 @@ impl fmt::Display for ProfileId {
 mod tests {
     use super::*;
 
-    /// Reference 4 and 7.
+    /// Expected values from references 4 and 7.
     #[test]
     fn published_temperatures_match() {
         for (byte, celsius, fahrenheit) in
@@ -262,7 +262,7 @@ mod tests {
         assert_eq!(Temperature::from_celsius(i16::MAX).byte(), 0xFF);
     }
 
-    /// Reference 7: error 12h is multiturn and field too low, warning 01h temperature.
+    /// Reference 7: error 12h means multiturn and field too low, warning 01h means temperature.
     #[test]
     fn error_and_warning_bits_are_named() {
         let errors: Vec<_> = ErrorRegister::new(0x12).set().collect();

@@ -1,16 +1,18 @@
-//! Determines the frame length of an unknown encoder: the length with which the checksum fits repeatedly while the
+//! Determines the frame length of an unknown encoder: the length at which the checksum matches repeatedly while the
 //! shaft turns (reference 2).
 
 use super::crc::Crc;
 
-/// Fewest and most bits of data that are tried (`U`).
+/// Range of data widths to try, in bits (`U`).
 const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
-/// Number of consecutive frames that have to fit, each with other data than the one before (`U`).
+/// Number of consecutive matching frames required, each with different data from the one before (`U`).
 const ENOUGH: usize = 8;
 
-/// Returns the number of data bits, without the checksum, of frames that are cut out of the first `clocked` bits after the
-/// control bit, the last of these in bit 0. `None`: no length fits, or too few frames differ. Repeated data count once:
-/// with the wrong length, one frame in 64 fits by chance, and would fit as often as it is repeated.
+/// Returns the data width without the checksum, or `None` if no length fits or too few frames differ. Each frame holds
+/// the first `clocked` bits after the control bit, with the last of them in bit 0.
+///
+/// Repeated data counts only once: at the wrong length, one frame in 64 matches by chance and would match again on
+/// every repetition.
 pub fn data_bits_of(frames: &[u64], clocked: u8, crc: &Crc) -> Option<u8> {
     DATA_BITS.into_iter().find(|bits| fits(frames, clocked, *bits, crc))
 }
@@ -45,12 +47,12 @@ mod tests {
         Crc::new(Crc::POSITION, 0, true).unwrap()
     }
 
-    /// Returns the first 64 bits of a line on which `frame` of `bits` bits goes and 0 follows.
+    /// Returns the first 64 bits on the line: a `frame` of `bits` bits, followed by zeros.
     fn clocked(frame: u64, bits: u8) -> u64 {
         frame << (64 - bits)
     }
 
-    /// Returns the frames of a shaft that turns by `step`.
+    /// Returns the frames of a shaft that moves by `step` from frame to frame.
     fn turning(layout: &Layout, step: u32, count: u32) -> Vec<u64> {
         let place = |at: u32| 0x155 + at * step;
         let reading = |at| PositionData { multiturn: 3, singleturn: place(at), ..PositionData::default() };
@@ -77,7 +79,7 @@ mod tests {
     }
 
     proptest! {
-        /// Constant high bits do not result in a shorter frame.
+        /// Constant high bits must not lead to a shorter frame.
         #[test]
         fn any_frame_length_is_found(multiturn in 0u8..=16, singleturn in 9u8..=30, step in 1u32..40) {
             let layout = Layout::new(multiturn, singleturn, true, true, Some(crc())).unwrap();

@@ -5,7 +5,7 @@ use crate::buses::bridge::sim::{Attachable, Attached, BissDevice};
 use crate::sim::{ConfigError, Faults, Motor};
 use crate::units::Moment;
 
-/// Kit encoder on an adapter's bus, with the settings of its [`Config`].
+/// A kit encoder on an adapter's bus, set up from a [`Config`].
 #[derive(Clone, Copy, Debug)]
 pub struct AtAdapter;
 

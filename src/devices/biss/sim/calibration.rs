@@ -1,19 +1,20 @@
-//! The calibration of the singleturn (manual 6.4): two runs, counterclockwise first, each about five seconds. Chosen here
-//! (`U`): an unmet condition ends a run after a second; a change of speed ends it at once; the second run is refused if the
-//! first was not completed. If the status is kept, it is shown until the next run has begun, even after a change of the
-//! device mode.
+//! Singleturn calibration (manual 6.4): two runs, counterclockwise first, each about five seconds.
+//!
+//! Choices where the manual is silent (`U`): an unmet condition ends a run after a second; a change of speed ends it at
+//! once; the second run is refused if the first was not completed. If the status is kept, it is shown until the next
+//! run has begun, even after a change of the device mode.
 
 use std::time::Duration;
 
 use crate::devices::biss::protocol::{CalibrationCommand, CalibrationStatus, Filter};
 use crate::units::Moment;
 
-/// The conditions of the runs.
+/// Conditions under which a calibration run takes place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conditions {
-    /// Above 0 clockwise.
+    /// Shaft speed in revolutions per minute; above 0 means clockwise.
     pub(super) rpm: f64,
-    /// Variation of the speed, in revolutions per minute.
+    /// Speed variation in revolutions per minute.
     pub(super) waver: f64,
     pub(super) celsius: i16,
     pub(super) filter: Filter,
@@ -36,21 +37,21 @@ struct Run {
     outcome: CalibrationStatus,
 }
 
-/// The state of the table.
+/// Effect of a finished run on the calibration table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
-    /// Nothing yet.
+    /// The calibration table is unchanged.
     No,
-    /// The second run is complete: the table is saved.
+    /// The second run is complete and the table has been saved.
     Saved,
-    /// The second run has failed: the table is lost.
+    /// The second run has failed and the table is lost.
     Lost,
 }
 
 impl Calibration {
     const BEGINS_AFTER: Duration = Duration::from_millis(300);
     const FAILS_AFTER: Duration = Duration::from_secs(1);
-    /// Revolutions per minute, in either direction.
+    /// Allowed speed in revolutions per minute, in either direction.
     const SPEED: std::ops::RangeInclusive<f64> = 300.0..=700.0;
     const MAX_WAVER: f64 = 2.0;
     const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
@@ -63,7 +64,7 @@ impl Calibration {
         self.run.is_some() && self.status == CalibrationStatus::Running
     }
 
-    /// Handles a command; returns `false` if it is refused.
+    /// Handles a command and returns `false` if the command is refused.
     pub(super) fn write(&mut self, now: Moment, value: u8, conditions: Conditions) -> bool {
         let clockwise = match CalibrationCommand::from_byte(value) {
             CalibrationCommand::StartCounterclockwise => false,
@@ -92,7 +93,7 @@ impl Calibration {
         }
     }
 
-    /// Begins a run that is due, and ends one whose time is over.
+    /// Starts a run that is due and ends one whose time is up.
     pub(super) fn settle(&mut self, now: Moment) -> Ended {
         if self.run.is_some_and(|run| run.begins <= now) {
             self.status = CalibrationStatus::Running;
@@ -108,7 +109,7 @@ impl Calibration {
         }
     }
 
-    /// Handles leaving the mode, or a loss of power.
+    /// Aborts the calibration when the mode is left or power is lost.
     pub(super) fn abandon(&mut self) -> Ended {
         let lost = self.run.take().is_some_and(|run| run.clockwise);
         self.command = 0;

@@ -1,5 +1,5 @@
-//! The settings of a virtual encoder, as in the query of a `sim:` link: `seed=7&fault=drop:0.01&rpm=-500`. Nothing is
-//! opened here.
+//! Settings of a virtual encoder, as given in the query of a `sim:` link: `seed=7&fault=drop:0.01&rpm=-500`. This
+//! module opens no connection.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -13,8 +13,8 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
 
 parameters! {
-    /// The settings of a virtual encoder. The default has factory settings and the newest firmware known, at rest,
-    /// without faults.
+    /// Settings of a virtual encoder. By default the encoder has factory settings and the newest known firmware, is at
+    /// rest and has no faults.
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -42,16 +42,16 @@ parameters! {
 }
 
 impl Config {
-    /// Parses keys and values, already percent-decoded. Of a key given twice the last one counts. Numbers are decimal or
-    /// `0x…`.
+    /// Parses key-value pairs that are already percent-decoded. If a key occurs twice, the last value counts. Numbers
+    /// are decimal or `0x…`.
     ///
     /// # Errors
-    /// A sentence that names the key and the allowed values.
+    /// A message that names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         setting::read(VirtualDevice::Encoder, pairs)
     }
 
-    /// Returns the faults of its line and its flash.
+    /// Returns the simulated line and flash faults.
     pub const fn faults(&self) -> &Faults {
         &self.faults
     }
@@ -60,7 +60,7 @@ impl Config {
         self.seed
     }
 
-    /// Revolutions per minute at the start.
+    /// Returns the initial speed in revolutions per minute.
     pub const fn rpm(&self) -> f64 {
         self.rpm
     }
@@ -81,7 +81,7 @@ fn firmware(text: &str) -> Option<Firmware> {
 fn pulses(text: &str) -> Option<Pulses> {
     let tenths = |volts: &str| {
         let volts: f64 = volts.parse().ok()?;
-        // At most 255.
+        // The product is at most 255.
         (0.0..=25.5).contains(&volts).then(|| (volts * 10.0).round() as u8)
     };
     let (average, lowest) = text.split_once(',')?;

@@ -4,8 +4,8 @@
 //! operation ── password, mode ──▶ mode m ── mode 00 ──▶ operation
 //!                                   └── save or preset of modes 05, 07 ──▶ restart (silent) ──▶ operation
 //! ```
-//! Chosen here (`U`): a mode is entered from operation only, and left without the password; undescribed registers read 00h
-//! and cannot be written; entered values are discarded when the mode is left.
+//! Choices where the manual is silent (`U`): a mode can only be entered from operation, and is left without the
+//! password; undescribed registers read 00h and cannot be written; entered values are discarded when the mode is left.
 
 mod registers;
 mod time;
@@ -45,7 +45,7 @@ pub struct Encoder {
     password: u8,
     mode: DeviceMode,
     flash: Flash,
-    /// Results of the Wiegand test as they were saved when the encoder started.
+    /// Wiegand test results saved before the encoder started.
     saved_wiegand: [u8; 4],
     calibration: Calibration,
     wiegand: Wiegand,
@@ -63,10 +63,10 @@ enum Power {
 }
 
 impl Encoder {
-    /// Data sheet, 02:0Eh: 500 ms until control communication is available.
+    /// Time until control communication is available after power-up: 500 ms (data sheet, 02:0Eh).
     pub(super) const START: Duration = Duration::from_millis(500);
     const MAX_BANK: u8 = 0x43;
-    /// Manual 6.8: the warning comes at 125 °C and goes below 123 °C.
+    /// Temperature that sets the warning, 125 °C; it clears below 123 °C (manual 6.8).
     const HOT: i16 = 125;
     const COOL: i16 = 123;
     const DIAGNOSTICS_SINCE: Firmware = Firmware::new(1, 6, 0);
@@ -74,7 +74,7 @@ impl Encoder {
     const PRESET_SINCE: Firmware = Firmware::new(1, 2, 0);
     const FILTER_SINCE: Firmware = Firmware::new(1, 1, 0);
 
-    /// Creates an encoder from `config`, powered for a long time.
+    /// Creates an encoder from `config` that has been powered for a long time.
     pub fn new(config: &Config) -> Self {
         let flash = Flash { filter: config.filter, ..Flash::delivered(config.cycles) };
         let mut encoder = Encoder {
@@ -107,7 +107,7 @@ impl Encoder {
         encoder
     }
 
-    /// Returns the content that survives a loss of power.
+    /// Returns the non-volatile memory.
     pub const fn flash(&self) -> &Flash {
         &self.flash
     }
@@ -124,7 +124,7 @@ impl Encoder {
         self.drive.motor().clone()
     }
 
-    /// Turns the shaft at another speed from `now` on.
+    /// Changes the shaft speed from `now` on.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
         self.drive.motor().set_rpm(rpm);
         self.settle(now);
@@ -135,17 +135,17 @@ impl Encoder {
         self.watch_temperature();
     }
 
-    /// Replaces the faults of its flash; stores keep their count.
+    /// Replaces the flash faults; the store count is kept.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.die_in_store = faults.die_in_store();
     }
 
-    /// Sets the errors of its monitoring.
+    /// Sets the errors reported by the encoder's self-monitoring.
     pub fn set_errors(&mut self, errors: ErrorRegister) {
         self.errors = errors;
     }
 
-    /// Switches the power off and on at `now`.
+    /// Cycles the power at `now`.
     pub fn power_cycle(&mut self, now: Moment) {
         self.settle(now);
         self.disconnect();
@@ -157,26 +157,27 @@ impl Encoder {
         self.power = Power::Off;
     }
 
-    /// Restores the power of an encoder that has lost it.
+    /// Restores the power after it was cut.
     pub fn connect(&mut self, now: Moment) {
         if self.power == Power::Off {
             self.start(now);
         }
     }
 
-    /// Returns whether it has power; it may still be starting.
+    /// Returns whether the encoder has power; it may still be starting.
     pub fn has_power(&self) -> bool {
         self.power != Power::Off
     }
 
-    /// Returns whether registers can be read at `now`. It is silent while it starts, and may be while it calibrates.
+    /// Returns whether registers can be read at `now`. The encoder is silent while starting, and may be silent during
+    /// calibration.
     pub fn answers(&mut self, now: Moment) -> bool {
         self.settle(now);
         self.power == Power::On && !(self.silent_calibration && self.calibration.is_running())
     }
 
-    /// Returns the position at `now`; `None` without power and while it starts. It is marked as invalid while it
-    /// calibrates.
+    /// Returns the position at `now`, or `None` without power or during start-up. The position is marked invalid during
+    /// calibration.
     pub fn reading(&mut self, now: Moment) -> Option<PositionData> {
         self.settle(now);
         let reading = self.shaft.reading(now);
@@ -184,18 +185,19 @@ impl Encoder {
         (self.power == Power::On).then_some(PositionData { error, warning: self.hot, ..reading })
     }
 
-    /// Returns the position of its shaft at `now`, independent of the reported one: steps, and steps per revolution.
+    /// Returns the true shaft position at `now`, independent of the reported position, as steps and steps per
+    /// revolution.
     pub fn shaft_place(&mut self, now: Moment) -> (u64, u64) {
         self.settle(now);
         (self.shaft.fine(now), 1 << (self.shaft.layout().singleturn_bits() + FINE))
     }
 
-    /// Returns the bank of the registers 00h…3Fh that is selected.
+    /// Returns the bank selected for registers 00h to 3Fh.
     pub const fn bank(&self) -> u8 {
         self.bank
     }
 
-    /// Returns the register of an address in a control frame, with the selected bank.
+    /// Resolves an address from a control frame, using the selected bank.
     pub fn address(&self, address: u8) -> Option<RegisterAddress> {
         if address < RegisterAddress::BANK_SIZE {
             RegisterAddress::banked(self.bank, address)
@@ -204,7 +206,7 @@ impl Encoder {
         }
     }
 
-    /// Reads a register at `now`; `None` for a bank that does not exist.
+    /// Reads a register at `now`, or returns `None` if its bank does not exist.
     pub fn read(&mut self, now: Moment, address: RegisterAddress) -> Option<u8> {
         self.settle(now);
         let offset = address.address();
@@ -227,7 +229,7 @@ impl Encoder {
         Some(value)
     }
 
-    /// Writes a register at `now`; returns `false` if the encoder refuses, with nothing changed.
+    /// Writes a register at `now`; returns `false`, with nothing changed, if the encoder refuses.
     pub fn write(&mut self, now: Moment, address: RegisterAddress, value: u8) -> bool {
         self.settle(now);
         let offset = address.address();
@@ -348,7 +350,7 @@ impl Encoder {
         true
     }
 
-    /// Writes the flash once; `whole` is false if power is lost during it.
+    /// Writes the flash once; the flag passed to `change` is `false` if power is lost during the write.
     fn store(&mut self, change: impl FnOnce(&mut Flash, bool)) {
         self.stores_begun = self.stores_begun.saturating_add(1);
         self.flash.cycles = self.flash.cycles.saturating_add(1);
@@ -370,7 +372,7 @@ impl Encoder {
         }
     }
 
-    /// Starts the encoder: the content of the memory is lost.
+    /// Starts the encoder, clearing its volatile memory.
     fn start(&mut self, now: Moment) {
         self.abandon();
         self.power = Power::Starting { ready: now + Self::START };

@@ -1,11 +1,11 @@
-//! The procedures in which values are entered and then saved: data, filter, preset (manual 6.5 to 6.7). They hold the
-//! entered values; the [`Encoder`](super::Encoder) saves them. A command out of sequence is refused (`U`).
+//! Procedures that enter values and then save them: data, filter and preset (manual 6.5 to 6.7). They hold the entered
+//! values; the [`Encoder`](super::Encoder) saves them. A command out of sequence is refused (`U`).
 
 use crate::devices::biss::protocol::{
     DataCommand, DataStatus, Filter, FilterCommand, FilterStatus, Layout, PresetCommand, PresetStatus, PresetValue,
 };
 
-/// An area of plain data.
+/// A plain data area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Area {
     Motor,
@@ -13,7 +13,7 @@ pub(super) enum Area {
 }
 
 impl Area {
-    /// Returns the area of a bank and the offset of the bank in it.
+    /// Returns the area that contains a bank and the bank's offset in that area, or `None` for any other bank.
     pub(super) fn of_bank(bank: u8) -> Option<(Area, usize)> {
         let begin = |first: u8| usize::from(bank - first) * 64;
         match bank {
@@ -24,20 +24,20 @@ impl Area {
     }
 }
 
-/// The effect of a command.
+/// The effect of a command on the encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Then {
     Refused,
-    /// Nothing further.
+    /// The command has no further effect.
     Nothing,
-    /// An area is opened; its content must be passed to [`DataEntry::open`].
+    /// A data area is opened; its content must be passed to [`DataEntry::open`].
     Open(Area),
     SaveData(Area, Vec<u8>),
-    /// The filter is written to the flash; a restart follows.
+    /// The filter is written to the flash, followed by a restart.
     SaveFilter(Filter),
-    /// The preset value is written to the flash; a restart follows.
+    /// The preset value is written to the flash, followed by a restart.
     SavePreset(PresetValue),
-    /// The position becomes the preset value, in its singleturn, its multiturn or both; a restart follows.
+    /// The singleturn part, the multiturn part or both are set to the preset value, followed by a restart.
     Preset {
         singleturn: bool,
         multiturn: bool,
@@ -77,20 +77,20 @@ impl DataEntry {
         self.open = Some((area, bytes));
     }
 
-    /// Returns an entered byte; `None` while its area is closed.
+    /// Returns an entered byte, or `None` if the given area is not open.
     pub(super) fn byte(&self, area: Area, at: usize) -> Option<u8> {
         let (_, bytes) = self.open.as_ref().filter(|(open, _)| *open == area)?;
         bytes.get(at).copied()
     }
 
-    /// Enters a byte; returns `false` while its area is closed.
+    /// Enters a byte; returns `false` if the given area is not open.
     pub(super) fn enter(&mut self, area: Area, at: usize, value: u8) -> bool {
         let place = self.open.as_mut().filter(|(open, _)| *open == area).and_then(|(_, bytes)| bytes.get_mut(at));
         place.map(|byte| *byte = value).is_some()
     }
 }
 
-/// The choice of a filter.
+/// Selection of a filter.
 #[derive(Clone, Debug)]
 pub(super) struct FilterEntry {
     pub(super) command: u8,
@@ -123,7 +123,7 @@ impl FilterEntry {
     }
 }
 
-/// The entry of a preset value.
+/// Entry of a preset value.
 #[derive(Clone, Debug)]
 pub(super) struct PresetEntry {
     pub(super) command: u8,
@@ -136,7 +136,7 @@ impl PresetEntry {
         PresetEntry { command: 0, status: PresetStatus::Idle, bytes: stored.emit() }
     }
 
-    /// Handles a command. `parts`: the encoder can preset singleturn or multiturn separately.
+    /// Handles a command. `parts` tells whether the encoder can preset singleturn and multiturn separately.
     pub(super) fn command(&mut self, value: u8, parts: bool, layout: &Layout) -> Then {
         let then = match (PresetCommand::from_byte(value), self.status) {
             (PresetCommand::Edit, _) => {
@@ -164,7 +164,7 @@ impl PresetEntry {
         self.bytes.get(at).copied()
     }
 
-    /// Enters a byte; returns `false` if none is expected.
+    /// Enters a byte; returns `false` if no byte is expected.
     pub(super) fn enter(&mut self, at: usize, value: u8) -> bool {
         let open = self.status == PresetStatus::WaitForValue;
         self.bytes.get_mut(at).filter(|_| open).map(|byte| *byte = value).is_some()

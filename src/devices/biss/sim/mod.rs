@@ -1,17 +1,17 @@
-//! The virtual kit encoder with BiSS C: registers, banks, device modes, the guided procedures with their durations and
-//! failures, the flash and its wear, restarts; and the lines to it. Where the manual leaves a rule open (`U`), one
-//! documented choice is followed.
+//! The virtual BiSS C kit encoder: registers, banks, device modes, guided procedures with their durations and failures,
+//! the flash and its wear, restarts, and the lines that lead to the encoder. Where the manual leaves a rule open (`U`),
+//! one documented choice is followed.
 //!
-//! | file | what it is |
+//! | file | purpose |
 //! |---|---|
-//! | `config` | the settings of a `sim:` link |
+//! | `config` | settings of a `sim:` link |
 //! | `shaft` | the turning shaft |
-//! | `motor` | what turns it |
-//! | `flash` | what survives a loss of power, and how often it was written |
+//! | `motor` | the motor that turns the shaft |
+//! | `flash` | non-volatile memory and its write count |
 //! | `calibration`, `wiegand` | the two procedures that need a turning motor |
-//! | `entry` | the three that enter and save something: data, filter, preset |
-//! | `encoder` | registers, modes, restarts: what a read or a write does at a moment |
-//! | `ubicom` | the line of the configuration pin, byte for byte |
+//! | `entry` | the three procedures that enter and save a value: data, filter, preset |
+//! | `encoder` | registers, modes, restarts: the effect of each read and write over time |
+//! | `ubicom` | the line to the configuration pin, byte by byte |
 //! | `at_adapter` | the bus behind a virtual adapter |
 
 mod at_adapter;

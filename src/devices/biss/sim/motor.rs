@@ -2,7 +2,8 @@
 
 use crate::sim::Motor;
 
-/// Motor as seen by its encoder. A copy of the encoder gets a motor of its own.
+/// A motor as seen by its encoder. Cloning creates an independent motor, so a copied encoder does not share one with
+/// the original.
 #[derive(Debug)]
 pub(super) struct Drive {
     motor: Motor,
@@ -16,7 +17,8 @@ impl Clone for Drive {
 }
 
 impl Drive {
-    /// Creates the motor. `reverses`: it changes its direction by itself when a procedure waits for the other one.
+    /// Creates the motor. With `reverses`, the motor changes direction by itself when a procedure waits for the
+    /// opposite direction.
     pub(super) fn new(rpm: f64, reverses: bool) -> Self {
         Drive { motor: Motor::at(rpm), reverses }
     }
@@ -25,7 +27,7 @@ impl Drive {
         &self.motor
     }
 
-    /// Notes that a procedure waits for the other direction.
+    /// Reports that a procedure is waiting for the opposite direction.
     pub(super) fn other_direction(&self) {
         if self.reverses {
             self.motor.set_rpm(-self.motor.rpm());

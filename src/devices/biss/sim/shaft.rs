@@ -1,16 +1,16 @@
-//! The shaft: its position as an exact function of time. A preset shifts the position, not the shaft.
+//! Shaft model: the position as an exact function of time. A preset shifts the reported position, not the shaft itself.
 
 use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::units::Moment;
 
-/// Bits of the parts of a step.
+/// Number of fractional bits in a step.
 pub(super) const FINE: u8 = 8;
 
-/// A shaft turning at constant speed, seen through an encoder of 16 and 17 bits.
+/// A shaft turning at constant speed, as seen by an encoder with 16 multiturn and 17 singleturn bits.
 #[derive(Clone, Debug)]
 pub(super) struct Shaft {
     rpm: f64,
-    /// Mechanical place in steps at `since`.
+    /// Mechanical position in steps at `since`.
     place: f64,
     since: Moment,
     offset: u64,
@@ -26,7 +26,7 @@ impl Shaft {
         &self.layout
     }
 
-    /// Returns the revolutions per minute; positive clockwise, with rising positions.
+    /// Returns the speed in revolutions per minute, positive clockwise (rising positions).
     pub(super) const fn rpm(&self) -> f64 {
         self.rpm
     }
@@ -36,26 +36,25 @@ impl Shaft {
         self.rpm = rpm;
     }
 
-    /// Returns the position at a moment; error and warning are not set here.
+    /// Returns the position at a moment, with error and warning cleared.
     pub(super) fn reading(&self, at: Moment) -> PositionData {
         let position = (self.whole_steps(at) + self.offset) % self.range();
         let singleturn = position % self.steps();
         let multiturn = position / self.steps();
-        // Fields have at most 32 bits.
+        // Fields are at most 32 bits wide.
         let [singleturn, multiturn] = [singleturn, multiturn].map(|field| u32::try_from(field).unwrap_or(u32::MAX));
         PositionData { multiturn, singleturn, error: false, warning: false }
     }
 
-    /// Returns the position at a moment in parts of a step, with [`FINE`] additional bits: as seen by another encoder on
-    /// this shaft.
+    /// Returns the position at a moment with [`FINE`] fractional bits, as another encoder on this shaft sees it.
     pub(super) fn fine(&self, at: Moment) -> u64 {
         let whole = (self.whole_steps(at) + self.offset) % self.range();
-        // Not negative, below 1.
+        // The product is at least 0 and below 1 << FINE.
         let parts = (self.place(at).fract() * f64::from(1_u32 << FINE)) as u64;
         whole << FINE | parts
     }
 
-    /// Sets singleturn, multiturn or both at the shaft's position from `at` on; `None` leaves a part as it is.
+    /// Presets singleturn, multiturn or both to the given values from `at` on; `None` leaves a part unchanged.
     pub(super) fn preset(&mut self, at: Moment, singleturn: Option<u32>, multiturn: Option<u32>) {
         let now = self.reading(at);
         let wanted = PositionData {
@@ -67,7 +66,7 @@ impl Shaft {
         self.offset = (self.layout.steps(&wanted) % range + range - self.whole_steps(at)) % range;
     }
 
-    /// Returns the steps in a revolution.
+    /// Returns the number of steps per revolution.
     fn steps(&self) -> u64 {
         1 << self.layout.singleturn_bits()
     }
@@ -111,7 +110,7 @@ mod tests {
 
     #[test]
     fn fine_positions_include_fractions_of_a_step() {
-        // 60 rpm: 2^17 steps per second, 131.072 per millisecond; 0.072 of 256 parts are 18.4.
+        // At 60 rpm the shaft makes 2^17 steps per second, or 131.072 per millisecond; 0.072 of 256 parts is 18.4.
         let shaft = Shaft::new(Layout::default(), 5, 60.0);
         assert_eq!((shaft.fine(at(0)), shaft.fine(at(1))), (5 << 8, 136 << 8 | 18));
     }

@@ -1,6 +1,7 @@
-//! The configuration pin: UBICOM on a half-duplex line, byte by byte, with its faults. Chosen here (`U`): the encoder
-//! replies a millisecond after the last byte; it does not reply to invalid requests; bytes received while it is busy or
-//! sending are lost.
+//! UBICOM on the configuration pin: a half-duplex line simulated byte by byte, with its faults.
+//!
+//! Choices where the manual is silent (`U`): the encoder replies a millisecond after the last byte; it does not reply
+//! to invalid requests; bytes received while it is busy or sending are lost.
 
 use std::time::Duration;
 
@@ -15,7 +16,7 @@ use crate::sim::Faults;
 use crate::sim::line::{Queue, VirtualLine, Wires};
 use crate::units::Moment;
 
-/// Line with its encoder, as seen from the host. Created from a [`Config`].
+/// A line with its encoder, as seen from the host. Created from a [`Config`].
 #[derive(Clone)]
 pub struct Port {
     encoder: Encoder,
@@ -23,25 +24,25 @@ pub struct Port {
     order: ByteOrder,
     echo: bool,
     wires: Wires,
-    /// Bytes by the moment in which they have arrived.
+    /// Bytes on their way to the encoder, with their arrival times.
     to_encoder: Queue<u8>,
     to_host: Queue<u8>,
-    /// When the encoder received the last byte of an incomplete frame.
+    /// Time at which the encoder received the last byte of an incomplete frame.
     heard: Option<Moment>,
     work: Option<Work>,
-    /// Until then the encoder drives the line.
+    /// Time until which the encoder drives the line.
     talks_until: Moment,
     frames: u32,
 }
 
-/// A request that the encoder is working on.
+/// The request being processed by the encoder.
 #[derive(Clone, Copy)]
 struct Work {
     ends: Moment,
     request: Request,
 }
 
-/// Event. Of simultaneous events the first of these happens first.
+/// A line event. Simultaneous events are handled in the order of the variants.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderAnswers,
@@ -74,12 +75,12 @@ impl Port {
         &self.encoder
     }
 
-    /// Returns the encoder, to turn its shaft or to heat it.
+    /// Returns the encoder mutably, for example to turn its shaft or change its temperature.
     pub const fn encoder_mut(&mut self) -> &mut Encoder {
         &mut self.encoder
     }
 
-    /// Replaces the faults, for a cable that is repaired or breaks later. Frames and stores keep their counts.
+    /// Replaces the faults, to simulate a cable that is repaired or breaks later. The frame and store counts are kept.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.wires.faults = faults.clone();
         self.encoder.set_faults(faults);
@@ -105,7 +106,7 @@ impl Port {
         }
     }
 
-    /// Takes a whole frame. Only one request is processed at a time.
+    /// Accepts a complete frame. Only one request is processed at a time.
     fn take(&mut self, at: Moment, frame: &[u8]) {
         let silent = self.wires.faults.silent_after().is_some_and(|frames| frames <= self.frames);
         self.frames = self.frames.saturating_add(1);
@@ -132,18 +133,18 @@ impl Port {
             }
             Request::Position { .. } => None,
         };
-        // A write that cost the encoder its power is not answered.
+        // A write during which the encoder lost power is not answered.
         if let Some(reply) = reply.filter(|_| self.encoder.has_power()) {
             self.talks_until = self.drive(at, &reply.emit(), true);
         }
     }
 
-    /// Puts bytes on the line and gives the moment when the last one is through.
+    /// Puts bytes on the line and returns the time at which the last one has been transmitted.
     fn drive(&mut self, start: Moment, bytes: &[u8], from_encoder: bool) -> Moment {
         let format = if from_encoder { FORMAT } else { self.wires.host };
         let sent = self.wires.send(start, format.baud.time_of_bits(character_bits(format)), bytes);
         for heard in sent.heard {
-            // With different settings no byte is received as it was sent.
+            // With mismatched serial settings, no byte is received as sent.
             let byte = if self.wires.host == FORMAT { heard.byte } else { self.wires.rng.u8(..0x80) };
             let to = if from_encoder { &mut self.to_host } else { &mut self.to_encoder };
             to.insert(heard.end, byte);

@@ -1,14 +1,16 @@
-//! The test of the Wiegand sensor (manual 6.3): pulses are collected for 515 revolutions in each direction. The encoder
-//! does not know which direction is which; chosen here (`U`): it notices that the second run turns in the same direction as
-//! the first, and a sensor without pulses fails with code 01h.
+//! The Wiegand sensor test (manual 6.3), which collects pulses for 515 revolutions in each direction. The encoder does
+//! not know which direction is which.
+//!
+//! Choices where the manual is silent (`U`): the encoder notices that the second run turns in the same direction as the
+//! first, and a sensor without pulses fails with code 01h.
 
 use crate::devices::biss::protocol::{WiegandCommand, WiegandResult, WiegandStatus};
 use crate::units::Moment;
 
-/// The pulses of the sensor, in tenths of a volt.
+/// Pulse voltages of the sensor, in tenths of a volt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pulses {
-    /// Average; 0: no pulses.
+    /// Average voltage; 0 means no pulses.
     pub(super) average: u8,
     pub(super) lowest: u8,
 }
@@ -18,12 +20,12 @@ pub(super) struct Wiegand {
     pub(super) command: u8,
     pub(super) status: WiegandStatus,
     pub(super) error: u8,
-    /// In the order of the registers.
+    /// Results in register order.
     pub(super) result: [u8; 4],
-    /// Revolutions since the run began, until `since`.
+    /// Number of revolutions from the start of the run until `since`.
     collected: f64,
     since: Moment,
-    /// The first run turned clockwise.
+    /// Whether the first run turned clockwise, once known.
     first_clockwise: Option<bool>,
 }
 
@@ -43,7 +45,7 @@ impl Wiegand {
         }
     }
 
-    /// Handles a command; returns `false` if it is refused. The [`Encoder`](super::Encoder) does the saving.
+    /// Handles a command; returns `false` if the command is refused. The [`Encoder`](super::Encoder) does the saving.
     pub(super) fn write(&mut self, now: Moment, value: u8) -> bool {
         let status = match (WiegandCommand::from_byte(value), self.status) {
             (WiegandCommand::Stop, _) => WiegandStatus::Stopped,
@@ -67,7 +69,7 @@ impl Wiegand {
         matches!(self.status, WiegandStatus::Clockwise | WiegandStatus::Counterclockwise)
     }
 
-    /// Takes the revolutions since the last call at constant speed, and ends a run that has enough of them.
+    /// Adds the revolutions since the previous call at constant speed, and ends a run that has collected enough.
     pub(super) fn settle(&mut self, now: Moment, rpm: f64, pulses: Pulses) {
         if !self.is_running() {
             return;
@@ -93,7 +95,7 @@ impl Wiegand {
         }
     }
 
-    /// Ends the run when the mode is left, or power is lost. The result stays until power is lost.
+    /// Ends the run when the mode is left or power is lost. The result is kept until power is lost.
     pub(super) fn abandon(&mut self) {
         (self.command, self.status) = (0, WiegandStatus::Stopped);
     }

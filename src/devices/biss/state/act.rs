@@ -1,4 +1,4 @@
-//! The user's actions on an encoder: edits take effect at once, everything else is a job of the session or a task.
+//! The user's actions on an encoder. Edits take effect at once; everything else becomes a session job or a task.
 
 use std::time::Duration;
 
@@ -17,11 +17,10 @@ use crate::profile::Body;
 use super::table::Group;
 use crate::devices::biss::state::explain as explained;
 
-/// Interval of reading a watched register: watched values change slowly, and the position has to wait for them.
+/// Interval for reading watched registers, which change slowly and hold up the position readings.
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
-    /// Carries out an action.
     pub(crate) fn act(&mut self, action: BissAction, context: &mut ActContext<'_>) {
         let services = &mut *context.services;
         match action {
@@ -40,7 +39,7 @@ impl Encoder {
             BissAction::Watch(register, on) => self.watch(*register, on),
             BissAction::ReadBank(bank) => self.read_bank(bank, services),
             BissAction::SeeBank(bank) => {
-                // Only if nothing else is to be done, no stream would be interrupted, and only once.
+                // Only when idle, when no stream would be interrupted, and only once.
                 let free = self.session.is_ready() && self.streamed().is_none();
                 if free && self.seen.insert(bank) {
                     self.read_bank(bank, services);
@@ -95,24 +94,25 @@ impl Encoder {
         }
     }
 
-    /// Returns whether a bank that becomes visible should be read: it was not read, nothing runs, no stream would be
-    /// interrupted, and no earlier attempt failed.
+    /// Returns whether a bank that becomes visible should be read: the bank has not been read, nothing is running, no
+    /// stream would be interrupted, and no earlier attempt failed.
     pub fn wants(&self, group: &Group) -> bool {
         let free = self.session.is_ready() && self.streamed().is_none();
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 
-    /// Returns the part of an area that can be shown: of a profile what it contains, of an encoder only the whole.
+    /// Returns the part of an area that can be shown: for a profile, the part that it contains; for an encoder, the
+    /// whole area.
     pub fn visible_part(&self, area: &Area) -> Option<Area> {
         if self.profile().is_some() { self.memory.part(area) } else { Some(area.clone()) }
     }
 
-    /// Returns why an area cannot be edited now; `None` if it can.
+    /// Returns the reason why an area cannot be edited now, or `None` if editing is possible.
     pub fn why_not_editable(&self, area: &Area) -> Option<Text> {
         if !area.access.writes() {
             return Some(TEXTS.text("data.read_only"));
         }
-        // A profile is a text: the access that it records does not protect it.
+        // A profile is only a file, so the access rights it records do not protect it.
         (self.session.phase != Phase::Offline && self.session.is_writing()).then(|| Text::new("session.busy"))
     }
 
@@ -126,7 +126,7 @@ impl Encoder {
         }
     }
 
-    /// Handles a profile that was read for a file.
+    /// Writes a freshly read profile to the file that it was read for.
     pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.memory.count());
         let remarks = explained::saved_unsaved(&profile).into_iter().collect();

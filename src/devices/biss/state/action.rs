@@ -1,4 +1,4 @@
-//! The actions of a BiSS encoder that is shown.
+//! Actions of the BiSS encoder on display.
 
 use std::path::PathBuf;
 
@@ -9,34 +9,34 @@ use crate::devices::biss::procedures::procedure::{Answer, Task};
 use crate::devices::biss::profile::{MotorSource, MountingRun};
 use crate::devices::biss::protocol::{Register, RegisterAddress};
 
-/// Something in the BiSS tab.
+/// A user action in the BiSS tab.
 pub enum BissAction {
-    /// Read errors, warnings, temperature and mode.
+    /// Read errors, warnings, temperature and device mode.
     ReadStatus,
     Check,
-    /// While the position is read all the time, read this too, or no more.
+    /// Start or stop reading the given register along with the position while polling.
     Watch(Box<Register>, bool),
-    /// Read a bank; `None`: the direct registers.
+    /// Read a bank, or the direct registers for `None`.
     ReadBank(Option<u8>),
-    /// Read a bank that has become visible and was never read, when nothing else is to be done.
+    /// Read a newly visible bank that has never been read, if nothing else is going on.
     SeeBank(Option<u8>),
-    /// Read a plain data area, by its first bank.
+    /// Read the plain data area that starts at the given bank.
     ReadArea(u8),
     /// Edit bytes of plain data.
     Put {
-        /// First byte.
+        /// Address of the first byte.
         start: RegisterAddress,
         bytes: Vec<u8>,
     },
     Revert {
-        /// First byte.
+        /// Address of the first byte.
         start: RegisterAddress,
         count: usize,
     },
     Plan(Box<Change>),
-    /// Show the effect of a mounting run; the plain data comes from a profile that is open in another session.
+    /// Show the effect of a mounting run. The plain data comes from a profile that is open in another session.
     PlanMounting {
-        /// The steps, without the data.
+        /// The steps of the run, without the plain data.
         run: Box<MountingRun>,
         motor: MotorSource,
         data: Option<SessionId>,

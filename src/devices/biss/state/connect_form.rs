@@ -1,4 +1,4 @@
-//! The connection form of a BiSS C encoder, and its link. Nothing is opened here.
+//! The connection form for a BiSS C encoder and the link it produces. This module opens no connection.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -28,32 +28,32 @@ pub enum BissLinkKind {
     Replay,
 }
 
-/// Entries of the connection form. Entries of another kind of connection are kept and left out of the link. An empty entry
-/// means the default.
+/// Values of the connection form. Values for another kind of connection are kept but left out of the link. An empty
+/// field means the default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissForm {
     pub kind: BissLinkKind,
-    /// Set for a virtual encoder behind a virtual adapter, or a recording through an adapter.
+    /// Whether a virtual encoder is behind a virtual adapter, or a recording was made through an adapter.
     pub behind_adapter: bool,
-    /// Over a network, and not a serial port of this machine.
+    /// Whether to connect over a network instead of a local serial port.
     pub network: bool,
     pub port: String,
     pub host: String,
     pub tcp_port: String,
     pub file: String,
     pub parity: Parity,
-    /// Byte order of register numbers on the configuration pin; `None`: detect it.
+    /// Byte order of register numbers on the configuration pin, or `None` to detect it.
     pub order: Option<ByteOrder>,
     pub echo: Echo,
-    /// The adapter leaves the encoder's supply on at the end.
+    /// Whether the adapter leaves the encoder's supply on after disconnecting.
     pub leave_supply: bool,
-    /// Text of other parameters.
+    /// Typed values of the other parameters.
     pub typed: Typed,
-    /// Parameters of the link that have no entry.
+    /// Link parameters that have no form field.
     pub rest: Vec<(String, String)>,
 }
 
-/// The parameter that puts the virtual adapter in front of the virtual encoder.
+/// Link parameter that puts a virtual adapter in front of the virtual encoder.
 const BRIDGE: (&str, &str) = ("bridge", "on");
 
 impl Default for BissForm {
@@ -80,7 +80,7 @@ impl Default for BissForm {
 impl FormModel for BissForm {
     type Finder = NoFinder<Self>;
 
-    // The virtual encoder initially offered by the window: behind an adapter, so that everything is visible.
+    // The first choice in the window is a virtual encoder behind an adapter, so that every feature is visible.
     fn usual() -> LinkUrl {
         let mut url = LinkUrl::sim();
         url.query.set(BRIDGE.0, BRIDGE.1);
@@ -127,7 +127,7 @@ impl FormModel for BissForm {
 }
 
 impl BissForm {
-    /// Fills in the entry of a parameter; returns false if no entry can show it.
+    /// Fills in the form field for a parameter; returns `false` if no field can show the value.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if name == SupplyAfter::LEFT_ON.0 {
             self.leave_supply = value == SupplyAfter::LEFT_ON.1;
@@ -150,7 +150,7 @@ impl BissForm {
         is_taken
     }
 
-    /// Returns the entries of the virtual encoder that are typed.
+    /// Returns the typed fields of the virtual encoder.
     pub fn of_the_virtual() -> Vec<Entry> {
         chosen(&sim::Config::entries(), &["rpm", "fault"])
     }
@@ -159,12 +159,12 @@ impl BissForm {
         BusParameters::entries()
     }
 
-    /// Returns the entry of the baud rate of the configuration pin, and its other entries.
+    /// Returns the baud rate field of the configuration pin, and the pin's remaining fields.
     pub fn of_the_pin() -> (Vec<Entry>, Vec<Entry>) {
         PinParameters::entries().into_iter().partition(|own| own.key == "baud")
     }
 
-    /// Returns the entries of the frame, and those of the line.
+    /// Returns the fields for the frame and those for the line, which apply to every kind of connection.
     pub fn of_every_way() -> (Vec<Entry>, Vec<Entry>) {
         (FrameParameters::entries(), LineParameters::entries())
     }
@@ -175,12 +175,12 @@ impl BissForm {
         [own, Self::of_the_bus(), PinParameters::entries(), frame, line].concat()
     }
 
-    /// Returns whether the encoder is reached over its bus.
+    /// Returns whether the encoder is connected by its bus, through a real or virtual adapter.
     pub fn is_on_the_bus(&self) -> bool {
         self.kind == BissLinkKind::Bus || (self.may_say_what_is_between() && self.behind_adapter)
     }
 
-    /// Returns whether a link of this kind leads to the configuration pin or to the bus.
+    /// Returns whether this kind of link can lead to either the configuration pin or the bus.
     pub fn may_say_what_is_between(&self) -> bool {
         matches!(self.kind, BissLinkKind::Virtual | BissLinkKind::Replay)
     }
@@ -228,8 +228,8 @@ impl BissForm {
         parameters
     }
 
-    /// Returns whether a parameter belongs to this kind of connection. Those of other kinds are dropped; unknown ones are
-    /// kept, so that they are refused by name.
+    /// Returns whether a parameter belongs to this kind of connection. Parameters of other kinds are dropped; unknown
+    /// ones are kept, so that they are refused by name.
     fn belongs(&self, name: &str) -> bool {
         let kind = if self.is_on_the_bus() { Transport::Adapter } else { Transport::ConfigPin };
         let own = |kind: Transport| kind.parameters().contains(&name);
@@ -259,7 +259,7 @@ mod tests {
             "tcp:[::1]:4001",
             "bridge:/dev/ttyACM0?clock=2000000",
             "bridge:tcp:adapter:5000",
-            // Issue 22.16: a value other than that of the check box stays in the link.
+            // Issue 22.16: a value that the check box cannot represent stays in the link.
             "bridge:/dev/ttyACM0?leave-supply=on",
             "bridge:tcp:adapter:5000?clock=2000000&leave-supply=on",
             "bridge:/dev/ttyACM0?leave-supply=off",

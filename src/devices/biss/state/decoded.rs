@@ -1,5 +1,5 @@
-//! The value of a register as text: as decoded by its description, and in addition for registers with a role and the data
-//! sheet.
+//! Decoded register values as labels: by the register's description, with special handling for registers with a role
+//! and for the data sheet.
 
 use super::encoder::Encoder;
 use super::table::RegisterEntry;
@@ -12,7 +12,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
 
 impl Encoder {
-    /// Returns the meaning of a register; `None` if it was not read, or has no meaning beyond its number.
+    /// Returns the meaning of a register, or `None` if the register was not read or means no more than its number.
     pub fn meaning(&self, shown: &RegisterEntry<'_>) -> Option<Text> {
         let register = &shown.row.register;
         let bytes = shown.bytes.as_deref()?;
@@ -58,7 +58,8 @@ impl Encoder {
         }
     }
 
-    /// Returns the meaning of data sheet fields that a description cannot express: times, banks, polynomials, the checksum.
+    /// Returns the meaning of data sheet fields that a description cannot express: times, banks, polynomials, the
+    /// checksum.
     fn of_data_sheet(&self, register: &Register, bytes: &[u8]) -> Option<Text> {
         let offset = register.address.address();
         let bank = [EdsBank::Common, EdsBank::Encoder]
@@ -78,7 +79,7 @@ impl Encoder {
     }
 }
 
-/// Returns a quantity with its unit, with at most three decimals.
+/// Formats a quantity with its unit and at most three decimals.
 fn quantity(value: f64, unit: &str) -> Text {
     let value = (value * 1000.0).round() / 1000.0;
     TEXTS.text("registers.quantity").with_number("value", value, decimals(value)).with("unit", unit)
@@ -103,7 +104,7 @@ mod tests {
         encoder.meaning(&shown).map(|text| text.words(language)).unwrap_or_default()
     }
 
-    /// Reference 4: every register whose number alone is not enough to understand it.
+    /// Covers every register in reference 4 whose raw number does not explain itself.
     #[test]
     fn every_reference_register_is_decoded() {
         let mut encoder = Encoder::with(Session::at_link(SessionId::default(), "sim:".parse().unwrap(), Kinds::NONE));

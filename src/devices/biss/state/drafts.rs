@@ -1,4 +1,4 @@
-//! Edits of an encoder's plain data, kept after a crash: global address and byte.
+//! Edits of an encoder's plain data, stored as global address and byte so that they survive a crash.
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;
@@ -9,7 +9,7 @@ use crate::devices::biss::profile::BissProfile;
 use crate::profile::Document;
 use crate::store::DeviceKey;
 
-/// Edited bytes: global address, byte.
+/// Edited bytes, each with its global address.
 pub(crate) type Edits = Vec<(u16, u8)>;
 
 impl HasSession for Encoder {

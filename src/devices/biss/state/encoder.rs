@@ -1,4 +1,4 @@
-//! An open BiSS encoder, or a profile of one: its known data, the user's edits, and the running jobs.
+//! An open BiSS encoder or encoder profile: its known data, the user's edits, and the running jobs.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -19,28 +19,28 @@ use crate::devices::biss::protocol::{Description, DeviceMode, Eds, EdsBank, EdsE
 use crate::devices::biss::state::explain as words;
 use crate::sim::Motor;
 
-/// A BiSS encoder, or a profile of one.
+/// A BiSS encoder or an encoder profile.
 pub struct Encoder {
     pub session: Session<Biss>,
     pub survey: Option<Survey>,
-    /// The status as last read.
+    /// Status from the last reading, if any.
     pub status: Option<Status>,
-    /// The last device check.
+    /// Results of the last device check, if any.
     pub check: Option<Vec<CheckLine>>,
     pub description: Option<Arc<Description>>,
     pub memory: Memory,
-    /// Its registers as a table.
+    /// The encoder's registers as a table.
     pub table: Table,
     pub record: Record,
-    /// The running procedure, or the last one with its end.
+    /// The running procedure, or the last one with its result.
     pub guide: Option<Guide>,
-    /// Why the last request for data was refused.
+    /// Reason why the last data request was refused, if it was.
     pub refusal: Option<Text>,
     pub motor: Option<Motor>,
     pub(super) meaning: Meaning,
-    /// Banks read because they became visible, or that could not be read: they are not requested automatically again.
+    /// Banks that were read on becoming visible or could not be read, and are not requested automatically again.
     pub(super) seen: BTreeSet<Option<u8>>,
-    /// Banks that were written, to be read again.
+    /// Banks that have been written and must be read back.
     pub(super) read_after: BTreeSet<u8>,
 }
 
@@ -83,7 +83,7 @@ impl Encoder {
         document.body.get::<BissProfile>()
     }
 
-    /// Returns the edited profile, if this is one.
+    /// Returns the profile with its edits, or `None` if this is an encoder.
     pub(crate) fn wanted_profile(&self) -> Option<BissProfile> {
         let mut profile = self.profile()?.clone();
         for (at, byte) in self.memory.iter() {
@@ -92,12 +92,12 @@ impl Encoder {
         Some(profile)
     }
 
-    /// Returns the identity, as far as known.
+    /// Returns the encoder's identity, if known.
     pub fn identity(&self) -> Option<&Identity> {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
 
-    /// Returns its data sheet, common part first: as read, or from a profile.
+    /// Returns the data sheet as read from the encoder or stored in the profile, common part first.
     pub fn data_sheet(&self) -> Option<[Result<Eds, EdsError>; 2]> {
         if let Some(identity) = self.identity() {
             return identity.data_sheet.as_ref().map(|sheet| [sheet.common.eds, sheet.encoder.eds]);
@@ -110,7 +110,7 @@ impl Encoder {
         Some([parsed(EdsBank::Common)?, parsed(EdsBank::Encoder)?])
     }
 
-    /// Returns what an adapter streams now; `None` if it does not.
+    /// Returns the stream that an adapter is sending, or `None` if no adapter is streaming.
     pub fn streamed(&self) -> Option<&Streamed> {
         self.record.streamed().filter(|_| self.session.is_polling())
     }
@@ -119,21 +119,21 @@ impl Encoder {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Returns the serial number; empty if the encoder has none, `None` if nothing was read.
+    /// Returns the serial number, which is empty if the encoder has none, or `None` if nothing was read.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
     }
 
-    /// Returns whether there are edits that are not written.
+    /// Returns whether there are unwritten edits.
     pub fn is_dirty(&self) -> bool {
         self.memory.is_dirty()
     }
 
-    /// Takes over a reading of the encoder; edits stay, unless they are for another encoder.
+    /// Takes over a survey of the encoder. Edits are kept unless the survey is of another encoder.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         let fresh = std::mem::take(&mut self.session.just_connected);
-        // Without a serial number, it may be any encoder of its type.
+        // Without a serial number, this may be any encoder of the same type.
         let unproven = fresh && self.survey.is_some() && survey.identity.serial_number.is_empty();
         if unproven || self.is_another(&survey.identity) {
             self.replaced_by(&survey.identity.serial_number, services);
@@ -160,15 +160,15 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// Takes the device mode in which registers were read just now; `None` in operation.
+    /// Updates the device mode in which registers were just read; `None` means operation.
     pub(super) fn see_mode(&mut self, unsaved: Option<DeviceMode>) {
         if let Some(mode) = self.status.as_mut().and_then(|status| status.mode.as_mut()) {
             *mode = unsaved.unwrap_or(DeviceMode::OPERATION);
         }
     }
 
-    /// Returns the text of the device mode in which its registers may show values that were never saved: of the encoder, or
-    /// of a profile when it was read.
+    /// Returns a message if registers may show values that were never saved, because of the device mode of the encoder,
+    /// or the mode in which the profile was read.
     pub fn unsaved(&self) -> Option<Text> {
         if let Some(profile) = self.profile() {
             return words::profile_unsaved(profile);
@@ -177,14 +177,14 @@ impl Encoder {
         Some(words::unsaved(mode))
     }
 
-    /// Returns whether this is another encoder than the one read before.
+    /// Returns whether the identity differs from that of the encoder read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.kind.clone(), identity.serial_number.clone());
         self.identity().is_some_and(|known| who(known) != who(identity))
     }
 }
 
-/// Returns the name by which the log and the jobs call an encoder.
+/// Returns the name used for an encoder in the log and in jobs.
 fn title(identity: &Identity) -> String {
     let name = identity.description.name();
     if identity.serial_number.is_empty() { name.to_owned() } else { format!("{name} · {}", identity.serial_number) }

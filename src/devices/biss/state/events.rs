@@ -1,4 +1,4 @@
-//! Events of the line to an encoder: results of jobs, live samples, and loss.
+//! Connection events of an encoder: job results, live samples, and loss of the connection.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
@@ -63,7 +63,7 @@ impl Kind for Biss {
 }
 
 impl Encoder {
-    /// Reads the next of the banks that were written.
+    /// Reads back the next bank that has been written.
     fn read_written(&mut self, services: &mut Services) {
         if let Some(bank) = self.read_after.pop_first() {
             self.submit(BissJob::ReadBank(bank), services);
@@ -133,12 +133,12 @@ impl SessionEvents for Encoder {
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);
             }
-            // The survey contains more.
+            // The survey contains more than the identity.
             BissOutput::Identity(_) => {}
         }
     }
 
-    /// Returns whether neither the encoder nor the adapter answers.
+    /// Returns whether an error means that neither the encoder nor the adapter responds.
     fn is_silence(&self, error: &JobError) -> bool {
         let is_lost = match error {
             JobError::Device(cause) => cause.is_lost(),
@@ -160,13 +160,13 @@ impl SessionEvents for Encoder {
         if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
             return stands_there;
         }
-        // It is shown on the pages with data.
+        // The refusal is shown on the data pages.
         self.refusal = Some(first(texts));
         true
     }
 
     fn try_submit(&mut self, job: BissJob, services: &mut Services) -> bool {
-        // The next request decides again.
+        // The next request sets the refusal again if needed.
         self.refusal = None;
         self.session.submit(job, services)
     }

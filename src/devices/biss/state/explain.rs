@@ -1,4 +1,4 @@
-//! Texts of a BiSS encoder: the errors of its jobs, and messages of its session.
+//! Messages for a BiSS encoder: job errors and session messages.
 
 mod check;
 mod damage;
@@ -32,7 +32,7 @@ pub fn name(name: &Name) -> Text {
     Text::new("plain.words").with_name("words", name.english(), name.german())
 }
 
-/// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
+/// Returns the messages for a job that ended early: one or more sentences, each of which may stand on its own line.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
@@ -44,7 +44,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns why the connection failed, if nothing more can be requested over it.
+/// Returns the reason for a lost connection, or `None` if further requests are possible.
 pub fn loss(error: &JobError) -> Option<Text> {
     lost(error.device()?).map(link)
 }
@@ -57,7 +57,7 @@ fn lost(error: &Error) -> Option<&LinkError> {
     }
 }
 
-/// Returns the text for an exchange with a BiSS encoder that failed.
+/// Returns the message for a failed exchange with a BiSS encoder.
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
@@ -119,7 +119,7 @@ pub fn encoder(error: &Error) -> Text {
     }
 }
 
-/// Returns why no encoder can have a layout of the frame.
+/// Returns the reason why a frame layout is impossible.
 fn layout(error: &LayoutError) -> Text {
     let hex = |number: u64| format!("{number:#X}");
     match *error {
@@ -138,22 +138,23 @@ fn layout(error: &LayoutError) -> Text {
     }
 }
 
-/// Returns the text for an encoder in a device mode, in which its registers may show values that were never saved.
+/// Returns the warning that registers may show values that were never saved, because of the device mode.
 pub fn unsaved(mode: DeviceMode) -> Text {
     in_mode("biss.unsaved", mode)
 }
 
-/// Returns the same for an encoder that has just been saved; `None` if it was in operation.
+/// Returns the warning that a profile just saved may contain values that were never saved in the encoder, or `None` if
+/// the encoder was in operation.
 pub fn saved_unsaved(profile: &BissProfile) -> Option<Text> {
     profile.recorded.device_mode.map(unsaved)
 }
 
-/// Returns the text for a profile that was read in a device mode; `None` if the encoder was in operation.
+/// Returns the message for a profile that was read in a device mode, or `None` if the encoder was in operation.
 pub fn profile_unsaved(profile: &BissProfile) -> Option<Text> {
     profile.recorded.device_mode.map(profile_unsaved_in)
 }
 
-/// Returns the text for a profile that was read in this device mode.
+/// Returns the message for a profile that was read in the given device mode.
 pub fn profile_unsaved_in(mode: DeviceMode) -> Text {
     in_mode("biss.profile_unsaved", mode)
 }
@@ -162,7 +163,7 @@ fn in_mode(id: &'static str, mode: DeviceMode) -> Text {
     TEXTS.text(id).with_text("mode", self::mode(mode))
 }
 
-/// Returns the text for a shaft that must stand still and does not.
+/// Returns the message for a shaft that must stand still but is moving.
 fn moving(rpm: Option<f64>) -> Text {
     let Some(rpm) = rpm.filter(|rpm| rpm.abs() >= 0.05) else { return TEXTS.text("biss.moving") };
     let id = if rpm > 0.0 { "biss.moving_cw" } else { "biss.moving_ccw" };
@@ -179,7 +180,7 @@ pub fn item_text(requested: RequestedItem) -> Text {
     }
 }
 
-/// Returns the text for an encoder that differs from the best matching description.
+/// Returns the message for an encoder that differs from the best matching description.
 pub fn mismatch(mismatch: &Mismatch) -> Text {
     TEXTS
         .text("biss.mismatch")
@@ -188,7 +189,7 @@ pub fn mismatch(mismatch: &Mismatch) -> Text {
         .with("expected", &mismatch.expected)
 }
 
-/// Returns the texts of a message during a job.
+/// Returns the texts for a message from a running job.
 pub fn remark(remark: &DeviceMessage) -> Vec<Text> {
     match remark {
         DeviceMessage::CrcErrors(1) => vec![TEXTS.text("biss.crc_error")],
@@ -197,7 +198,7 @@ pub fn remark(remark: &DeviceMessage) -> Vec<Text> {
     }
 }
 
-/// Returns the text for a description of the user's own that cannot be read or used.
+/// Returns the message for a user-supplied description that cannot be read or used.
 fn description(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<DescriptionError>() {

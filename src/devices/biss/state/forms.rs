@@ -1,14 +1,14 @@
-//! The entries of the procedures, and their meaning.
+//! Form fields of the procedures and the conversion of their values.
 
 use crate::app::Text;
 use crate::app::number::{whole, within};
 use crate::devices::biss::protocol::{Layout, PresetValue};
 use crate::devices::biss::state::TEXTS;
 
-/// The entries of a preset.
+/// Form fields for a preset position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PresetForm {
-    /// Degrees within the revolution.
+    /// Angle within the revolution, in degrees.
     pub degrees: String,
     pub turns: String,
 }
@@ -26,30 +26,30 @@ impl PresetForm {
         PresetForm { degrees: format!("{}", (degrees * 1e6).round() / 1e6), turns: value.multiturn().to_string() }
     }
 
-    /// Returns the step nearest to the entered degrees.
+    /// Returns the step nearest to the entered angle.
     ///
     /// # Errors
-    /// A sentence that names the valid entries.
+    /// A message that states the valid range.
     pub fn singleturn(&self, layout: &Layout) -> Result<u32, Text> {
         let degrees = within(TEXTS.text("preset_card.degrees"), &self.degrees, 0.0, 359.999_999)?;
         let steps = 1_u64 << layout.singleturn_bits();
-        // Less than the number of steps, which fits into 32 bits.
+        // Less than the step count, which fits into 32 bits.
         Ok(((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32)
     }
 
-    /// Returns the revolutions.
+    /// Returns the entered revolution.
     ///
     /// # Errors
-    /// A sentence that names the valid entries.
+    /// A message that states the valid range.
     pub fn multiturn(&self, layout: &Layout) -> Result<u32, Text> {
         let last = u32::try_from((1_u64 << layout.multiturn_bits()) - 1).unwrap_or(u32::MAX);
         whole(TEXTS.text("preset_card.turns"), &self.turns, 0, last.min(PresetValue::MAX))
     }
 
-    /// Returns the value of the entries.
+    /// Returns the preset value given by both fields.
     ///
     /// # Errors
-    /// A sentence that names the valid entries; of two invalid ones, for the first.
+    /// A message that states the valid range; if both fields are invalid, for the first one.
     pub fn value(&self, layout: &Layout) -> Result<PresetValue, Text> {
         let (singleturn, multiturn) = (self.singleturn(layout)?, self.multiturn(layout)?);
         PresetValue::new(singleturn, multiturn).ok_or_else(|| TEXTS.text("preset_card.too_wide"))
@@ -64,14 +64,14 @@ mod tests {
         PresetForm { degrees: degrees.to_owned(), turns: turns.to_owned() }
     }
 
-    /// Reference 5.5: 17 bits.
+    /// Expected steps at 17 bits from reference 5.5.
     #[test]
     fn degrees_convert_to_the_published_steps() {
         let layout = Layout::default();
         for (degrees, singleturn) in [("270", 98_304), ("0", 0), ("180", 65_536), ("90", 32_768), ("1", 364)] {
             assert_eq!(form(degrees, "7").value(&layout).unwrap(), PresetValue::new(singleturn, 7).unwrap());
         }
-        // The last half step is the first one of the next revolution.
+        // Angles in the last half step round up to step 0 of the next revolution.
         assert_eq!(form("359.9999", "0").value(&layout).unwrap().singleturn(), 0);
         assert_eq!(PresetForm::of(PresetValue::new(98_304, 7).unwrap(), &layout), form("270", "7"));
     }

@@ -1,5 +1,5 @@
-//! The state of a guided procedure for its display: steps, progress, present task, results. Nothing is carried out
-//! here; the answers go to the job.
+//! State of a guided procedure for display: steps, progress, current task, results. Nothing is carried out in this
+//! module; answers go to the job.
 
 use crate::app::Text;
 use crate::devices::biss::procedures::procedure::{
@@ -7,56 +7,55 @@ use crate::devices::biss::procedures::procedure::{
 };
 use crate::devices::biss::profile::Op;
 
-/// The running procedure, or its end.
+/// A procedure that is running or has ended.
 pub struct Guide {
     ops: Vec<Op>,
     progress: Option<ProcedureProgress>,
-    /// The step at which it was interrupted: the step reported last is of the return to operation.
+    /// The interrupted step; the last reported step belongs to the return to operation.
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
     skips: Vec<(usize, Task)>,
-    /// The end; `None` while it runs.
+    /// How the procedure ended, or `None` while it is running.
     pub end: Option<End>,
 }
 
-/// The end of a procedure.
+/// How a procedure ended.
 #[derive(Clone, Debug)]
 pub enum End {
-    /// Run to its end: the result of each operation.
+    /// The procedure ran to completion, with the result of each operation.
     Done(Vec<Outcome>),
-    /// Ended early: what happened, the state in which the encoder was left, and what to do.
+    /// The procedure ended early.
     Failed {
-        /// What happened, as texts.
+        /// Messages that explain what happened, the state in which the encoder was left, and what to do.
         texts: Vec<Text>,
-        /// The results of the operations before.
+        /// Results of the operations completed before.
         before: Vec<Outcome>,
-        /// The encoder may not be in operation.
+        /// Whether the encoder may have been left outside operation.
         may_lead_back: bool,
         cancelled: bool,
     },
 }
 
-/// The progress of a step.
+/// Progress of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reached {
-    /// The step is done.
     Done,
-    /// It waits for the operator.
+    /// The step is waiting for the operator.
     Waits,
     Runs,
     Skipped,
     Failed,
-    /// The user cancelled the procedure in this step.
+    /// The user cancelled the procedure during the step.
     Cancelled,
-    /// It comes later, or not at all.
+    /// The step has not been reached, and may never be.
     Ahead,
 }
 
-/// A step of the whole.
+/// A step with its operation and progress.
 #[derive(Clone, Debug)]
 pub struct GuideStep<'a> {
     pub op: &'a Op,
-    /// First step of its operation.
+    /// Whether the step is the first one in its operation.
     pub is_first: bool,
     pub step: ProcedureStep,
     pub reached: Reached,
@@ -79,7 +78,7 @@ impl Guide {
         self.progress = Some(progress);
     }
 
-    /// Returns the detail of the present step.
+    /// Returns the detail of the current step, or `None` if the procedure is not running.
     pub fn detail(&self) -> Option<&Detail> {
         self.progress.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
     }
@@ -100,7 +99,7 @@ impl Guide {
         }
     }
 
-    /// Returns all steps in order.
+    /// Returns the steps of all operations in order.
     pub fn steps(&self) -> Vec<GuideStep<'_>> {
         let at = self.progress.as_ref().map(|news| (news.op, self.cut.unwrap_or(news.step)));
         let mut steps = Vec::new();
@@ -130,7 +129,7 @@ impl Guide {
         steps
     }
 
-    /// Returns the skipped steps of an operation: from its result, else from the answers.
+    /// Returns the range of skipped steps in an operation, taken from its result or else from the answers.
     fn skipped(&self, number: usize, steps: &[ProcedureStep]) -> Option<std::ops::Range<usize>> {
         let outcomes = match &self.end {
             Some(End::Done(outcomes) | End::Failed { before: outcomes, .. }) => outcomes.as_slice(),
@@ -149,13 +148,13 @@ impl Guide {
                 steps.iter().position(|step| *step == ProcedureStep::Await(task))
             }
         }?;
-        // It is returned to operation if its mode was entered.
+        // The encoder is returned to operation only if the device mode was entered.
         let entered = steps.iter().take(from).any(|step| matches!(step, ProcedureStep::Enter(_)));
         let led_back = steps.iter().position(|step| *step == ProcedureStep::LeadBack).filter(|_| entered);
         Some(from..led_back.unwrap_or(steps.len()))
     }
 
-    /// Returns whether this step is of the return to operation after an interruption, and was completed.
+    /// Returns whether the given step belongs to a return to operation that was completed after an interruption.
     fn was_led_back(&self, op: usize, step: ProcedureStep) -> bool {
         let was_reported = self.progress.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
         let in_operation = matches!(self.end, Some(End::Failed { may_lead_back: false, .. }));
@@ -212,11 +211,11 @@ mod tests {
         let led = [&told[..], &[ProcedureStep::LeadBack]].concat();
         assert_eq!(reached(&led, Some(run), false), [Done, Done, Done, Failed, Ahead, Ahead, Done]);
         assert_eq!(reached(&led, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
-        // The link is lost: no return to operation is reported.
+        // With the link lost, no return to operation is reported.
         assert_eq!(reached(&told, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
-        // It has never left operation.
+        // The encoder never left operation.
         assert_eq!(reached(&told[..2], Some(turn), false), [Done, Failed, Ahead, Ahead, Ahead, Ahead, Ahead]);
-        // The return to operation itself.
+        // The return to operation itself failed.
         assert_eq!(reached(&led, Some(ProcedureStep::LeadBack), true), [Done, Done, Done, Done, Done, Done, Failed]);
         assert_eq!(reached(&[], None, false), [Ahead; 7]);
     }

@@ -1,4 +1,4 @@
-//! The kind BiSS for the studio, before there is a device.
+//! The BiSS device type as registered with the studio, for use before a device is open.
 
 use std::sync::Arc;
 

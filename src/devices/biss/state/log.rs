@@ -1,4 +1,4 @@
-//! The log entries of an encoder: its identity and link, the start of a write, the results of its operations.
+//! Log entries of an encoder: its identity and link, the start of a write, and the results of operations.
 
 use super::encoder::Encoder;
 use crate::app::review::{ChangeWords, OpWords};
@@ -13,17 +13,17 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 
 impl Encoder {
-    /// Logs the first answer since the link was opened.
+    /// Logs the first response after the link was opened.
     pub(super) fn log_answer(&self, services: &mut Services) {
         let Some(identity) = self.identity() else { return };
         self.session.log_answer(vec![transport_text(identity), identity_text(identity)], services);
     }
 
-    /// Logs that a write has begun, with its changes, old and new.
+    /// Logs the start of a write with the old and new value of each change.
     pub(super) fn log_operations(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
         let identity = &prepared.identity;
         let operations = prepared.plan.ops.iter().flat_map(|op| match op {
-            // For many consecutive registers, only the first.
+            // A run of consecutive registers is represented by the first one only.
             Op::StoreData { .. } => vec![explain::plain(op.note(&identity.description))],
             op => {
                 let OpWords { item, changes } = words::op(op, &identity.layout);
@@ -34,7 +34,7 @@ impl Encoder {
         services.note(Severity::Note, vec![text], Some(&self.session.name()));
     }
 
-    /// Logs the results of the operations, before the end of the write.
+    /// Logs the results of the operations before the end of the write is logged.
     pub(super) fn log_outcomes(&self, outcomes: &[Outcome], services: &mut Services) {
         for outcome in outcomes {
             services.note(Severity::Note, words::outcome(outcome), Some(&self.session.name()));
@@ -42,7 +42,7 @@ impl Encoder {
     }
 }
 
-/// Returns the text for one thing that an operation changes, old and new.
+/// Returns the log text for one changed value, old and new.
 fn operation(item: &Text, ChangeWords { part, old, new }: ChangeWords) -> Text {
     let text = match part {
         None => TEXTS.text("log.operation"),
@@ -51,7 +51,7 @@ fn operation(item: &Text, ChangeWords { part, old, new }: ChangeWords) -> Text {
     text.with_text("item", item.clone()).with_text("old", old).with_text("new", new)
 }
 
-/// Returns the text of the connection to the encoder.
+/// Returns the log text for the connection to the encoder.
 fn transport_text(identity: &Identity) -> Text {
     match (&identity.adapter, identity.order) {
         (Some(hello), _) => Text::new("log.adapter")
@@ -63,7 +63,7 @@ fn transport_text(identity: &Identity) -> Text {
     }
 }
 
-/// Returns the reported identity as text.
+/// Returns the log text for the reported identity.
 fn identity_text(identity: &Identity) -> Text {
     let firmware = identity.firmware.map_or_else(|| Text::new("encoder_card.not_told"), explain::plain);
     TEXTS

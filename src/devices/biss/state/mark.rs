@@ -1,10 +1,10 @@
-//! The validity of the last position: from the position itself, or, if the connection does not transmit it, from the
-//! registers of errors and warnings when the status was last read.
+//! Validity of the last position. It comes from the position itself or, if the connection does not transmit it, from
+//! the error and warning registers at the last status reading.
 
 use super::encoder::Encoder;
 use crate::devices::biss::procedures::Bits;
 
-/// A mark on a position.
+/// Validity mark on a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Invalid,
@@ -12,7 +12,7 @@ pub enum Mark {
 }
 
 impl Encoder {
-    /// Returns the mark on the last position.
+    /// Returns the mark on the last position, or `None` if the position is valid without warning or unknown.
     pub fn mark(&self) -> Option<Mark> {
         let reading = self.record.last()?;
         let status = self.status.as_ref();

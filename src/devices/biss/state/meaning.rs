@@ -1,5 +1,5 @@
-//! The meaning of the frames in the trace: a reply is decoded with the request before it, a register over the bus with
-//! the selected bank.
+//! The meaning of frames in the trace. A reply is decoded along with the request before it, and a register read over
+//! the bus along with the selected bank.
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
@@ -13,13 +13,13 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// Decoder of frames, in the order in which they were transmitted.
+/// Stateful decoder for frames, which must arrive in transmission order.
 #[derive(Debug, Default)]
 pub(super) struct Meaning {
     /// Byte order of register numbers, once known.
     pub(super) order: Option<ByteOrder>,
     requested: Option<Request>,
-    /// The last request was sent over the configuration pin.
+    /// Whether the last request was sent over the configuration pin.
     is_pin: bool,
     bank: Option<u8>,
 }
@@ -54,7 +54,8 @@ impl Meaning {
         })
     }
 
-    /// Decodes bytes received over the configuration pin after a request. The reply may still follow a damaged part.
+    /// Decodes bytes received over the configuration pin after a request. A damaged part may still be followed by the
+    /// reply.
     fn reply(&mut self, bytes: &[u8]) -> Explained {
         let broken = |damage| Explained::broken(words::damage(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };
@@ -127,8 +128,8 @@ mod tests {
         (said.fault, words.join(" "))
     }
 
-    /// Issue 22.11: damaged frames of the configuration pin (reference UBICOM 6) have a meaning and a mark; the reply may
-    /// still follow.
+    /// Issue 22.11: damaged frames on the configuration pin (reference UBICOM 6) are explained and marked, and the
+    /// reply may still follow.
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let request = "80 01 01 02 00 26 00 55";
@@ -152,7 +153,7 @@ mod tests {
         let mut meaning = Meaning::default();
         decode(&mut meaning, Direction::Sent, "80 01 02 03 00 2B 00 2A 24");
         assert_eq!(decode(&mut meaning, Direction::Received, "80 01 02 01 00 A0 DB").0, Some(TraceFault::Reported));
-        // Behind an adapter: a packet with a wrong checksum.
+        // Behind an adapter, a packet with a wrong checksum.
         let sent = bridge::Request::Hello.emit(1).emit();
         let mut broken = sent.clone();
         broken[2] ^= 1;

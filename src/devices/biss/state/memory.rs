@@ -1,19 +1,19 @@
-//! The registers of an encoder as read, and the edited values. Nothing is written to an encoder here; a plan is made from
-//! the difference.
+//! The registers read from an encoder and the edited values. Nothing is written to an encoder in this module; a plan is
+//! made from the difference.
 //!
 //! Only plain data can be edited: the areas that the description marks as writable. Other writes (a filter, a preset, a
-//! command) have their own review and are no edits.
+//! command) have their own review and are not edits.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::app::{EditBase, Edits};
 use crate::devices::biss::protocol::{Area, Description, Register, RegisterAddress};
 
-/// Registers as they were read.
+/// Register values as last read.
 #[derive(Clone, Debug, Default)]
 pub struct Registers {
     read: BTreeMap<RegisterAddress, u8>,
-    /// Another value was read than the time before.
+    /// Registers whose value differs from the previous reading.
     changed: BTreeSet<RegisterAddress>,
 }
 
@@ -29,22 +29,22 @@ impl EditBase for Registers {
 /// Registers with the user's edits.
 pub type Memory = Edits<Registers>;
 
-/// Why an edit is refused.
+/// Reason why an edit was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MemoryError {
-    /// The register has not been read, so the value to be replaced is not known.
+    /// The register has not been read, so the value to be replaced is unknown.
     #[error("{0} has not been read")]
     NotRead(RegisterAddress),
-    /// It is not plain data.
+    /// The register is not plain data.
     #[error("{0} is no plain data")]
     NoData(RegisterAddress),
 }
 
-/// Runs of bytes: start, bytes in the encoder, edited bytes.
+/// Runs of edited bytes, each with its start address, the encoder's bytes and the edited bytes.
 pub type Runs = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
 
 impl Memory {
-    /// Takes bytes read from `start` on. Edits stay unless they equal the encoder's present values.
+    /// Stores bytes read from `start` onward. Edits are kept unless they equal the encoder's current values.
     pub fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
         self.read_again(|own| {
             for (at, byte) in (start.global()..).zip(bytes) {
@@ -57,28 +57,28 @@ impl Memory {
         });
     }
 
-    /// Returns a register as read; `None` if it was not.
+    /// Returns a register's value as read, or `None` if the register was not read.
     pub fn read(&self, at: RegisterAddress) -> Option<u8> {
         self.base().read.get(&at).copied()
     }
 
-    /// Returns a register as edited.
+    /// Returns a register's edited value, or the value read if the register was not edited.
     pub fn wanted(&self, at: RegisterAddress) -> Option<u8> {
         self.get(at).or_else(|| self.read(at))
     }
 
-    /// Returns bytes as read; `None` unless all were.
+    /// Returns `count` bytes as read, or `None` unless all of them were read.
     pub fn bytes(&self, start: RegisterAddress, count: usize) -> Option<Vec<u8>> {
         let place = |at| RegisterAddress::from_global(at).and_then(|at| self.read(at));
         (start.global()..).take(count).map(place).collect()
     }
 
-    /// Returns the bytes of a described register as read; `None` unless all were.
+    /// Returns the bytes of a described register as read, or `None` unless all of them were read.
     pub fn register(&self, register: &Register) -> Option<Vec<u8>> {
         self.bytes(register.address, register.width.into())
     }
 
-    /// Returns the bytes of an area, as read and as edited; `None` unless all were read.
+    /// Returns the bytes of an area, both as read and as edited, or `None` unless all of them were read.
     pub fn area(&self, area: &Area) -> Option<(Vec<u8>, Vec<u8>)> {
         let places: Vec<RegisterAddress> = places(area).collect();
         let read = places.iter().map(|at| self.read(*at)).collect::<Option<Vec<u8>>>()?;
@@ -86,8 +86,8 @@ impl Memory {
         Some((read, wanted))
     }
 
-    /// Returns the consecutive banks of an area that were read, since a profile may contain only some of them; `None` if no
-    /// bank was read completely.
+    /// Returns the consecutive banks of an area that were read, since a profile may contain only some of them, or
+    /// `None` if no bank was read completely.
     pub fn part(&self, area: &Area) -> Option<Area> {
         let is_read = |bank: u8| {
             let mut places = (0..RegisterAddress::BANK_SIZE).map(|offset| RegisterAddress::banked(bank, offset));
@@ -106,20 +106,20 @@ impl Memory {
         best.map(|(first, last)| Area { first, last, ..area.clone() })
     }
 
-    /// Returns whether the value differs from the previous reading.
+    /// Returns whether a register's value differs from the previous reading.
     pub fn has_changed(&self, at: RegisterAddress) -> bool {
         self.base().changed.contains(&at)
     }
 
-    /// Returns whether the edited value differs from the encoder's.
+    /// Returns whether a register's edited value differs from the encoder's value.
     pub fn is_edited(&self, at: RegisterAddress) -> bool {
         self.get(at).is_some()
     }
 
-    /// Edits bytes from `start` on, as one step that can be undone.
+    /// Edits bytes from `start` onward as a single undo step.
     ///
     /// # Errors
-    /// [`MemoryError`]; then nothing is changed.
+    /// [`MemoryError`] if the edit is refused; nothing is changed then.
     pub fn put(&mut self, description: &Description, start: RegisterAddress, bytes: &[u8]) -> Result<(), MemoryError> {
         let mut wanted = Vec::with_capacity(bytes.len());
         for (at, byte) in (start.global()..).zip(bytes) {
@@ -134,13 +134,13 @@ impl Memory {
         Ok(())
     }
 
-    /// Discards the edits of `count` bytes.
+    /// Discards the edits of `count` bytes from `start` onward.
     pub fn revert_range(&mut self, start: RegisterAddress, count: usize) {
         let range = start.global()..start.global().saturating_add(u16::try_from(count).unwrap_or(u16::MAX));
         self.take_back(|at| range.contains(&at.global()));
     }
 
-    /// Returns the runs of edited bytes; none extends beyond its bank.
+    /// Returns the runs of edited bytes. Runs do not cross bank boundaries.
     pub fn changes(&self) -> Runs {
         let mut runs: Runs = Vec::new();
         for (at, byte) in self.iter() {
@@ -157,19 +157,19 @@ impl Memory {
         runs
     }
 
-    /// Returns the edits for a draft on disk: global address and byte.
+    /// Returns the edits for a draft on disk, as global addresses and bytes.
     pub fn edits(&self) -> Vec<(u16, u8)> {
         self.iter().map(|(at, byte)| (at.global(), byte)).collect()
     }
 
-    /// Takes edits from a draft. Those equal to the encoder's values are dropped when it is read.
+    /// Restores edits from a draft. Edits that equal the encoder's values are dropped once those are read.
     pub fn take_draft(&mut self, draft: Vec<(u16, u8)>) {
         let places = draft.into_iter().filter_map(|(at, byte)| Some((RegisterAddress::from_global(at)?, byte)));
         self.set(places);
     }
 }
 
-/// Returns the registers of an area in their order.
+/// Returns the register addresses of an area in ascending order.
 pub fn places(area: &Area) -> impl Iterator<Item = RegisterAddress> + use<> {
     area.banks().flat_map(|bank| {
         (0..RegisterAddress::BANK_SIZE).filter_map(move |offset| RegisterAddress::banked(bank, offset))

@@ -1,4 +1,4 @@
-//! A BiSS encoder among the devices of the studio.
+//! Integration of a BiSS encoder with the studio's device interface.
 
 use std::convert::Infallible;
 

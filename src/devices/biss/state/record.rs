@@ -1,4 +1,4 @@
-//! The recording of a BiSS encoder from polling: its positions, and watched registers.
+//! Recording of a BiSS encoder during polling: its positions and the watched registers.
 
 use std::time::Duration;
 
@@ -15,14 +15,14 @@ use crate::devices::biss::procedures::{Error, FrameRun, PositionReading, Sample,
 use crate::devices::biss::protocol::{Decoded, Decoding, Register};
 use crate::devices::biss::state::explain as words;
 
-/// Consecutive positions of the same widths.
+/// Consecutive positions with equal field widths.
 #[derive(Default)]
 struct Batch {
     widths: Option<Widths>,
     sightings: Vec<PositionSample>,
 }
 
-/// Bits of turns and of steps, and whether the split between them is known.
+/// Multiturn and singleturn widths in bits, and whether the split between them is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Widths {
     multiturn: u8,
@@ -37,7 +37,7 @@ impl From<&PositionReading> for Widths {
     }
 }
 
-/// Recorder of an encoder, and the latest values.
+/// Recorder of an encoder's positions, with the latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     track: Track<Register>,
@@ -51,14 +51,14 @@ pub struct Record {
 pub struct Streamed {
     next: u64,
     period_ns: i64,
-    /// The clock of the bus in hertz.
+    /// Bus clock frequency in hertz.
     pub clock_hz: u32,
-    /// More frames were requested than the clock allows.
+    /// Whether the requested frame rate exceeds what the clock allows.
     pub is_limited: bool,
 }
 
 impl Streamed {
-    /// Returns the frames per second.
+    /// Returns the frame rate in frames per second.
     pub fn hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
@@ -72,11 +72,11 @@ impl Record {
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64) {
         match self.stream {
-            // Even if frames were dropped, their numbers show how many there were.
+            // In a stream, dropped frames are counted by their sequence numbers.
             Some(_) if dropped > 0 => self.track.gap(),
             _ => self.track.note_dropped(dropped),
         }
-        // Thousands per second, with the same widths: recorded together.
+        // Thousands of positions per second with equal widths are recorded in batches.
         let mut batch = Batch::default();
         for sample in samples {
             match sample {
@@ -112,7 +112,7 @@ impl Record {
         self.last = Some(*reading);
     }
 
-    /// Records streamed frames; missing ones are reported and never joined.
+    /// Records streamed frames. Missing frames are counted and leave a gap in the recording.
     fn see_frames(&mut self, run: &FrameRun, batch: &mut Batch) {
         let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
@@ -147,7 +147,7 @@ impl Record {
             return;
         }
         let before = self.last.as_ref().map(Widths::from);
-        // If nothing was read in this session, the meaning of the previous one stays.
+        // If nothing has been read in this session, the meaning from the previous session is kept.
         let unknown = || self.track.meaning().cloned().unwrap_or_else(|| Meaning::of_steps(None));
         let meaning = batch.widths.or(before).map_or_else(unknown, meaning);
         self.track.add(&batch.sightings, &meaning);
@@ -171,12 +171,12 @@ impl Record {
         self.track.add_watched(&register, &watching);
     }
 
-    /// Records these registers, and no others, in addition to the position.
+    /// Sets the registers to record in addition to the position, replacing any previous choice.
     pub(super) fn watch(&mut self, watched: &[Register]) {
         self.track.watch(watched);
     }
 
-    /// Returns the registers that are recorded in addition to the position.
+    /// Returns the registers recorded in addition to the position.
     pub fn watched(&self) -> Vec<Register> {
         self.track.watched()
     }
@@ -190,7 +190,7 @@ impl Record {
         self.crc_errors
     }
 
-    /// Returns the latest stream; `None` if positions arrived one by one since.
+    /// Returns the latest stream, or `None` if polling has stopped or positions have arrived one by one since.
     pub(super) fn streamed(&self) -> Option<&Streamed> {
         self.stream.as_ref()
     }
@@ -199,7 +199,7 @@ impl Record {
         self.track.positions()
     }
 
-    /// Forgets the recording of the previous encoder.
+    /// Discards the recording of the previous encoder.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         (self.last, self.crc_errors, self.lost, self.stream) = (None, 0, 0, None);
@@ -215,7 +215,7 @@ impl Recording for Record {
         &mut self.track.recorder
     }
 
-    // Frames that an adapter could not send are included.
+    // Includes frames that an adapter could not send.
     fn dropped(&self) -> u64 {
         self.track.dropped().saturating_add(self.lost)
     }
@@ -237,7 +237,7 @@ fn sighting(reading: &PositionReading) -> PositionSample {
     }
 }
 
-/// Returns the meaning of positions with these widths of multiturn and singleturn.
+/// Returns the meaning of positions with the given multiturn and singleturn widths.
 fn meaning(Widths { multiturn, singleturn, is_split_known }: Widths) -> Meaning {
     let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
     if !is_split_known {
@@ -291,7 +291,7 @@ mod tests {
         }
     }
 
-    /// Reference 2: turn 1234h and 270°.
+    /// Reference 2: turn 1234h at 270°.
     #[test]
     fn raw_values_are_position_words_also_in_a_stream() {
         let mut record = Record::default();
@@ -310,7 +310,7 @@ mod tests {
         assert_eq!((last.raw().to_string(), last.error, last.warning), ("00A".to_owned(), None, None));
     }
 
-    /// Issue 22.20: a position with unknown steps per turn has no turns and no degrees.
+    /// Issue 22.20: a position whose steps per turn are unknown is not split into turns and degrees.
     #[test]
     fn positions_with_unknown_split_are_recorded_in_steps() {
         let mut record = Record::default();
@@ -359,7 +359,7 @@ mod tests {
         assert_eq!((record.positions(), record.dropped()), (190, 10), "at the adapter");
         add(&mut record, run(500, 10, 0), 3);
         assert_eq!((record.positions(), record.dropped()), (200, 310), "nobody took three runs of them");
-        // Another stream starts at zero.
+        // The frame numbers of another stream start at zero.
         let later = FrameRun { at: Moment::after_start(Duration::from_secs(1)), ..run(5, 5, 5) };
         add(&mut record, later, 0);
         assert_eq!((record.positions(), record.dropped()), (205, 315));

@@ -1,4 +1,4 @@
-//! The draft as stored in users' files: it is read, and written unchanged.
+//! The recorded format of drafts in users' files: the draft must be read, and written back unchanged.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::biss::jobs::Biss;

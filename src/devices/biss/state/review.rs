@@ -1,4 +1,4 @@
-//! The review of a write to a BiSS encoder: the permissions, warnings and costs of its plan.
+//! Review of a write to a BiSS encoder: permissions, warnings and costs of the plan.
 
 use crate::app::explain::plain;
 use crate::app::review::{self, ExecutionMode, OpWords, Permit, Reviewed};
@@ -104,7 +104,7 @@ impl Reviewed for Biss {
     }
 }
 
-/// Returns the chosen parts of a mounting that are not in its plan, because nothing changes.
+/// Returns the selected parts of a mounting run that are missing from the plan because nothing would change.
 fn left_out(change: &Change, ops: &[Op]) -> impl Iterator<Item = Text> {
     let run = match change {
         Change::Guided { run, .. } => Some(run),

@@ -1,32 +1,32 @@
-//! The registers of an encoder as a table: the direct ones, then bank after bank, each described register in one row and
-//! every other byte in a row of its own.
+//! Table of an encoder's registers: the direct registers first, then bank after bank. Each described register has one
+//! row, and so does every undescribed byte.
 
 use super::memory::Memory;
 use crate::bits::ByteOrder;
 use crate::devices::biss::protocol::{Access, Decoding, Description, EdsBank, Name, Register, RegisterAddress};
 
-/// Last bank of an undescribed encoder: as in the kit encoder.
+/// Last bank if the description names none, taken from the kit encoder.
 const LAST_BANK: u8 = 0x43;
 
-/// The rows of all banks.
+/// Register table, grouped by bank.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     groups: Vec<Group>,
 }
 
-/// The direct registers, or a bank.
+/// A group of rows: the direct registers or a bank.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// The bank; `None`: the direct registers.
+    /// Bank number, or `None` for the direct registers.
     pub bank: Option<u8>,
-    /// Its name, if described.
+    /// Name of the bank, if described.
     pub name: Option<Name>,
     rows: Vec<Row>,
 }
 
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// The register; an undescribed byte is one of width 1, without a name.
+    /// The row's register; an undescribed byte is a register of width 1 without a name.
     pub register: Register,
     pub is_data: bool,
 }
@@ -34,15 +34,15 @@ pub struct Row {
 #[derive(Clone, Debug)]
 pub struct RegisterEntry<'a> {
     pub row: &'a Row,
-    /// Its bytes in the order of addresses, as edited; `None`: not read.
+    /// Bytes in address order with edits applied, or `None` if the register was not read.
     pub bytes: Option<Vec<u8>>,
-    /// Its value has changed since the previous reading.
+    /// Whether the value has changed since the previous reading.
     pub has_changed: bool,
     pub is_edited: bool,
 }
 
 impl Table {
-    /// Creates the rows of an encoder. `last` is its last bank, if known from the data sheet.
+    /// Creates the table for an encoder. `last` is the last bank according to the data sheet, if known.
     pub(super) fn of(description: &Description, last: Option<u8>) -> Self {
         let registers = description.registers().iter().filter_map(|own| own.address.bank());
         let areas = description.areas().iter().map(|area| area.last);
@@ -56,7 +56,7 @@ impl Table {
         &self.groups
     }
 
-    /// Returns the group of a bank, or of the direct registers.
+    /// Returns the index of a bank's group, or of the direct registers for `None`.
     pub fn position(&self, bank: Option<u8>) -> Option<usize> {
         self.groups.iter().position(|group| group.bank == bank)
     }
@@ -82,12 +82,12 @@ impl Group {
         &self.rows
     }
 
-    /// Returns its first register.
+    /// Returns the address of the group's first register.
     pub fn start(&self) -> Option<RegisterAddress> {
         addresses(self.bank).next()
     }
 
-    /// Returns whether all of its registers have been read.
+    /// Returns whether all readable registers in the group have been read.
     pub fn is_read(&self, memory: &Memory) -> bool {
         self.rows.iter().all(|row| memory.read(row.register.address).is_some() || row.register.access == Access::W)
     }
@@ -108,13 +108,14 @@ impl Group {
 }
 
 impl RegisterEntry<'_> {
-    /// Returns whether the value differs from an encoder as delivered, as far as the description says.
+    /// Returns whether the value differs from the factory default; `false` if the description gives no default or the
+    /// register was not read.
     pub fn is_not_as_delivered(&self) -> bool {
         let default = &self.row.register.default;
         !default.is_empty() && self.bytes.as_ref().is_some_and(|own| own != default)
     }
 
-    /// Returns its bytes as a number.
+    /// Returns the register's bytes as a number.
     pub fn number(&self) -> Option<u64> {
         self.row.register.number(self.bytes.as_ref()?)
     }
@@ -128,7 +129,7 @@ fn addresses(bank: Option<u8>) -> impl Iterator<Item = RegisterAddress> {
     })
 }
 
-/// Returns an undescribed byte.
+/// Returns a register for an undescribed byte.
 fn plain(address: RegisterAddress, access: Access) -> Register {
     Register {
         address,
@@ -145,7 +146,7 @@ fn plain(address: RegisterAddress, access: Access) -> Register {
     }
 }
 
-/// Banks that BP3 gives a place, on every encoder that keeps to it.
+/// Returns the name of a data sheet bank, which BP3 fixes for every conforming encoder.
 fn usual_name(bank: u8) -> Option<Name> {
     [(EdsBank::Common, "EDS"), (EdsBank::Encoder, "EDS BP3")]
         .into_iter()
@@ -163,7 +164,7 @@ mod tests {
         Table::of(all.named("POSITAL IXARC kit encoder").unwrap(), None)
     }
 
-    /// Manual, appendix 9.1: 68 banks of 64 registers, and 64 direct ones.
+    /// Manual, appendix 9.1: 68 banks with 64 registers each, and 64 direct registers.
     #[test]
     fn every_register_is_listed_once() {
         let table = kit();

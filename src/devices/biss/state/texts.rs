@@ -1,6 +1,6 @@
-//! The texts of BiSS.
+//! The message catalogue for BiSS.
 
 use crate::app::Catalogue;
 
-/// Texts of BiSS; other names are those of common texts.
+/// Messages and labels for BiSS. Other ids refer to the common catalogue.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/biss.ron"));

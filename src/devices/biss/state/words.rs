@@ -1,4 +1,4 @@
-//! The data and the jobs of a BiSS encoder as text.
+//! Formatting of BiSS encoder data and jobs as text.
 
 use std::sync::LazyLock;
 
@@ -36,7 +36,7 @@ pub(super) fn not_edited(error: MemoryError) -> Text {
     }
 }
 
-/// Returns the text for a filter of the position.
+/// Returns the label for a position filter.
 pub fn filter(filter: Filter) -> Text {
     match filter {
         Filter::Balanced => TEXTS.text("biss_status.balanced"),
@@ -45,7 +45,7 @@ pub fn filter(filter: Filter) -> Text {
     }
 }
 
-/// Returns why a bank of the data sheet is not reliable.
+/// Returns the reason why a data sheet bank is unreliable.
 pub fn sheet(error: &EdsError) -> Text {
     match error {
         EdsError::Checksum { expected, got, .. } => TEXTS
@@ -56,7 +56,7 @@ pub fn sheet(error: &EdsError) -> Text {
     }
 }
 
-/// Returns the value of a field of the data sheet.
+/// Returns the formatted value of a data sheet field.
 pub fn eds(value: EdsValue) -> Text {
     let text = |id| TEXTS.text(id);
     match value {
@@ -85,7 +85,7 @@ pub fn eds(value: EdsValue) -> Text {
     }
 }
 
-/// Returns the meaning of a field of the data sheet beyond its number; `None` without one.
+/// Returns the meaning of a data sheet field beyond its raw number, or `None` if it has no further meaning.
 pub(super) fn beyond_number(value: EdsValue) -> Option<Text> {
     match value {
         EdsValue::Number(_, "") => None,
@@ -94,13 +94,13 @@ pub(super) fn beyond_number(value: EdsValue) -> Option<Text> {
     }
 }
 
-/// Returns the name of a field of the data sheet, as in the manual.
+/// Returns the name of a data sheet field as used in the manual.
 pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
     let at = RegisterAddress::banked(bank.number(), field.offset);
     let described = at.zip(KIT.as_ref()).and_then(|(at, kit)| kit.at(at));
     described.map_or_else(|| plain(field.name), |register| words::name(&register.name))
 }
 
-/// The description with the manual's names, in both languages, for the fields that every data sheet has.
+/// Built-in description with the manual's field names in both languages, for the fields found in every data sheet.
 static KIT: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());

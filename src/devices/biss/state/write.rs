@@ -1,5 +1,5 @@
-//! Writing to an encoder: the edits or a profile as a request, its jobs, an operator at the motor if required, and what is
-//! read again afterwards.
+//! Writing to an encoder: edits or a profile as a request, the jobs, an operator at the motor if required, and the
+//! registers to read again afterwards.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ use crate::devices::biss::state::explain as words;
 use crate::profile::{Body, PlanId, ProfileError};
 use crate::worker::EndedEarly;
 
-/// How long to wait for a shaft to stand still without an operator.
+/// Patience for a shaft to come to rest when no operator is present.
 const UNATTENDED: Unattended = Unattended { patience: Duration::from_secs(3) };
 
 impl Encoder {
@@ -41,14 +41,14 @@ impl Encoder {
         }
     }
 
-    /// Notes that the encoder was returned to operation: nothing remains to be done about it.
+    /// Records that the encoder has returned to operation, so that the user is no longer asked to return it.
     pub(super) fn led_back(&mut self) {
         if let Some(Guide { end: Some(End::Failed { may_lead_back, .. }), .. }) = &mut self.guide {
             *may_lead_back = false;
         }
     }
 
-    /// Ends the display of a guided procedure that ended early; returns true if one was running.
+    /// Ends the display of a guided procedure that ended early; returns `true` if a procedure was running.
     pub(super) fn cut_guide(&mut self, how: &EarlyEnd<JobError>, texts: &[Text]) -> bool {
         let error = match how {
             EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error) => Some(*error),
@@ -104,7 +104,7 @@ impl WithMemory for Encoder {
         commit(agreed, OperatorPresence::Unattended(UNATTENDED))
     }
 
-    /// Starts a write; one that needs an operator at the motor is followed step by step from here on.
+    /// Starts a write. A write that needs an operator at the motor is displayed step by step.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
         let Some(agreed) = self.agree(shown) else { return };
         let ops = &agreed.prepared.plan.ops;

@@ -1,4 +1,4 @@
-//! The connection form of a BiSS C encoder: over its configuration pin, over an adapter on its bus, or virtual.
+//! The connection form for a BiSS C encoder: over its configuration pin, over an adapter on its bus, or virtual.
 
 use egui::Ui;
 
@@ -14,7 +14,7 @@ use crate::ui::dialogs::connect::entries::{
     echo, field, leave_supply, network, parity, recording, segments, serial, typed, typed_in_a_row, unfolded,
 };
 
-/// The connection form of BiSS encoders.
+/// Connection form for BiSS encoders.
 pub(crate) struct BissConnectForm;
 
 impl TypedConnectForm for BissConnectForm {
@@ -98,7 +98,7 @@ impl TypedConnectForm for BissConnectForm {
     }
 }
 
-/// Draws whether the encoder is connected by the configuration pin or the bus.
+/// Draws the choice between a connection to the configuration pin and one to the bus.
 fn reached(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     let word = say(theme, "connect.biss_reached");
     entry(ui, theme, &word, |ui| {

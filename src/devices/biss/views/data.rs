@@ -1,4 +1,4 @@
-//! Motor and OEM data: the bytes of an area in the hex editor, their meaning, and the bar for writing the edits.
+//! The motor and OEM data page: the bytes of an area in the hex editor, their meaning, and the bar for writing edits.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -11,7 +11,7 @@ use crate::ui::controls::{empty, enabled_button, name, paragraph};
 use crate::ui::widgets::{HexAddresses, HexEdit, HexModel, HexView, hex_editor, hex_lines, typed_view};
 use crate::ui::{Theme, edit_bar, icons};
 
-/// The state of the page between frames.
+/// UI state of the page, kept between frames.
 #[derive(Default)]
 pub(super) struct DataUiState {
     area: usize,
@@ -104,13 +104,13 @@ fn bytes(
         });
     } else {
         ScrollArea::vertical().id_salt("area").auto_shrink(false).show(ui, |ui| {
-            // Space for the focus ring.
+            // Leaves room for the focus ring.
             ui.add_space(theme.space.inside);
             edits = hex_editor(ui, theme, &label, &model, &mut view.hex);
             typed_view(ui, theme, view.hex.to_read(wanted));
         });
     }
-    // The buttons of the edit bar undo like the keys do.
+    // Undo with the buttons of the edit bar behaves like undo with the keyboard.
     if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
         view.hex.follow(wanted);
     }

@@ -51,7 +51,7 @@ fn as_sent(reading: &PositionReading) -> PositionData {
     }
 }
 
-/// Draws the fields of a frame with their bits. Over the configuration pin only the position is transmitted.
+/// Returns the fields of a frame and their bits. Over the configuration pin only the position is transmitted.
 fn strip(theme: &Theme, layout: &Layout, reading: Option<&PositionReading>) -> (Vec<StripField>, Vec<Option<bool>>) {
     let mut fields = Vec::new();
     let mut bits = Vec::new();
@@ -96,7 +96,7 @@ fn strip(theme: &Theme, layout: &Layout, reading: Option<&PositionReading>) -> (
         }
     }
     if layout.crc_bits() > 0 {
-        // Only frames with a matching checksum are shown: it follows from the other bits.
+        // Only frames with a matching checksum are shown, so the checksum can be calculated from the other bits.
         let crc = reading.map(|own| layout.emit(&as_sent(own)) & ((1 << layout.crc_bits().min(63)) - 1));
         let value = crc.map(|crc| format!("0x{crc:02X}")).unwrap_or_default();
         add(StripField { value, ..field("CRC", layout.crc_bits(), 3) }, crc);

@@ -20,15 +20,15 @@ use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{NamedAction, Theme, backups, icons, page, status_line};
 
-/// A page of the tab.
+/// A page of the BiSS tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
     #[default]
     Encoder,
-    /// Registers, bank after bank.
+    /// Registers, listed bank by bank.
     Registers,
     Data,
-    /// Calibration, Wiegand test, preset, filter: step by step.
+    /// Step-by-step calibration, Wiegand test, preset and filter.
     Procedures,
     Backups,
 }
@@ -44,13 +44,13 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// Returns whether the page scrolls by itself, with its buttons in place.
+    /// Returns whether the page handles its own scrolling and keeps its buttons in place.
     fn is_fixed(self) -> bool {
         matches!(self, Page::Registers | Page::Data)
     }
 }
 
-/// State of the tab for one session between frames: text buffers and selections.
+/// UI state of the tab for one session, kept between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct BissUiState {
     registers: registers::RegistersUiState,
@@ -58,7 +58,7 @@ pub(crate) struct BissUiState {
     procedures: procedures::ProceduresUiState,
 }
 
-/// Draws the messages of a table's page below it, where they move nothing that can be clicked.
+/// Draws the messages below the table of a page, so that clickable items do not move.
 fn messages_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let id = egui::Id::unique(encoder.session.id).with("biss_messages");
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
@@ -67,7 +67,7 @@ fn messages_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<
     });
 }
 
-/// Draws why the data could not be read.
+/// Draws the reason why the data could not be read.
 fn refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = &encoder.refusal else { return };
     ui.horizontal_top(|ui| {
@@ -97,7 +97,7 @@ fn lead_back_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec
     }
 }
 
-/// The view of BiSS encoders.
+/// The tab for BiSS encoders.
 pub(crate) struct BissView;
 
 impl TypedDeviceView for BissView {
@@ -156,7 +156,7 @@ impl TypedDeviceView for BissView {
         actions: &mut Vec<Action>,
     ) {
         let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && page == Page::Procedures;
-        // The progress is shown below, step by step: this tells the effect of cancelling.
+        // Progress is shown step by step below; the bar itself explains the effect of cancelling.
         let instead = is_led.then(|| say(theme, "guide.cancel_note"));
         status_line::running_ui(ui, theme, device, instead, actions);
     }
@@ -170,7 +170,7 @@ impl TypedDeviceView for BissView {
     }
 }
 
-/// Returns a text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a label from the BiSS catalogue or the common one, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

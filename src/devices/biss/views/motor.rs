@@ -1,4 +1,4 @@
-//! The motor of the virtual encoder, on every page on which it matters, with a note while it turns.
+//! Motor control of the virtual encoder, shown on every page that needs it, with a note while the motor turns.
 
 use egui::{RichText, Ui};
 
@@ -9,7 +9,7 @@ use crate::sim::Motor;
 use crate::ui::controls::{enabled_button, folding_card, paragraph};
 use crate::ui::{Theme, icons};
 
-/// Speeds that the procedures ask for, and rest.
+/// Offered speeds in rpm: standstill and the speeds required by the procedures.
 const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
@@ -26,7 +26,8 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Mot
     });
 }
 
-/// Draws that the virtual motor still turns, with a button to stop it; a real motor can only be stopped by its operator.
+/// Draws a note that the virtual motor is still turning, with a stop button. A real motor can only be stopped by its
+/// operator.
 pub(super) fn turning_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(motor) = &encoder.motor else { return };
     if motor.rpm() == 0.0 {

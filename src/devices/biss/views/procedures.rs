@@ -1,5 +1,5 @@
-//! Guided procedures: the task, what turns the motor, and then step by step the present task, the progress, and the result.
-//! Filter and preset are on the same page.
+//! The page for guided procedures: the task and the motor first, then step by step the current task, the progress and
+//! the result. Filter and preset are on the same page.
 
 use egui::{RichText, Ui};
 
@@ -18,7 +18,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// The state of the page between frames.
+/// UI state of the page, kept between frames.
 #[derive(Default)]
 pub(super) struct ProceduresUiState {
     motor: Option<MotorSource>,
@@ -80,7 +80,7 @@ pub(super) fn page_ui(
     );
 }
 
-/// The choices of a mounting run.
+/// Selections for a mounting run.
 struct Mounting<'v> {
     motor: &'v mut Option<MotorSource>,
     calibrate: &'v mut bool,
@@ -97,7 +97,7 @@ fn stored(encoder: &Encoder) -> PresetForm {
     value.zip(layout).map(|(value, layout)| PresetForm::of(value, layout)).unwrap_or_default()
 }
 
-/// Draws that the encoder was left in a device mode, or with its password set.
+/// Draws a warning that the encoder was left in a device mode or with its password set.
 fn left_behind(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(status) = &encoder.status else { return };
     let elsewhere = status.mode.is_some_and(|mode| mode != DeviceMode::OPERATION);
@@ -168,7 +168,7 @@ fn choice(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &T
     });
 }
 
-/// Returns the requested run, or why it cannot be reviewed yet.
+/// Returns the requested run, or the reason why it cannot be reviewed yet.
 fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
     let turns = *own.calibrate || *own.wiegand;
     match own.motor {
@@ -190,7 +190,7 @@ fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, T
     Ok(MountingRun { calibrate: *own.calibrate, wiegand, preset, data: None })
 }
 
-/// Draws the choice of the open profile whose data is written.
+/// Draws the selection of an open profile as the source of the data to write.
 fn data_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, data: &mut Option<SessionId>) {
     let profiles: Vec<&AnyDevice> = studio
         .devices()
@@ -220,7 +220,7 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         paragraph(ui, theme.label(say(theme, "preset_card.words")));
         let Some(identity) = encoder.identity() else { return };
         let layout = &identity.layout;
-        // Errors of an entry are drawn below it.
+        // Validation errors of a field are drawn below it.
         labelled_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
         problem_below(ui, theme, form.singleturn(layout).err().as_ref());
         labelled_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");

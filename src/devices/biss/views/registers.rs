@@ -1,4 +1,4 @@
-//! The registers, bank after bank: a list of the banks, and the table.
+//! The register page: a list of banks and the register table.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -14,15 +14,15 @@ use crate::ui::widgets::{
 };
 use crate::ui::{Theme, icons};
 
-/// The state of the page between frames.
+/// UI state of the page, kept between frames.
 #[derive(Default)]
 pub(super) struct RegistersUiState {
     table: RegisterView,
     folded: bool,
 }
 
-/// Width of the list of banks, and the width of the page from which it is beside the table; in a narrower one a choice
-/// above the table replaces it.
+/// Width of the bank list, and page width from which the list is beside the table. On a narrower page a drop-down above
+/// the table replaces the list.
 const BANKS: f32 = 176.0;
 const BESIDE: f32 = 860.0;
 
@@ -42,7 +42,7 @@ pub(super) fn page_ui(
     }
     let groups: Vec<RegisterGroup> = encoder.table.groups().iter().map(|own| group(theme, encoder, own)).collect();
     if !std::mem::replace(&mut view.folded, true) {
-        // Users look for one bank at a time, and for the direct registers most often.
+        // Users look at one bank at a time, and most often at the direct registers.
         (1..groups.len()).for_each(|at| view.table.fold(at, true));
     }
     let beside = ui.available_width() >= BESIDE;
@@ -63,7 +63,7 @@ pub(super) fn page_ui(
     });
 }
 
-/// Draws the buttons for the selected bank and register, and the messages about them.
+/// Draws the buttons for the selected bank and register, along with their messages.
 fn head(
     ui: &mut Ui,
     theme: &Theme,
@@ -105,7 +105,7 @@ fn read_words(bank: Option<u8>) -> Text {
     }
 }
 
-/// Draws the watch button of the selected register, and the watched ones.
+/// Draws the watch button for the selected register, and the list of watched registers.
 fn watching(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &RegistersUiState, actions: &mut Vec<Action>) {
     let selected = view.table.selected();
     let group = selected.and_then(|place| encoder.table.groups().get(place.group));
@@ -188,7 +188,7 @@ fn table(
         let revert = start(place).map(|start| Biss::Revert { start, count: 1 });
         actions.extend(revert.map(|revert| Action::device(encoder.session.id, revert)));
     }
-    // Visible registers are read once automatically, while nothing else runs.
+    // Visible registers are read once automatically when nothing else is running.
     let in_sight = encoder.table.groups().iter().enumerate().skip(output.groups.start).take(output.groups.len());
     let unread = |(at, own): &(usize, &Group)| !view.table.is_folded(*at) && encoder.wants(own);
     if let Some((_, own)) = in_sight.into_iter().find(unread) {
@@ -210,7 +210,7 @@ fn row_of(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere
     let register = &shown.row.register;
     let name =
         if register.name.is_empty() { say(theme, "registers.byte") } else { theme.words(&words::name(&register.name)) };
-    // A code is not a quantity.
+    // A code is not a physical quantity.
     let is_quantity = matches!(register.decoding, Decoding::Number | Decoding::Scaled { .. });
     RegisterRow {
         address: register.address.to_string(),
@@ -235,7 +235,7 @@ fn row_of(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere
     }
 }
 
-/// Returns the bits of a register with named bits.
+/// Returns the named bits of a register.
 fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
     let Decoding::Bits(names) = &shown.row.register.decoding else { return Vec::new() };
     let number = shown.number();
@@ -254,7 +254,7 @@ fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
     names.iter().map(bit).collect()
 }
 
-/// Parses a byte as displayed: hexadecimal.
+/// Parses a hexadecimal byte as displayed in the table.
 fn parse(text: &str) -> Result<u8, Text> {
     let digits = text.trim().trim_start_matches("0x").trim_end_matches(['h', 'H']);
     let byte = u8::from_str_radix(digits, 16).ok().filter(|_| !digits.starts_with('+'));

@@ -1,5 +1,4 @@
-//! A running guided procedure: its steps, the present task, the measured and the allowed values, and the end with its
-//! report.
+//! Display of a running guided procedure: steps, current task, measured and allowed values, and the final report.
 
 use egui::{RichText, Ui};
 
@@ -16,7 +15,7 @@ use crate::ui::{Theme, icons};
 
 pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
-    // The result is opened when it is available.
+    // The view jumps to the result once available.
     let is_over = guide.end.is_some();
     let seen = ui.scope_id().with("end");
     if is_over && !ui.data(|data| data.get_temp(seen)).unwrap_or(false) {
@@ -82,7 +81,7 @@ fn step(
     let mut step = StepRow { title, state, word: say(theme, word), ..StepRow::default() };
     match (reached, guide.detail()) {
         (Reached::Waits, Some(Detail::Demand(demand))) => {
-            // The best speed is in the gauges, which stay in place.
+            // The recommended speed is marked on the gauges, which stay in place.
             let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
             let notes: Vec<String> = lasting.map(|own| theme.words(&says::advice(*own))).collect();
             step.note = notes.join("\n");
@@ -101,7 +100,8 @@ fn step(
     step
 }
 
-/// Returns the gauges while the operator turns the motor. The marks use the same limits as the start.
+/// Returns the gauges shown while the operator turns the motor. Their marks use the limits that also apply to starting
+/// the run.
 fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     let Task::Turn(run) = demand.task else { return Vec::new() };
     let mut gauges = vec![speed(theme, run, demand)];
@@ -135,11 +135,11 @@ fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     gauges
 }
 
-/// Returns the gauge of the speed in the requested direction.
+/// Returns the gauge for the speed in the requested direction.
 fn speed(theme: &Theme, run: Run, demand: &Demand) -> Gauge {
     let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
     let (allowed, accepted, best) = (run.allowed(), run.allowed().measured(), run.recommended());
-    // Standstill is 0, whatever the sign.
+    // Standstill is shown as 0 regardless of sign.
     let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
     let is_best = best != allowed;
     let limits = TEXTS
@@ -202,7 +202,7 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, 
     });
 }
 
-/// Draws a line of the end with its severity.
+/// Draws one line of the final report with its severity.
 fn line(ui: &mut Ui, theme: &Theme, own: Severity, words: &str) {
     let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {

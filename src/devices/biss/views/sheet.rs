@@ -1,4 +1,4 @@
-//! The electronic data sheet: the content of its two banks, each field with its unit, and whether their checksums match.
+//! The electronic data sheet: contents of its two banks, with a unit for each field, and whether the checksums match.
 
 use egui::{RichText, Ui};
 
@@ -53,5 +53,5 @@ fn sheet_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<Eds, EdsEr
     });
 }
 
-/// Width of the column of offsets.
+/// Width of the offset column.
 const OFFSET: f32 = 40.0;

@@ -1,4 +1,4 @@
-//! The wiring card: the pins of the kit encoder's connector, its supply and the clock.
+//! The wiring card: connector pins of the kit encoder, its supply and its clock.
 
 use egui::Ui;
 
@@ -8,10 +8,10 @@ use crate::ui::Theme;
 use crate::ui::controls::{folding_card, paragraph, two_columns};
 use crate::ui::wiring::wires_ui;
 
-/// Width of the column of pins.
+/// Width of the pin column.
 const PIN: f32 = 84.0;
 
-/// Pins of the JST BM08B-GHS and their signals (manual 2).
+/// Pins of the JST BM08B-GHS connector and their signals (manual 2).
 const PINS: [(&str, &str); 8] = [
     ("1 GND", "biss_wiring.ground"),
     ("2 PRESET", "biss_wiring.preset"),
@@ -25,7 +25,7 @@ const PINS: [(&str, &str); 8] = [
 
 const NOTES: [&str; 3] = ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"];
 
-/// Width of the card from which the pins are in two columns.
+/// Card width from which the pins are shown in two columns.
 const BESIDE: f32 = 640.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {

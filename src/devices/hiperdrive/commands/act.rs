@@ -1,4 +1,5 @@
-//! `do`: save and recall, factory values, the presence test, an acknowledgement, the position, and the device check.
+//! The `do` command: save and recall, factory settings, the presence test, acknowledging a fault, setting the position,
+//! and the device check.
 
 use super::args::{DoOptions, HiperdriveAction, OfDrive};
 use super::plan::{change_lines, commit, operations, prepare};
@@ -70,7 +71,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     }
     let drive_list: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
     let done = show_done(output, &act.action, &operations, &spent, &[], &format!("{changes}{drive_list}"))?;
-    // The completed part may have been in vain.
+    // The action may have been carried out without the desired effect.
     match action {
         HiperdriveAction::PresenceTest => present(&before, &found)?,
         HiperdriveAction::Acknowledge if !operations.is_empty() => {
@@ -81,7 +82,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     Ok(done)
 }
 
-/// Checks that a drive has no fault any more after it was acknowledged.
+/// Checks that a drive no longer has a fault after its acknowledgement.
 pub(super) fn check_acknowledged(runner: &mut Runner, output: &Output, drive: DriveNumber) -> Result<()> {
     let again = prepare(runner, output, Change::Do(Service::Acknowledge(drive)))?;
     if again.plan.is_empty() {
@@ -95,7 +96,7 @@ fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
     Ok(result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity.drives))
 }
 
-/// Checks that the presence test has found a drive, and each that was there before it.
+/// Checks that the presence test has found at least one drive, and every drive known before.
 fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
     if found.is_empty() {
         return Err(failed(&TEXTS.text("hd_cli.no_drives")));

@@ -1,4 +1,4 @@
-//! The arguments that only these drives have: `move`, and options of the shared commands.
+//! Arguments specific to HIPERDRIVE drives: the `move` command and options of shared commands.
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
@@ -89,7 +89,7 @@ impl From<Order> for ByteOrder {
 pub(super) enum HiperdriveAction {
     /// rate device, supply and address, and request, line, errors and range of each drive
     Check,
-    // Brackets in what rustdoc reads would be links.
+    // Brackets in a doc comment would be read as links by rustdoc.
     #[value(help = "POSITION [--drive N]: set the actual position, rounded to 64 steps and saved")]
     SetPosition,
     /// acknowledge the fault of a drive (--drive N)

@@ -1,4 +1,5 @@
-//! `decode hiperdrive`: control and status words, process data, parameter words, and packets with any of these in them.
+//! The `decode hiperdrive` command: control and status words, process data, parameter words, and packets that contain
+//! any of these.
 
 use serde_json::{Map, json};
 
@@ -22,14 +23,14 @@ pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
     show(output, &explained)
 }
 
-/// The kind of an argument.
+/// A captured argument.
 enum Captured {
-    /// 4 digits.
+    /// A word, given as four hexadecimal digits.
     Word(u16),
     Bytes(Vec<u8>),
 }
 
-/// Parses the arguments: one of 4 digits is a word, others are bytes.
+/// Parses the arguments: four hexadecimal digits are a word, everything else is bytes.
 fn captured(arguments: &[String]) -> Result<Vec<Captured>> {
     let word = |text: &String| {
         let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
@@ -62,15 +63,15 @@ fn explain(captured: &Captured, known: &BytesContext) -> Explained {
     Explained { shown, compact, meaning, more }
 }
 
-/// Readings as lines, and for a script.
+/// Formats the meanings as lines and as JSON for scripts.
 fn lines(readings: &[WordMeaning]) -> DecodedBytes {
     let list = readings.iter().map(WordMeaning::json).collect();
     let more = Map::from_iter([("readings".to_owned(), list)]);
     DecodedBytes { lines: readings.iter().flat_map(WordMeaning::lines).collect(), more, data: None }
 }
 
-/// Returns the meaning of a packet, or of process data by their length. Bytes with a known direction that may be process
-/// data are taken as such.
+/// Decodes a packet, or process data recognised by length. If the direction is known, bytes of a matching length are
+/// taken as process data.
 fn of_bytes(bytes: &[u8], known: &BytesContext) -> std::result::Result<DecodedBytes, String> {
     let fits = Layout::of_length(bytes.len()).next().is_some();
     let packet =

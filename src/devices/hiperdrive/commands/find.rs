@@ -1,4 +1,5 @@
-//! `find`: every adapter and hub in the network, asked all at once or at one address. Nothing is opened for it.
+//! The `find` command: discovers every adapter and hub in the network by broadcast, or at one address. No connection is
+//! opened.
 
 use std::net::{SocketAddr, SocketAddrV4, ToSocketAddrs};
 use std::sync::Arc;
@@ -44,7 +45,7 @@ pub(super) fn find(common: &Common, output: &Output) -> Result {
     Err(Failure::Failed(vec![format!("{summary} Check supply, cable and address: {hint}")]))
 }
 
-/// Returns the addresses of a link: one device, or all in a network (enip:192.168.1.255).
+/// Returns the addresses to query for a link: a single device, or all devices in a network (enip:192.168.1.255).
 fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
     let (Scheme::Enip, Wire::Host(host)) = (url.scheme, url.wire()) else {
         return Err(Failure::Usage(

@@ -1,4 +1,4 @@
-//! Process data and parameter words as text.
+//! Formats process data and parameter words as text.
 
 use serde_json::{Value as Json, json};
 
@@ -9,16 +9,16 @@ use crate::devices::hiperdrive::protocol::{
     Value, turns,
 };
 
-/// Returns the meanings of process data: one per possible layout, or only those of the known direction. Empty if no layout
-/// has this length.
+/// Returns the meanings of process data: one per possible layout, restricted to the direction if known. The result is
+/// empty if no layout has this length.
 ///
 /// # Errors
-/// Returns why they cannot have gone in the known direction.
+/// Returns the reason why the data cannot have been sent in the known direction.
 pub(super) fn of_bytes(bytes: &[u8], known: &BytesContext) -> Result<Vec<WordMeaning>, String> {
     let mut readings = Vec::new();
     let words = parameter_word(bytes, known);
     for layout in layouts(bytes.len(), known) {
-        // A word that cannot be a status word is shown as one only if nothing else fits.
+        // An implausible status word is shown only if no other meaning fits.
         let from = || from_drives(bytes, layout).filter(|_| words.is_empty() || is_of_drives(bytes, layout));
         match (to_drives(bytes, layout), known.direction) {
             (Err(why), Some(Direction::Out)) if words.is_empty() => return Err(why),
@@ -39,18 +39,18 @@ fn layouts(length: usize, known: &BytesContext) -> impl Iterator<Item = Layout> 
     Layout::of_length(length).map(|layout| Layout { order: known.order, ..layout })
 }
 
-/// Returns whether a control word is not 0: read as a status word it would belong to no drive.
+/// Returns whether any control word is nonzero; as a status word, 0 would come from no drive.
 fn is_anything(bytes: &[u8], layout: Layout) -> bool {
     OutImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().any(|drive| drive.control != 0))
 }
 
-/// Status words are such as drives send.
+/// Returns whether every status word is one that a drive can send.
 fn is_of_drives(bytes: &[u8], layout: Layout) -> bool {
     InImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().all(|drive| drive.status.is_plausible()))
 }
 
-/// Returns the meanings of the process data in a cyclic packet. Its direction is used if none is known. Empty if no layout
-/// has this length.
+/// Returns the meanings of the process data in a cyclic packet. The packet's direction is used if no direction is
+/// known. The result is empty if no layout has this length.
 pub(super) fn cyclic(data: &[u8], to_target: bool, known: &BytesContext) -> Vec<WordMeaning> {
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {
@@ -121,13 +121,14 @@ fn in_words(drive: &Actual) -> String {
     )
 }
 
-/// Formats a position as turns, for a drive without scaling.
+/// Formats a position in turns and degrees for a drive with default scaling.
 fn in_turns(position: i32) -> String {
     let (turn, steps) = turns(position);
     format!(" (turn {turn}, {:.3}° at 65536 steps a turn)", f64::from(steps) * 360.0 / 65536.0)
 }
 
-/// Returns the meaning of eight bytes as a parameter word, if the manual has the parameter. Only texts have elements.
+/// Returns the meanings of eight bytes as a parameter word, if the manual lists the parameter. Only string parameters
+/// have elements.
 fn parameter_word(bytes: &[u8], known: &BytesContext) -> Vec<WordMeaning> {
     let Ok(bytes) = <[u8; 8]>::try_from(bytes) else { return Vec::new() };
     let pkw = Pkw::parse(bytes, known.order);
@@ -182,7 +183,7 @@ fn answer_words(pkw: Pkw) -> String {
     format!("parameter word: {answer}")
 }
 
-/// Returns whether the answer has the width of its parameter's type.
+/// Returns whether the answer's width matches the parameter type.
 fn answer_fits(pkw: Pkw, row: &ParameterRow) -> bool {
     match pkw.answer() {
         Answer::Word(_) => is_of_width(row, true),
@@ -191,8 +192,8 @@ fn answer_fits(pkw: Pkw, row: &ParameterRow) -> bool {
     }
 }
 
-/// Returns whether a word, or a double word, can be a number of this parameter. Four characters of a text are a double
-/// word.
+/// Returns whether a value of the given width, a word or else a double word, can belong to the parameter. Four
+/// characters of a string form a double word.
 fn is_of_width(row: &ParameterRow, word: bool) -> bool {
     row.kind.length().map_or(!word, |bytes| (bytes < 4) == word)
 }
@@ -203,7 +204,7 @@ fn written_words(pkw: Pkw, raw: u32, word: bool) -> String {
     format!("write {} to {}{warning}", value_words(pkw, raw, word), parameter_name(pkw.number()))
 }
 
-/// Returns a number in the parameter's unit, or four characters of a string.
+/// Formats a value in the parameter's unit, or as four characters of a string.
 fn value_words(pkw: Pkw, raw: u32, word: bool) -> String {
     match row(pkw) {
         None => raw.to_string(),
@@ -223,7 +224,7 @@ fn row(pkw: Pkw) -> Option<&'static ParameterRow> {
     ParameterNumber::new(pkw.number()).and_then(ParameterNumber::row)
 }
 
-/// Returns the value with its sign if the kind of parameter has one.
+/// Returns the value, sign-extended if the parameter type is signed.
 fn number(row: &ParameterRow, raw: u32) -> i64 {
     match row.kind {
         Kind::I8 | Kind::I16 => i64::from((raw as u16).cast_signed()),

@@ -1,4 +1,4 @@
-//! Commands that only read: `identify`, `status`, `read`.
+//! The read-only commands: `identify`, `status`, `read`.
 
 use serde_json::{Value as Json, json};
 
@@ -74,7 +74,7 @@ fn identity_text(identity: &Identity) -> String {
     lines.text()
 }
 
-/// Errors and states of all drives, or with `--drive` of one.
+/// Prints the errors and states of all drives, or of a single drive with `--drive`.
 pub(super) fn status(common: &Common, output: &Output, status: &StatusArguments) -> Result {
     let only = status.own.read::<OfDrive>()?.drive.and_then(DriveNumber::new);
     let mut runner = Runner::open(common)?;
@@ -119,16 +119,16 @@ pub(super) fn status(common: &Common, output: &Output, status: &StatusArguments)
     Ok(Done::Well)
 }
 
-/// The weight of a fact.
+/// Severity of a reported fact.
 #[derive(Clone, Copy, PartialEq)]
 enum FactSeverity {
     Error,
     Warning,
-    /// An error of the past that is only in the buffer.
+    /// A past error that remains only in the error buffer.
     Earlier,
 }
 
-/// Fact that a drive reports.
+/// An error or warning reported by a drive.
 struct DriveFact {
     drive: u8,
     code: u16,
@@ -142,9 +142,10 @@ impl DriveFact {
     }
 }
 
-/// Returns the facts that a drive reports. The newest entries of its error buffer, as many as it counts since the
-/// acknowledgement and at least one in a fault, are errors. Older entries survive a power cycle (reference 4) and do not
-/// describe the present state. A drive outside its limits and a message of its communication are warnings.
+/// Returns the facts that a drive reports. The newest entries in the error buffer are errors: as many as the drive
+/// counts since the last acknowledgement, and at least one during a fault. Older entries survive a power cycle
+/// (reference 4) and do not describe the present state. A drive outside its limits and a communication error are
+/// warnings.
 fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.has(StatusBit::Fault);
@@ -162,7 +163,7 @@ fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
         let text = "the drive is outside its limits (158, 160)".to_owned();
         facts.push(DriveFact { drive: number, code: drive.status.word(), text, severity: FactSeverity::Warning });
     }
-    // 118: 0 is no error, FFFFh no drive.
+    // Parameter 118: 0 means no error, FFFFh no drive.
     let [_, _, communication] = drive.words;
     if !matches!(communication, 0 | 0xFFFF) {
         let text = format!("the RS-485 link to the drive has errors (parameter 118: 0x{communication:04X})");
@@ -189,7 +190,7 @@ pub(super) fn state_word(state: State) -> &'static str {
 }
 
 fn volts(status: &Status) -> f64 {
-    // At most a few hundred tenths.
+    // At most a few hundred tenths of a volt.
     status.supply_tenths as f64 / 10.0
 }
 
@@ -218,7 +219,7 @@ fn status_text(status: &Status, facts: &[DriveFact]) -> String {
     lines.text()
 }
 
-/// Returns a number of a parameter as text: words in hexadecimal and with their meaning, tenths also as whole units.
+/// Formats a parameter value: words in hexadecimal with their meaning, tenths also in whole units.
 fn number_text(item: Item, number: i64) -> String {
     let (base, unit) = (item.0.base(), item.0.row().map_or("", |row| row.unit));
     let word = u16::try_from(number).ok();
@@ -234,14 +235,14 @@ fn number_text(item: Item, number: i64) -> String {
             format!("{number} ({})", words::variant(Variant::new(word)).terminal())
         }
         (TIMEOUT, Some(word), _) if i64::from(word) == NO_TIMEOUT => "255 (no time-out)".to_owned(),
-        // Of 32 bits.
+        // The number fits into 32 bits.
         (.., Some(whole)) => format!("{number} × {unit} = {:.1} {whole}", number as f64 / 10.0),
         (.., None) if unit.is_empty() => number.to_string(),
         (.., None) => format!("{number} {unit}"),
     }
 }
 
-/// The speed scale of a drive (162, 164); `None` if it contains a 0.
+/// Reads the speed scale of a drive (162, 164), or returns `None` if either part is 0.
 fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedScale>> {
     let mut part = |base| match ParameterNumber::of_drive(base, drive).map(|number| value(runner, number)) {
         Some(Ok(Value::Number(number))) => Ok(u16::try_from(number).unwrap_or(0)),
@@ -251,7 +252,7 @@ fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedSc
     Ok(SpeedScale::new(part(SPEED_NUMERATOR)?, part(SPEED_DENOMINATOR)?).ok())
 }
 
-/// Returns a text of a parameter as shown, with the number in it if there is one.
+/// Formats a string parameter, followed by any number it contains with the unit.
 fn nominal_text(text: &str, unit: &str) -> String {
     match nominal(text).filter(|_| !unit.is_empty()) {
         Some((number, decimals)) => format!("{text} = {number:.decimals$} {unit}"),
@@ -264,7 +265,7 @@ pub(super) fn read(common: &Common, output: &Output, read: &Read) -> Result {
     let mut runner = Runner::open(common)?;
     let value = value(&mut runner, item.0)?;
     let unit = item.0.row().map_or("", |row| row.unit);
-    // The speed is in tenths of rpm with the factory scale (manual 6.2).
+    // With the factory scale, the speed is in tenths of rpm (manual 6.2).
     let scale = item.0.drive().filter(|_| item.0.base() == SPEED).map(|drive| speed_scale(&mut runner, drive));
     let scale = scale.transpose()?.flatten().filter(|scale| *scale != SpeedScale::FACTORY);
     let unit = if scale.is_some() { "" } else { unit };
@@ -278,7 +279,7 @@ pub(super) fn read(common: &Common, output: &Output, read: &Read) -> Result {
     };
     let is_number = own.is_number();
     let mut json = json!({"item": item.to_string(), "value": own, "name": item.name()});
-    // The unit does not apply to a text: its number may be in tenths.
+    // The unit does not apply to a string, whose number may be in tenths.
     if let (true, false, Some(keys)) = (is_number, unit.is_empty(), json.as_object_mut()) {
         keys.insert("unit".to_owned(), json!(unit));
     }

@@ -1,4 +1,4 @@
-//! The meaning of control words, status words and parameters as text.
+//! Textual meaning of control words, status words and parameters.
 
 use serde_json::{Value as Json, json};
 
@@ -13,13 +13,13 @@ use crate::devices::hiperdrive::protocol::{
     Travel, Value, Variant,
 };
 
-/// Facts known about bytes besides the bytes themselves.
+/// Context in which bytes are decoded, such as their direction.
 pub(super) struct BytesContext {
     pub(super) direction: Option<Direction>,
     pub(super) order: ByteOrder,
 }
 
-/// A possible meaning of bytes.
+/// A possible meaning of some bytes.
 pub(super) struct WordMeaning {
     pub(super) direction: &'static str,
     pub(super) lines: Vec<String>,
@@ -41,11 +41,11 @@ impl WordMeaning {
     }
 }
 
-/// Returns the possible meanings of a word, or the one of the known direction. Bit 11 usually decides: a control word never
-/// has it set, a detected drive always has.
+/// Returns the possible meanings of a word, or the only one if the direction is known. Bit 11 usually decides: a
+/// control word never has it set, a detected drive always does.
 ///
 /// # Errors
-/// Returns why the word must not be sent, if it is a control word by its direction.
+/// Returns the reason why the word must not be sent, if its direction makes it a control word.
 pub(super) fn of_word(word: u16, known: &BytesContext) -> Result<Vec<WordMeaning>, String> {
     let (control, status) = (ControlWord::parse(word), StatusWord::new(word));
     match (known.direction, control) {
@@ -78,7 +78,7 @@ fn of_status(status: StatusWord) -> WordMeaning {
     WordMeaning { direction: "IN", lines, json: json!({"bits": names, "state": status.state().name()}) }
 }
 
-/// Returns the meaning of a control word, then its bits.
+/// Formats a control word: its purpose, then its bits.
 pub(super) fn control_words(control: ControlWord) -> String {
     let bits: Vec<String> = control.set().map(|(bit, name)| format!("{bit} {name}")).collect();
     let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
@@ -109,7 +109,7 @@ fn purpose(control: ControlWord) -> &'static str {
     }
 }
 
-/// Returns the state, then the bits.
+/// Formats a status word: the state, then its bits.
 pub(super) fn status_words(status: StatusWord) -> String {
     let bits: Vec<String> = status.set().map(|bit| format!("{} {}", bit.number(), bit.name())).collect();
     let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
@@ -121,8 +121,8 @@ pub(super) fn status_words(status: StatusWord) -> String {
     format!("{}{present}: {bits}", status.state().name())
 }
 
-/// Returns the parameter of an attribute with the value to be written, or why there is no value if the data do not have its
-/// type.
+/// Returns the parameter that an attribute belongs to, along with the value to be written, or the reason why the data
+/// does not match the parameter type.
 pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option<(String, Result<String, String>)> {
     let number = ParameterNumber::of_attribute(class, attribute)?;
     let row = number.row();
@@ -135,7 +135,7 @@ pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option
     Some((parameter_name(number.get()), value))
 }
 
-/// Returns the number of a parameter, its name, and its drive.
+/// Formats a parameter number with the name and the drive.
 pub(super) fn parameter_name(own: u16) -> String {
     let Some(number) = ParameterNumber::new(own) else {
         return format!("parameter {own}, which there is not");
@@ -145,7 +145,7 @@ pub(super) fn parameter_name(own: u16) -> String {
     format!("parameter {own} ({name}{drive})")
 }
 
-/// Returns a number as its parameter defines it.
+/// Formats a value according to its parameter's definition.
 pub(super) fn number_words(row: &ParameterRow, number: i64) -> String {
     let word = u16::try_from(number).ok();
     match (row.number, word) {
@@ -174,7 +174,7 @@ pub(super) fn number_words(row: &ParameterRow, number: i64) -> String {
     }
 }
 
-/// Returns the warnings against writing a number; empty without any.
+/// Returns a warning against writing the value, or an empty string if writing is permitted.
 pub(super) fn warning(row: &ParameterRow, number: i64) -> String {
     let beyond = row.allowed(Travel::UNKNOWN).filter(|range| !range.holds(number));
     match (row.access, beyond) {

@@ -1,4 +1,4 @@
-//! The commands for HIPERDRIVE drives behind an adapter or a hub; words and packets are explained offline as well.
+//! Commands for HIPERDRIVE drives behind an adapter or a hub. Words and packets can also be decoded offline.
 
 mod act;
 mod args;
@@ -110,7 +110,7 @@ impl DeviceCommands for HiperdriveCommands {
     }
 }
 
-/// `move`: a drive goes to a position.
+/// The `move` command, which moves a drive to a position.
 struct MoveCommand;
 
 impl OwnCommand for MoveCommand {
@@ -124,7 +124,7 @@ impl OwnCommand for MoveCommand {
     }
 }
 
-/// Returns all parameters with their numbers, one per line, for the help.
+/// Lists all parameters with their numbers for the help, one per line.
 fn listed_parameters() -> String {
     let mut text = "\
 Parameters of HIPERDRIVE: below 100 of the device, from 101 of drive 1 (from 201 of drive 2, up to drive 8):
@@ -137,7 +137,7 @@ Parameters of HIPERDRIVE: below 100 of the device, from 101 of drive 1 (from 201
     text
 }
 
-/// Parses the parameter that the user names; `of` names the drive.
+/// Parses a parameter given by the user; `of` selects the drive.
 fn item(text: &str, of: &OfDrive) -> Result<Item> {
     let item = text.parse::<Item>().and_then(|item| match (of.drive, Item::number(text)) {
         (Some(drive), Some(number)) => Item::of(number, Some(drive)),

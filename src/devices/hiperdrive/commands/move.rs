@@ -1,5 +1,5 @@
-//! `move`: moves a drive to a position. However it ends, the drive is stopped and switched off. No other command moves a
-//! drive.
+//! The `move` command: moves a drive to a position. However the motion ends, the drive is stopped and switched off. No
+//! other command moves a drive.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -29,14 +29,14 @@ use crate::devices::hiperdrive::state::explain as words;
 use crate::result_of;
 use crate::units::Moment;
 
-/// Interval at which a motion is refreshed.
+/// Interval for refreshing a motion request.
 const REFRESH: Duration = Duration::from_millis(20);
-/// Maximum time for the stop ladder and switching off.
+/// Maximum time for the stop ladder and for switching off.
 const END: Duration = Duration::from_secs(3);
 
-/// The end of a motion.
+/// How a motion ended.
 enum MotionOutcome {
-    /// The act ended like this.
+    /// The motion ended with the given result.
     Ended(Ended),
     Interrupted,
     Late,
@@ -55,7 +55,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
     let drive = drive(&wanted.of);
     let identity = result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity);
     let (permit, scale) = permit(&mut runner, &identity, drive)?;
-    // An impossible target is refused before a connection is opened.
+    // An impossible target is refused before the cyclic connection is opened.
     let target = within(&permit, target)?;
     permit.check(MotionRequest::Move { target, effort }, Some(target)).map_err(refused)?;
     if let Some((low, high)) = permit.limits {
@@ -65,7 +65,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
     let came =
         carry_out(&runner, drive, MotionRequest::Move { target, effort }, Duration::from_secs(wanted.timeout.into()));
     let stood = lead_off(&runner, drive);
-    // Control is given up even if the connection was lost: the loss has been reported then.
+    // Control is released even after a lost connection; that loss has already been reported.
     let given = runner.run(HiperdriveJob::Give);
     let position = stood.map(|view| view.actual.position);
     let reached = matches!(came, MotionOutcome::Ended(Ended::Arrived));
@@ -89,14 +89,14 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
     Err(Failure::Failed(lines))
 }
 
-/// Reads the error for which the drive has stopped, if it still reports one.
+/// Reads the error that stopped the drive, if one is still reported.
 fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
     let newest = value(runner, ParameterNumber::of_drive(NEWEST_ERROR, drive)?).ok()?;
     let Value::Number(code) = newest else { return None };
     u16::try_from(code).ok().map(ErrorCode::new).filter(|code| *code != ErrorCode::NONE)
 }
 
-/// Returns the target and the limits in the present scale, so that a change of the scale is visible.
+/// Describes the target and the limits in the present scale, so that a changed scale is noticed.
 fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option<PositionScale>) -> String {
     let turns = |steps: i32| match scale {
         Some(scale) => format!("{steps} ({:.2} turns)", f64::from(steps) / scale.steps_per_turn()),
@@ -105,7 +105,7 @@ fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option
     format!("drive {} moves to {}, within {} to {}", drive.get(), turns(target), turns(low), turns(high))
 }
 
-/// Returns the permit of a drive by its present parameters, and its scale.
+/// Returns a drive's motion permit according to its present parameters, along with its scale.
 fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Result<(Permit, Option<PositionScale>)> {
     let variant = identity.named(drive).map_err(|error| failed(&words::device(&error)))?.variant;
     let mut values = Vec::new();
@@ -116,13 +116,13 @@ fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Resul
         }
     }
     let rules = Rules::by(|base| values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value));
-    // They have just been read.
+    // The parameters have just been read.
     let now = Moment::START;
     let limits = DriveLimits::of(rules, (identity.topology, variant), now);
     Ok((limits.permit(now, false), limits.scale()))
 }
 
-/// Checks a target against the limits. A target that does not fit into 32 bits is outside any limits.
+/// Checks that a target fits into 32 bits. Any other target lies outside all limits.
 fn within(permit: &Permit, target: i64) -> Result<i32> {
     let (low, high) = permit.limits.unwrap_or((i32::MIN, i32::MAX));
     i32::try_from(target).map_err(|_| {
@@ -140,13 +140,13 @@ fn refused(refusal: Refusal) -> Failure {
     failed(&words::refusal(refusal, place))
 }
 
-/// Refreshes the motion until it ends, is interrupted, or the time is up.
+/// Refreshes the motion until it ends, is interrupted, or times out.
 fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience: Duration) -> MotionOutcome {
     let motion = &runner.kept;
     let until = Instant::now() + patience;
     let act = motion.intend(drive, wish);
     loop {
-        // The motion is no longer refreshed: the Ctrl-C handler has stopped the drive.
+        // The Ctrl-C handler has stopped the drive, so the motion is no longer refreshed.
         if runner.is_interrupted() {
             motion.stop();
             return MotionOutcome::Interrupted;
@@ -173,7 +173,7 @@ fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<Ended> {
     }
 }
 
-/// Stops the drive, switches it off, and returns its view.
+/// Stops the drive, switches it off, and returns its last view.
 fn lead_off(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
     let motion = &runner.kept;
     let find = || motion.view().drives.into_iter().find(|own| own.number == drive);
@@ -188,7 +188,7 @@ fn lead_off(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
         motion.refresh();
         sleep(REFRESH);
     }
-    // Without a report the position is not known.
+    // Without a report from the drive, the position is unknown.
     stood.filter(|own| own.actual.status.is_present())
 }
 

@@ -1,4 +1,4 @@
-//! The plan for an adapter or a hub: shown, confirmed, carried out.
+//! Plans for an adapter or a hub: shown, confirmed, and carried out.
 
 use serde_json::{Value as Json, json};
 
@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::state::explain as words;
 use crate::profile::Operation as _;
 use crate::result_of;
 
-/// Makes a plan for a change and prints its warnings. Writes nothing.
+/// Prepares a plan for a change and prints its warnings. Nothing is written.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let asked = match &change {
         Change::SetPosition { position, .. } => Some(i64::from(*position)),
@@ -37,7 +37,7 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     Ok(prepared)
 }
 
-/// Asks for consent if required, and carries out the plan. An empty plan sends nothing.
+/// Asks for consent if required and carries out the plan. An empty plan sends nothing.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -60,7 +60,7 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// Returns the report of the plan as text and JSON: each parameter old → new, and the cost.
+/// Returns the report of the plan as text and JSON: old → new for each parameter, and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     let mut lines = Lines::default();
@@ -74,7 +74,7 @@ pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     PlanReport { operations: operations(plan), text, write_cycles: plan.write_cycles() }
 }
 
-/// Returns the operations with old and new values, a line each.
+/// Lists the operations with old and new values, one per line.
 pub(super) fn change_lines(plan: &HiperdrivePlan) -> String {
     let mut text = String::new();
     for words in plan.ops.iter().map(words::op) {

@@ -1,4 +1,4 @@
-//! `position`: the position of a drive, converted by its scale.
+//! The `position` command: a drive's position, converted with its scale.
 
 use serde_json::json;
 
@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Positio
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::result_of;
 
-/// Prints the position. The scale is read once; after that only 105 to 107 are read.
+/// Prints the position. The scale is read once; afterwards only parameters 105 to 107 are read.
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let drive = drive(&position.own.read()?);
@@ -40,36 +40,36 @@ fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u
     })
 }
 
-/// The location of a position.
+/// A position split into turns and steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TurnPosition {
-    /// Whole turns; −1 step is in turn −1.
+    /// Number of whole turns; a position of −1 step is in turn −1.
     turns: i64,
-    /// Steps within the turn. Not always whole, because a turn is not always a whole number of steps.
+    /// Steps within the turn. Fractional if a turn is not a whole number of steps.
     steps: f64,
     degrees: f64,
 }
 
 impl TurnPosition {
-    /// A turn is 256 · numerator / denominator steps (reference 5).
+    /// Splits a position. A turn has 256 · numerator / denominator steps (reference 5).
     fn of(position: i32, scale: PositionScale) -> Self {
         let (numerator, denominator) = (i64::from(scale.numerator()), i64::from(scale.denominator()));
-        // In parts of a step, of which a turn has a whole number.
+        // Calculated in fractions of a step, so that a turn is a whole number.
         let (turn, parts) = (256 * numerator, i64::from(position) * denominator);
         let rest = parts.rem_euclid(turn);
-        // At most 256 · 65535.
+        // At most 256 · 65535, which `f64` represents exactly.
         let (exact, turn_parts, step_parts) = (rest as f64, turn as f64, denominator as f64);
         TurnPosition { turns: parts.div_euclid(turn), steps: exact / step_parts, degrees: 360.0 * exact / turn_parts }
     }
 
-    /// Returns the steps as JSON, whole numbers where possible.
+    /// Returns the steps as JSON, as an integer where possible.
     fn steps_json(self) -> serde_json::Value {
-        // At most 2^24.
+        // At most 2^24, so the cast is exact.
         if self.steps.fract() == 0.0 { json!(self.steps as i64) } else { json!(self.steps) }
     }
 }
 
-/// Returns whether the drive is present and has its reference.
+/// Returns whether the drive is present and its reference is set.
 fn is_valid(reading: &DriveReading) -> bool {
     let status = reading.actual.status;
     status.is_present() && status.has(StatusBit::ReferenceSet)
@@ -116,8 +116,8 @@ fn row(reading: &DriveReading, place: Option<TurnPosition>) -> String {
 mod tests {
     use super::*;
 
-    /// 65536 steps per turn: −1 is turn −1, 65535; 163840 are 2.5 turns. 400 of 0.01 mm: 1000 are 2.5 turns. 256 · 10 / 3 =
-    /// 853.33: −1 is turn −1, 852.33.
+    /// At 65536 steps per turn, −1 is step 65535 in turn −1, and 163840 is 2.5 turns. At 400 steps of 0.01 mm, 1000 is
+    /// 2.5 turns. At 256 · 10 / 3 = 853.33 steps, −1 is step 852.33 in turn −1.
     #[test]
     fn a_position_is_split_into_turns_and_steps() {
         let place = |position, numerator, denominator| {

@@ -1,4 +1,4 @@
-//! The commands for profiles of an adapter or a hub: `save`, `restore`, and reading the device for a comparison.
+//! Commands for profiles of an adapter or a hub: `save`, `restore`, and reading the device for a comparison.
 
 use serde_json::json;
 
@@ -52,13 +52,13 @@ impl ProfileCommands for HiperdriveCommands {
         write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
     }
 
-    /// Reads the whole device for a comparison.
+    /// Reads the complete device for a comparison.
     fn present(&self, common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
         Ok(Body::new(saved(common)?))
     }
 
-    /// Returns a message if two profiles are not of the same device or the same drives. A profile without a serial number
-    /// matches none.
+    /// Returns a message if the two profiles are from different devices or have different drives. A profile without a
+    /// serial number matches no device.
     fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
         let error =
             profile::check_device(profile.get::<HiperdriveProfile>()?, &device.get::<HiperdriveProfile>()?.identity)
@@ -76,7 +76,8 @@ fn saved(common: &Common) -> Result<HiperdriveProfile> {
     Ok(result_of!(Runner::open(common)?.run(HiperdriveJob::Save)?, HiperdriveOutput::Saved(profile) => *profile))
 }
 
-/// Returns the items of the profile that the device lacks. A place without a drive is one item, whatever its parameters.
+/// Lists the profile items that the device lacks. A port without a drive counts as one item, however many parameters it
+/// has.
 fn absent(prepared: &Prepared) -> Vec<String> {
     let missing = prepared.missing.iter().map(|name| (name, name.parse::<Item>().ok().and_then(|item| item.0.drive())));
     let words = missing.map(|(name, drive)| match drive.filter(|drive| prepared.identity.drive(*drive).is_none()) {

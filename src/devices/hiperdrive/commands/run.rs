@@ -1,4 +1,4 @@
-//! Running jobs on an adapter or a hub with its drives.
+//! Runs jobs on an adapter or a hub with its drives.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -19,13 +19,14 @@ use crate::devices::hiperdrive::state::explain as words;
 use crate::result_of;
 use crate::worker::Session;
 
-/// Several of the longest intervals: a stop word is sent before the program may end.
+/// Time to wait for the drives to stop, several times the longest interval, so that a stop word is sent before the
+/// program may end.
 const STOPPED: Duration = Duration::from_millis(500);
-/// The drives are off, and their connection is closed.
+/// Time to wait until the drives are off and the connection is closed.
 const RELEASED: Duration = Duration::from_secs(1);
 const LOOKS: Duration = Duration::from_millis(1);
 
-/// A session with an adapter or a hub on its thread.
+/// Runs a session with an adapter or a hub on its own thread.
 pub(super) type Runner = runner::Runner<Hiperdrive>;
 
 impl Runs for Hiperdrive {
@@ -56,7 +57,8 @@ impl Runs for Hiperdrive {
         Some(Pace { replies: station.replies(), timeout: station.link.timeout, longest: Station::LONGEST_TIMEOUT })
     }
 
-    /// Stops the motion and waits for it; before the program ends, also until the drives are off and released.
+    /// Stops the motion and waits for standstill. If the program is about to end, also waits until the drives are off
+    /// and released.
     fn interrupt(motion: &Motion) -> Box<dyn Fn(bool) + Send> {
         let motion = motion.clone();
         Box::new(move |again| {
@@ -80,7 +82,7 @@ pub(super) fn value(runner: &mut Runner, number: ParameterNumber) -> Result<Valu
     Ok(result_of!(runner.run(HiperdriveJob::Read(number))?, HiperdriveOutput::Value(_, value) => value))
 }
 
-/// Returns the drive to use: the first if none is named.
+/// Returns the drive selected by the user, or the first drive by default.
 pub(super) fn drive(of: &OfDrive) -> DriveNumber {
     of.drive.and_then(DriveNumber::new).unwrap_or(DriveNumber::FIRST)
 }

@@ -1,4 +1,4 @@
-//! `simulate hiperdrive`: virtual drives behind an adapter or a hub, as an EtherNet/IP target.
+//! The `simulate hiperdrive` command: virtual drives behind an adapter or a hub, acting as an EtherNet/IP target.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 
@@ -23,7 +23,7 @@ pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn
 }
 
 impl Simulated for Target {
-    /// A target has several originators at once.
+    /// Accepts another connection, since a target can serve several originators at once.
     fn another(&self, peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         Some(Box::new(self.connection(peer)))
     }

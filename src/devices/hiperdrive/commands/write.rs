@@ -1,4 +1,4 @@
-//! `write`: one parameter.
+//! The `write` command, which changes a single parameter.
 
 use super::act::check_acknowledged;
 use super::item;
@@ -22,7 +22,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let item = item(&write.item, &write.own.read()?)?;
     let change = change(item, &write.value)?;
     require_consent(&write.consent)?;
-    // The number alone does not tell what it does.
+    // The number alone does not tell the user what the write does.
     if let Change::Do(_) = change {
         output.remark(&words::change(&change).terminal());
     }
@@ -44,7 +44,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     Ok(done)
 }
 
-/// Parses the change of a value. Values that no device accepts are refused before anything is opened.
+/// Parses a new parameter value. Values that no device accepts are refused before a connection is opened.
 fn change(item: Item, text: &str) -> Result<Change> {
     let number = item.0;
     let refused = |error: PlanError| failed(&words::plan(&error));
@@ -59,16 +59,16 @@ fn change(item: Item, text: &str) -> Result<Change> {
     if (row.number, value) == (SERVICE, 0) {
         return Err(failed(&TEXTS.text("hd_cli.no_service")));
     }
-    // The plan checks travel: it needs the scale to name both limits.
+    // Travel is checked by the plan, which knows the scale and can name both limits.
     if row.reach.is_none() || row.number == REFERENCE {
         row.check(number, value, Travel::UNKNOWN).map_err(|error| refused(error.into()))?;
     }
     match (row.number, number.drive()) {
-        // 0 clears the errors, which is what an acknowledgement is (manual 6.2).
+        // Writing 0 clears the errors, which amounts to an acknowledgement (manual 6.2).
         (ACKNOWLEDGE, Some(drive)) => Ok(Change::Do(Service::Acknowledge(drive))),
         (SERVICE, _) => Service::of_code(value).map(Change::Do).ok_or_else(|| refused(PlanError::Acts { item })),
         (REFERENCE, Some(drive)) => {
-            // Of 32 bits.
+            // The checked value fits into 32 bits.
             let position = i32::try_from(value).map_err(|_| refused(PlanError::Acts { item }))?;
             Ok(Change::SetPosition { drive, position, save: true })
         }

@@ -1,4 +1,4 @@
-//! Carries a plan out.
+//! Execution of plans on a device.
 
 use super::{ChangeKind, Commit, Committed, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::hiperdrive::procedures::write::DeviceWrite;
@@ -27,7 +27,7 @@ impl Planned for Prepared {
     type Kind = ChangeKind;
 
     fn head(&self) -> PlanHead<'_, Self> {
-        // No limit is known (`U`). Saves are counted and reported, and refused only if they cannot counted.
+        // The manual gives no limit (`U`). Saves are counted and reported, and refused only if counting fails.
         PlanHead { plan: &self.plan, kind: self.kind, cycles_seen: self.cycles_seen, wear_limit: u64::MAX }
     }
 

@@ -1,5 +1,5 @@
-//! The cyclic connection of a session. The user opens and closes it; the permits of the drives come from the parameters
-//! read last.
+//! The cyclic connection of a session. The user opens and closes it; the drives' motion permits come from the
+//! parameters read last.
 
 use std::sync::Arc;
 
@@ -16,13 +16,13 @@ use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
 use crate::units::Moment;
 use crate::worker::SessionContext;
 
-/// The cyclic connection and the permissions of the drives on it.
+/// The cyclic connection and the motion permits of its drives.
 pub(super) struct Control {
     port: Option<Box<dyn DatagramPort>>,
     clock: Arc<dyn Clock>,
     motion: Motion,
     open: Option<Open>,
-    /// The device and its drives as of the last opening.
+    /// The device and its drives when the connection was last opened.
     identity: Option<Identity>,
     pub(super) rules_refresh: RulesRefresh,
 }
@@ -48,15 +48,16 @@ impl Control {
         self.motion.clone()
     }
 
-    /// Returns the data of a drive over the cyclic connection, while there is one and data have arrived.
+    /// Returns a drive's data from the cyclic connection, or `None` if the connection is closed or has not received any
+    /// data.
     pub(super) fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let view = self.motion.view();
         let speaks = view.open && view.link.received > 0;
         view.drives.iter().find(|own| speaks && own.number == drive).map(|own| own.actual)
     }
 
-    /// Returns a temperature that was read through the parameter words of the cyclic connection, if it has them and the
-    /// device replied; the next is requested.
+    /// Requests a temperature through the parameter words of the cyclic connection. Returns the latest reading, or
+    /// `None` if the connection has no parameter words or the device has not replied.
     pub(super) fn temperature(&self, what: Temperature) -> Result<Option<TemperatureReading>, Error> {
         let reading = self.motion.watch_parameter(what.parameter()?);
         Ok(reading.and_then(|ParameterReading { at, result }| match result {
@@ -66,19 +67,19 @@ impl Control {
         }))
     }
 
-    /// Returns the device and its drives while drives may be moved.
+    /// Returns the device and its drives, or `None` if the cyclic connection is closed and the drives cannot be moved.
     pub(super) fn controlled_device(&self) -> Option<Identity> {
         self.open.as_ref().and(self.identity.clone())
     }
 
-    /// Handles the loss of explicit messages: the drives stop.
+    /// Stops the drives after explicit messaging was lost.
     pub(super) fn lose_session(&self) {
         if let Some(open) = &self.open {
             open.cyclic.lose(CyclicLost::Session);
         }
     }
 
-    /// Sets the permissions of the drives by a survey that began at that moment.
+    /// Updates the motion permits of the drives from a survey that began at the given moment.
     pub(super) fn rule_by(&mut self, survey: &Survey, began: Moment) {
         for drive in &survey.identity.drives {
             let read = |base| match survey.values.get(&ParameterNumber::of_drive(base, drive.number)?)? {
@@ -89,12 +90,12 @@ impl Control {
         }
     }
 
-    /// Forgets the permit of a drive.
+    /// Discards a drive's motion permit.
     pub(super) fn forget(&mut self, drive: DriveNumber) {
         self.motion.with_limits(drive, DriveLimits::forget);
     }
 
-    /// Publishes the limits of a drive from its parameters, with the time of reading.
+    /// Publishes a drive's limits, derived from its parameters, with the times at which those were read.
     pub(super) fn limit(&self, identity: &Identity, drive: DriveNumber, rules: Rules, times: [Moment; GROUPS]) {
         let Some(variant) = identity.drive(drive).map(|drive| drive.variant) else { return };
         self.motion.with_limits(drive, |limits| limits.take(rules, (identity.topology, variant), times));
@@ -102,7 +103,7 @@ impl Control {
 }
 
 impl Hiperdrive {
-    /// Opens the cyclic connection. This moves nothing.
+    /// Opens the cyclic connection. No drive moves.
     pub(super) fn take(
         &mut self,
         context: &mut SessionContext,
@@ -133,7 +134,7 @@ impl Hiperdrive {
                 Ok(())
             }
             Err(error) => {
-                // An unusable connection is closed; the original error is the one reported.
+                // The unusable connection is closed, but the original error is reported.
                 if let Err(why) = self.master(context).forward_close(&opened.close) {
                     tracing::warn!("{why}");
                 }
@@ -150,25 +151,25 @@ impl Hiperdrive {
         closed
     }
 
-    /// Ends the session: stops and releases drives under control, and unregisters at the device if it was controlled.
+    /// Ends the session: stops and releases drives under control, and unregisters from the device if it was controlled.
     pub(super) fn end(&mut self, context: &mut SessionContext) {
         let had_control = self.control.identity.is_some();
         if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
         }
-        // There is no reply to this, and it does not matter if the device is disconnected.
+        // This request has no reply, and it does not matter if the device is disconnected.
         if had_control && let Err(why) = self.master(context).unregister() {
             tracing::debug!("{why}");
         }
     }
 
-    /// Returns whether the program ends, and drives are in control still.
+    /// Returns whether the program is shutting down while drives are still under control.
     pub(super) fn is_to_end(&self) -> bool {
         self.control.open.is_some() && self.control.motion.is_shutting_down()
     }
 
-    /// Closes a lost cyclic connection at the target as well, and reports it once. It is also lost when explicit messages
-    /// are: motion is not allowed without access to parameters.
+    /// Closes a lost cyclic connection at the target as well, and reports the loss once. Losing explicit messaging also
+    /// counts as a loss, since motion is not allowed without access to parameters.
     pub(super) fn let_go_of_lost(&mut self, context: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check().is_err() {
             self.control.lose_session();
@@ -180,13 +181,14 @@ impl Hiperdrive {
             return;
         }
         self.remark = Some(DeviceMessage::ControlLost);
-        // The target may have closed it already, or may not reply: it then ends by its own time-out.
+        // The target may already have closed the connection or may not reply; in that case the target's own time-out
+        // ends it.
         if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
         }
     }
 
-    /// Carries out a plan and reads the limits of the drives again. Until they are known, nothing may move.
+    /// Carries out a plan and reads the drives' limits again. No drive may move until the limits are known.
     pub(super) fn commit(
         &mut self,
         context: &mut SessionContext,
@@ -195,7 +197,7 @@ impl Hiperdrive {
     ) -> Result<Committed, JobError> {
         let identity = &commit.prepared.identity;
         for drive in &identity.drives {
-            // The values before the plan: a changed scale is detected by comparison with these.
+            // The values before the plan, against which a changed scale is detected.
             let rules = Rules::by(|base| commit.prepared.image.of_drive(drive.number, base));
             let now = context.clock.now();
             self.control.motion.with_limits(drive.number, |limits| {

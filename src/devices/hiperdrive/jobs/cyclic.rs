@@ -1,9 +1,9 @@
-//! The thread of a cyclic connection: it sends at absolute deadlines, receives in between, and asks the dead-men for each
-//! packet. A stop is sent with the next packet, at most one interval later.
+//! The thread of a cyclic connection. It sends at absolute deadlines, receives in between, and checks the dead-man
+//! controls for every packet. A stop goes out with the next packet, at most one interval later.
 //!
-//! The thread ends on request, when its handle is dropped, when the connection is lost, and with the program: the drives
-//! are stopped, then switched off; then nothing more is sent. If sending or receiving fails, nothing more is sent at once,
-//! and the target's watchdog stops the drives.
+//! The thread ends on request, when its handle is dropped, when the connection is lost, or when the program exits: the
+//! drives are stopped and then switched off, after which nothing more is sent. If sending or receiving fails,
+//! transmission ends immediately and the target's watchdog stops the drives.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,25 +18,25 @@ use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, Drives};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::link::{Clock, Datagrams, wake_before_others};
 
-/// Cyclic connection on its own thread. Dropping it stops the drives and ends the thread; [`close`](Self::close) waits for
-/// that.
+/// A cyclic connection on its own thread. Dropping it stops the drives and ends the thread; [`close`](Self::close) also
+/// waits until the thread has ended.
 pub struct Cyclic {
     motion: Motion,
     commands: Arc<CyclicCommands>,
     ended: Receiver<Never>,
 }
 
-/// The state shared with the thread.
+/// State shared between the handle and the thread.
 #[derive(Default)]
 struct CyclicCommands {
     end: AtomicBool,
     lost: Mutex<Option<CyclicLost>>,
 }
 
-/// Type of a channel on which nothing is sent: it disconnects when the thread ends.
+/// Item type of a channel that never carries a value; the channel disconnects when the thread ends.
 enum Never {}
 
-/// Cyclic connection without a thread: the owner runs it, in tests in virtual time.
+/// A cyclic connection without a thread, driven by its owner; tests run it in virtual time.
 pub struct Pump {
     drives: Drives,
     port: Box<dyn Datagrams>,
@@ -46,16 +46,17 @@ pub struct Pump {
     packet: Vec<u8>,
 }
 
-/// The stop ladder, three packets with drives off, and a margin for the system.
+/// Maximum wait for the thread to end: the stop ladder, three packets with drives off, and a margin for the operating
+/// system.
 const PATIENCE: Duration = Duration::from_millis(1500);
-/// Most packets handled after the next one was due: flooding the port must not delay sending.
+/// Maximum number of packets handled once the next one is due, so that flooding the port cannot delay sending.
 const AT_ONCE: usize = 64;
 
 impl Cyclic {
-    /// Starts the thread. The connection was opened, and `port` is aimed at the target.
+    /// Starts the thread for an open connection; `port` must be directed at the target.
     ///
     /// # Errors
-    /// If the system has no thread left: nothing was sent.
+    /// If the system cannot create a thread; nothing has been sent then.
     pub fn start(
         port: Box<dyn Datagrams>,
         opened: &Opened,
@@ -82,21 +83,22 @@ impl Cyclic {
         Ok(Cyclic { motion: motion.clone(), commands, ended })
     }
 
-    /// Returns why it has ended without being closed. The owner closes it over the session's own connection.
+    /// Returns the reason if the connection ended without being closed. The owner must then close it over the session's
+    /// own connection.
     pub fn lost(&self) -> Option<CyclicLost> {
         self.motion.lost()
     }
 
-    /// Reports the loss from the session: the drives are stopped.
+    /// Reports a loss detected by the session, which stops the drives.
     pub fn lose(&self, why: CyclicLost) {
         *self.commands.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
     }
 
-    /// Stops the drives, switches them off and ends the thread; the connection itself remains to be closed. Returns why it
-    /// was lost, if it was.
+    /// Stops the drives, switches them off and ends the thread; the connection itself must still be closed. Returns the
+    /// reason if the connection was lost.
     pub fn close(self) -> Option<CyclicLost> {
         self.commands.end.store(true, Ordering::SeqCst);
-        // The channel ends with the thread; a later end is not awaited.
+        // The channel disconnects when the thread ends; a thread that takes longer is not awaited.
         let _ = self.ended.recv_timeout(PATIENCE);
         self.lost()
     }
@@ -109,7 +111,7 @@ impl Drop for Cyclic {
 }
 
 impl Pump {
-    /// Creates a connection that was opened just now, through a port that is aimed at the target.
+    /// Creates the pump for a newly opened connection; `port` must be directed at the target.
     pub fn new(
         port: Box<dyn Datagrams>,
         opened: &Opened,
@@ -123,12 +125,12 @@ impl Pump {
         Pump { drives, port, clock, motion, commands, packet: Vec::new() }
     }
 
-    /// Requests a stop of the drives and the end of the connection; [`turn`](Self::turn) carries it out.
+    /// Requests that the drives stop and the connection end; [`turn`](Self::turn) carries this out.
     pub fn end(&self) {
         self.commands.end.store(true, Ordering::SeqCst);
     }
 
-    /// Receives until the next packet is due, and sends it. Returns false when the connection is over.
+    /// Receives until the next packet is due, then sends that packet. Returns `false` when the connection is over.
     pub fn turn(&mut self) -> bool {
         let due = self.drives.poll_at();
         let mut late = 0;

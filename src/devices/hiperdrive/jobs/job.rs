@@ -1,4 +1,4 @@
-//! The jobs of an adapter or a hub with its drives, and their results.
+//! Jobs for an adapter or a hub with its drives, and their results.
 
 use std::fmt;
 
@@ -12,63 +12,63 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, ParameterNumber, V
 use crate::store::DeviceKey;
 use crate::worker::commit::wear;
 
-/// Number of saves from which the user is warned of wear: an assumption, since the manual gives no limit (`U`).
+/// Save count above which the user is warned of wear. This is an assumption, since the manual gives no limit (`U`).
 pub const WEAR_WARNING: u64 = 50_000;
 
-/// Job of a session with an adapter or a hub. Reading changes nothing; drives move only between [`Take`](Self::Take) and
-/// [`Give`](Self::Give), through the session's `Motion`.
+/// A job in a session with an adapter or a hub. Reading changes nothing; drives move only between [`Take`](Self::Take)
+/// and [`Give`](Self::Give), through the session's `Motion`.
 #[derive(Debug)]
 pub enum HiperdriveJob {
-    /// Identifies the device after connecting, for a window.
+    /// Identifies the device after connecting, for display in a window.
     Hello,
     Survey,
     Identify,
-    /// Errors and states of all drives.
+    /// Reads the errors and states of all drives.
     Status,
-    /// Checks device and drives, with a verdict a line.
+    /// Checks the device and its drives, with one verdict per line.
     Check,
     /// Reads the position of a drive once.
     Position(DriveNumber),
     Read(ParameterNumber),
     Network,
     Save,
-    /// Makes a plan; writes nothing.
+    /// Prepares a plan without writing anything.
     Prepare(Change),
-    /// Carries a plan out.
+    /// Carries out a plan.
     Commit(Box<Commit>),
-    /// Opens the cyclic connection. This moves nothing.
+    /// Opens the cyclic connection. No drive moves.
     Take,
     Give,
     Watch(DriveNumber),
 }
 
-/// A change that a user wants.
+/// A change requested by the user.
 #[derive(Clone, Debug)]
 pub enum Change {
     Restore {
         profile: Box<HiperdriveProfile>,
         options: RestoreOptions,
     },
-    /// Writes these values and saves them; parameters that are not in the image stay as they are.
+    /// Writes and saves the given values; parameters missing from the image stay unchanged.
     Write(Box<Image>),
-    /// Make it like this, and save nothing.
+    /// Writes the given values without saving them.
     Try(Box<Image>),
     SetPosition {
         drive: DriveNumber,
-        /// Position in scaled steps, to be rounded to a multiple of 64.
+        /// New position in scaled steps, rounded to a multiple of 64.
         position: i32,
-        /// Save it, and all that was not saved before.
+        /// Whether to save the position, along with all other unsaved values.
         save: bool,
     },
     Do(Service),
     Network(NetworkSettings),
 }
 
-/// Kind of change, by how an interrupted one is completed.
+/// Kind of change, which determines how an interrupted change can be completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edits: those not yet written remain edits.
+    /// Edits; those not yet written remain edits.
     Edits,
     Try,
     Position,
@@ -94,35 +94,35 @@ pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: HiperdrivePlan,
     pub identity: Identity,
-    /// The stored values of the device, as read for the plan.
+    /// Values stored in the device, as read for the plan.
     pub image: Image,
-    /// Number of saves of the device recorded on this computer; `None` if the logbook has no record.
+    /// Number of saves recorded for the device on this computer, or `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
-    /// Items that are as they should be already.
+    /// Number of items that already have the desired value.
     pub unchanged: u64,
-    /// Items of a profile that the device does not have.
+    /// Profile items that the device does not have.
     pub missing: Vec<String>,
-    /// Values of the mounting that differ and are left alone.
+    /// Differing mounting values that are left unchanged.
     pub mounting_left: Vec<Item>,
-    /// Differences of type if the profile is of another type of device or drive.
+    /// Type differences, if the profile is for another type of device or drive.
     pub other_types: Vec<OtherType>,
-    /// Values of another device's mounting that are written: they must be set up again.
+    /// Mounting values that are written from another device's profile and must be set up again.
     pub mounting_written: Vec<Item>,
 }
 
 impl Prepared {
-    /// Returns the number of saves after this, if the user should know.
+    /// Returns the number of saves after this plan, or `None` if no wear warning is needed.
     pub fn wear(&self) -> Option<u64> {
         wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
 }
 
-/// Plan with the user's consent.
+/// A plan with the user's consent.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 pub type Committed = crate::worker::Committed<Written>;
 
-/// A message during a job.
+/// A message sent while a job is running.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeviceMessage {
     /// The cyclic connection was lost and the drives stop; the session's `Motion` has the cause.
@@ -133,12 +133,12 @@ pub enum DeviceMessage {
     RulesRead,
 }
 
-/// Step of a running job. Its text is that of the command line.
+/// A step of a running job. It displays as on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
     Parameter(ParameterNumber),
     Step(CheckStep),
-    /// Operation of a plan, with the item it changes.
+    /// An operation of a plan, with the item that it changes.
     Operation(String),
 }
 

@@ -36,7 +36,6 @@ use crate::link::{ByteLink, Clock, DatagramPort, LinkError};
 use crate::store::Store;
 use crate::worker::{Device, IDLE, JobReport, Progress, Session, SessionContext, Watched};
 
-/// An adapter or a hub with its drives.
 pub struct Hiperdrive {
     wire: Box<dyn ByteLink>,
     station: Station,
@@ -67,16 +66,16 @@ impl Hiperdrive {
 /// The start of a session with an adapter or a hub.
 pub struct DeviceConnection {
     pub wire: Box<dyn ByteLink>,
-    /// Port for cyclic data; `None` for a link without one.
+    /// Port for cyclic data, or `None` for a link without one.
     pub port: Option<Box<dyn DatagramPort>>,
     pub station: Station,
-    /// The virtual device, if it runs in this process.
+    /// Virtual device, if it runs in this process.
     pub target: Option<Target>,
 }
 
 impl Session<Hiperdrive> {
-    /// Creates a session on an open connection. With `target` the device is a virtual one in this process, and its saves
-    /// are counted separately.
+    /// Creates a session on an open connection. `target` denotes a virtual device in this process, whose saves are
+    /// counted separately.
     pub fn to_target(way: DeviceConnection, clock: Arc<dyn Clock>, store: Store) -> Self {
         let DeviceConnection { wire, port, station, target } = way;
         let is_virtual = target.is_some();
@@ -86,8 +85,8 @@ impl Session<Hiperdrive> {
         Session::with(device, clock, store, is_virtual)
     }
 
-    /// Returns the handle that moves the drives. It is the same for the whole session; without the cyclic connection it
-    /// has no effect.
+    /// Returns the handle that moves the drives, which is the same for the whole session. Without the cyclic connection
+    /// it has no effect.
     pub fn motion(&self) -> Motion {
         self.device.control.motion()
     }
@@ -194,7 +193,7 @@ impl Device for Hiperdrive {
         self.remark.take()
     }
 
-    /// Stops the drives that are in control and releases them.
+    /// Stops the drives that are under control and releases them.
     fn leave(&mut self, context: &mut SessionContext) {
         self.end(context);
     }

@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, ParameterNumber,
 use crate::link::Clock;
 use crate::units::Moment;
 
-/// Motion of a session's drives. Clones share it.
+/// Motion of a session's drives, shared by its clones.
 #[derive(Clone)]
 pub struct Motion(Arc<Shared>);
 
@@ -27,7 +27,7 @@ struct Shared {
 
 struct Cell {
     intent: Intent,
-    /// The limits of each drive, stored only here.
+    /// Limits of each drive, stored only here.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
@@ -36,13 +36,13 @@ struct Cell {
     session: SessionWatch,
     punctual: bool,
     view: MotionSnapshot,
-    /// The program ends: no motion is allowed.
+    /// Whether the program is ending, so that no motion is allowed.
     is_shutting_down: bool,
-    /// The target holds a cyclic connection that was opened here.
+    /// Whether the target holds a cyclic connection that was opened here.
     connected: bool,
 }
 
-/// Snapshot of the drives: their state and their limits.
+/// A snapshot of the drives: state and limits.
 #[derive(Clone, Debug)]
 pub struct DrivesSnapshot {
     pub at: Moment,
@@ -50,18 +50,18 @@ pub struct DrivesSnapshot {
     pub limits: BTreeMap<DriveNumber, DriveLimits>,
 }
 
-/// The state of the drives, and the quality of their connection.
+/// State of the drives, and quality of their connection.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotionSnapshot {
     pub open: bool,
-    /// The drives of the connection with their latest state, by number.
+    /// Drives of the connection with their latest state, by number.
     pub drives: Vec<DriveView>,
     pub link: LinkFigures,
-    /// Parameters read through the parameter words; `None` if the connection has none.
+    /// Parameters read through the parameter words, or `None` if the connection has none.
     pub parameters: Option<ParameterReadings>,
-    /// If set, the system gives the connection's thread priority over all ordinary ones.
+    /// Whether the system gives the connection's thread priority over all ordinary ones.
     pub punctual: bool,
-    /// Why it was lost without being closed.
+    /// Reason why the connection was lost without being closed.
     pub lost: Option<CyclicLost>,
 }
 
@@ -69,16 +69,16 @@ pub struct MotionSnapshot {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveView {
     pub number: DriveNumber,
-    /// The data received last.
+    /// Data received last.
     pub actual: Actual,
-    /// Time of the data in `actual`; `None` before the first.
+    /// Time of the data in `actual`, or `None` before the first.
     pub received_at: Option<Moment>,
-    /// The setpoint sent last.
+    /// Setpoint sent last.
     pub sent: Setpoint,
     pub phase: Phase,
-    /// The running act, or else the last one; 0 for none.
+    /// Number of the running act, or else of the last one; 0 for none.
     pub act: u64,
-    /// The last act that ended, and how.
+    /// The last act that ended, and its outcome.
     pub ended: Option<(u64, Ended)>,
 }
 
@@ -86,7 +86,7 @@ pub struct DriveView {
 const WATCHED: Duration = Duration::from_secs(5);
 
 impl Motion {
-    /// Creates it without a request and without a permit.
+    /// Creates the motion without a request and without a permit.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
         let intent = Intent::rest(DriveNumber::FIRST, 0, clock.now());
         let cell = Cell {
@@ -104,7 +104,7 @@ impl Motion {
     }
 
     /// Requests a motion of a drive and returns the number of this new act. It replaces the previous one, whose motion
-    /// stops. It must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
+    /// stops. The act must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
     pub fn intend(&self, drive: DriveNumber, request: MotionRequest) -> u64 {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
@@ -113,8 +113,8 @@ impl Motion {
         number
     }
 
-    /// Refreshes the last request. Required every 100 ms while anything moves: 250 ms without it stop the drive, and a
-    /// later refresh has no effect, even if the connection's thread stood still meanwhile.
+    /// Refreshes the last request. Required every 100 ms while anything moves: after 250 ms without a refresh the drive
+    /// stops, and a later refresh has no effect, even if the connection's thread was suspended in the meantime.
     pub fn refresh(&self) {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -128,7 +128,7 @@ impl Motion {
         self.intend(drive, MotionRequest::Stop);
     }
 
-    /// Returns whether the act of this number is the latest.
+    /// Returns whether the act with this number is the latest.
     pub fn is_latest(&self, number: u64) -> bool {
         self.lock().intent.number == number
     }
@@ -148,22 +148,22 @@ impl Motion {
         DrivesSnapshot { at, view: cell.view.clone(), limits: cell.limits.clone() }
     }
 
-    /// Returns the limits of a drive, with the time of reading; the default for an unknown one.
+    /// Returns the limits of a drive with the time of reading, or the default for an unknown drive.
     pub fn limits(&self, drive: DriveNumber) -> DriveLimits {
         self.lock().limits.get(&drive).cloned().unwrap_or_default()
     }
 
-    /// Publishes the limits of a drive. A session does this by itself.
+    /// Publishes the limits of a drive, as a session does automatically.
     pub fn publish_limits(&self, drive: DriveNumber, limits: DriveLimits) {
         self.with_limits(drive, |own| *own = limits);
     }
 
-    /// Changes the limits of a drive atomically: they cannot be read or confirmed half-way.
+    /// Changes the limits of a drive atomically, so that they cannot be read or confirmed half-changed.
     pub(super) fn with_limits<T>(&self, drive: DriveNumber, change: impl FnOnce(&mut DriveLimits) -> T) -> T {
         change(self.lock().limits.entry(drive).or_default())
     }
 
-    /// Requires the limits of a drive to be read before its next motion: another master may have changed them.
+    /// Requires the limits of a drive to be read before its next motion, because another master may have changed them.
     pub fn doubt_limits(&self, drive: DriveNumber) {
         let now = self.0.clock.now();
         self.with_limits(drive, |limits| limits.doubt(now));
@@ -173,18 +173,18 @@ impl Motion {
         self.lock().intent.drive
     }
 
-    /// Requires that the limits of a drive are confirmed before it moves.
+    /// Requires the limits of a drive to be confirmed before it moves.
     pub fn unconfirm_limits(&self, drive: DriveNumber) {
         self.with_limits(drive, DriveLimits::unconfirm);
     }
 
-    /// Confirms the limits of a drive as shown to the user. Returns whether this took effect: it does not if the limits
-    /// have changed since.
+    /// Confirms the limits of a drive as shown to the user; returns `false` without effect if the limits have changed
+    /// since.
     pub fn confirm_limits(&self, drive: DriveNumber, seen: LimitsSeen) -> bool {
         self.with_limits(drive, |limits| limits.confirm(seen))
     }
 
-    /// Allows or forbids an endless run of a drive. It is possible only with the factory's limits and scaling.
+    /// Allows or forbids an endless run of a drive, which requires factory limits and scaling.
     pub fn allow_endless(&self, drive: DriveNumber, allowed: bool) {
         let mut cell = self.lock();
         if allowed {
@@ -194,8 +194,8 @@ impl Motion {
         }
     }
 
-    /// Requests that a parameter is read through the parameter words of the cyclic connection for some time. Returns its
-    /// latest reading, unless it is old; `None` also without such a connection.
+    /// Requests that a parameter be read through the parameter words of the cyclic connection for some time. Returns
+    /// its latest reading unless it is old; `None` also without such a connection.
     pub fn watch_parameter(&self, number: ParameterNumber) -> Option<ParameterReading> {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -204,7 +204,6 @@ impl Motion {
         readings.get(&number).filter(|reading| now.since(reading.at) < WATCHED).copied()
     }
 
-    /// Returns the parameters to be read through the parameter words.
     pub(super) fn watched_parameters(&self) -> Vec<ParameterNumber> {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -218,7 +217,7 @@ impl Motion {
         self.lock().permitted(drive, now)
     }
 
-    /// Starts a connection. Returns the number up to which no act moves anything over it.
+    /// Starts a connection. Returns the number up to which acts do not move anything over it.
     pub(super) fn open(&self) -> u64 {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -270,7 +269,6 @@ impl Motion {
         cell.view = MotionSnapshot { punctual: cell.punctual, ..view };
     }
 
-    /// Records whether the system gives the connection's thread priority over all ordinary ones.
     pub(super) fn set_punctual(&self, punctual: bool) {
         self.lock().punctual = punctual;
     }
@@ -285,8 +283,8 @@ impl Motion {
         self.lock().view.lost.clone()
     }
 
-    /// Ends motion with the program: all drives stop, are switched off, and their connection is closed. Nothing moves after
-    /// that.
+    /// Ends motion with the program: all drives are stopped and switched off, and their connection is closed. Nothing
+    /// moves afterwards.
     pub fn leave(&self) {
         self.lock().is_shutting_down = true;
     }
@@ -305,13 +303,13 @@ impl Motion {
         self.lock().connected = connected;
     }
 
-    /// Returns whether the session has ended: nothing else holds a handle to its drives.
+    /// Returns whether the session has ended, so that nothing else holds a handle to its drives.
     pub fn is_left_over(&self) -> bool {
         Arc::strong_count(&self.0) == 1
     }
 
-    /// Returns whether the word sent last to every drive stops it: a requested stop has been sent. True without a
-    /// connection.
+    /// Returns whether the word sent last to every drive stops it, that is, whether a requested stop has been sent.
+    /// True without a connection.
     pub fn is_standing(&self) -> bool {
         let cell = self.lock();
         !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_standing())

@@ -10,8 +10,8 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::units::Moment;
 use crate::worker::SessionContext;
 
-/// Length of a time slot while no drive moves. The groups of limit parameters take the slots in turn: each group has one
-/// per second.
+/// Length of a time slot while no drive moves. The groups of limit parameters take turns: each group has one slot per
+/// second.
 const TURN: Duration = Duration::from_millis(250);
 /// Length of a slot while a drive moves. Each slot sends a request, and a device that does not answer ends the motion.
 const TURN_IN_MOTION: Duration = REQUEST;
@@ -25,7 +25,7 @@ pub(super) struct RulesRefresh {
     rests: Option<Moment>,
 }
 
-/// Returns the groups that are due, the one read longest ago first: those with a slot that has begun since their last
+/// Returns the groups that are due, the one read longest ago first: those whose slot has begun since their last
 /// reading.
 fn due(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
     let is_due = |(group, at): &(usize, Moment)| turns(*group, now, turn) > turns(*group, *at, turn);
@@ -42,8 +42,8 @@ fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
 }
 
 impl Hiperdrive {
-    /// Reads the parameters that limit the motion, if that is due while drives may be moved. If they cannot be read,
-    /// nothing moves until they can, which is reported once.
+    /// Reads the limit parameters if due while drives may be moved. If they cannot be read, nothing moves until they
+    /// can, which is reported once.
     pub(super) fn look_at_rules(&mut self, context: &mut SessionContext) {
         let Some(identity) = self.control.controlled_device() else { return };
         if self.control.rules_refresh.rests.is_some_and(|until| context.clock.now() < until) {
@@ -105,16 +105,16 @@ impl Hiperdrive {
         }
     }
 
-    /// Reads the limits of a drive before anything else, because it is shown from now on.
+    /// Reads the limits of a drive before anything else, because it has been selected.
     pub(super) fn look_anew(&mut self, context: &mut SessionContext, drive: DriveNumber) {
         self.control.motion().doubt_limits(drive);
         self.look_at_rules(context);
     }
 
-    /// Reads the limits of all drives. Cancellation is ignored: after a change the new state must be known.
+    /// Reads the limits of all drives. Cancellation is ignored, since the new state must be known after a change.
     ///
     /// # Errors
-    /// The way.
+    /// Errors of the exchange.
     pub(super) fn read_rules(&mut self, context: &mut SessionContext, identity: &Identity) -> Result<(), Error> {
         for drive in &identity.drives {
             let began = context.clock.now();

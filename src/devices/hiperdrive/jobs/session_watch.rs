@@ -26,19 +26,19 @@ const PATIENCE: Duration = Duration::from_millis(130);
 const UNHEARD: Duration = Duration::from_millis(250);
 /// Interval of listening while a reply is awaited.
 const LOOK: Duration = Duration::from_millis(10);
-/// Longest time allowed to a device, however slow it was.
+/// Maximum time allowed to a device, however slow it was before.
 const MOST_PATIENCE: Duration = Duration::from_secs(1);
 
-/// Requests and answers over one connection.
+/// Requests and replies over one connection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct SessionWatch {
     /// When the oldest unanswered request was sent.
     requested: Option<Moment>,
-    /// When the line was last checked and nothing had arrived.
+    /// Time at which the line was last checked and nothing had arrived.
     looked: Moment,
-    /// The slowest answer, fading with each faster one.
+    /// Slowest reply time, fading with each faster reply.
     slowest: Duration,
-    /// The last bytes were not a frame.
+    /// Whether the last bytes were not a frame.
     broken: bool,
 }
 
@@ -62,12 +62,13 @@ impl SessionWatch {
         self.looked = now;
     }
 
-    /// Notes bytes that are not a frame.
+    /// Records bytes that are not a frame.
     pub(super) const fn break_off(&mut self) {
         self.broken = true;
     }
 
-    /// Returns whether the device has not answered for too long to move anything, or with bytes that are no frame.
+    /// Returns whether the device has not replied for too long to move anything, or has sent bytes that are not a
+    /// frame.
     pub(super) fn is_silent(&self, now: Moment) -> bool {
         let patience = (self.slowest * 2).clamp(PATIENCE, MOST_PATIENCE);
         let is_late = |asked| self.looked.since(asked) > patience || now.since(asked) > patience + UNHEARD;

@@ -17,7 +17,6 @@ use crate::devices::hiperdrive::protocol::{
 
 pub use crate::analysis::check::Verdict;
 
-/// One line of the check.
 pub type HiperdriveStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,13 +26,13 @@ pub enum CheckStep {
     Supply,
     Temperature,
     Address,
-    /// Parameter 47: the memory is intact, and no save is in progress.
+    /// Parameter 47: whether the memory is intact and no save is in progress.
     Memory,
     Drives,
     Request(DriveNumber),
     /// RS-485 to a drive.
     Line(DriveNumber),
-    /// The time-out of RS-485, which stops a drive that is left alone.
+    /// RS-485 time-out, which stops a drive without communication.
     Timeout(DriveNumber),
     /// State and errors of a drive.
     Errors(DriveNumber),
@@ -63,7 +62,7 @@ impl fmt::Display for CheckStep {
     }
 }
 
-/// One fact that the check found.
+/// A finding of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
     /// Number of readings of a value, and the longest reply time.
@@ -71,7 +70,7 @@ pub enum CheckFinding {
         requested: u32,
         /// The longest, in milliseconds.
         slowest_ms: u64,
-        /// Frames that arrived after their time limit.
+        /// Number of frames that arrived after their time limit.
         late: u64,
     },
     Category(String),
@@ -100,26 +99,26 @@ pub enum CheckFinding {
     Requested,
     /// Parameter 152 is 0.
     NotRequested,
-    /// Switch S3 of a hub must be at 0 for drives to move; it cannot be read.
+    /// Switch S3 of a hub must be at 0 for drives to move; its position cannot be read.
     LookAtS3,
     /// Parameter 118 is 0.
     LineGood,
-    /// Parameter 118: FFFFh for no drive, or an error.
+    /// Parameter 118: FFFFh if there is no drive, or an error.
     LineWord(u16),
-    /// Parameter 186: tenths of a second.
+    /// Parameter 186 in tenths of a second.
     Timeout(i64),
     /// Parameter 186 is not a time: a drive without communication continues to move.
     NoTimeout,
     State(State),
-    /// Its status word is implausible: process data may have the other byte order.
+    /// The status word is implausible: process data may use the other byte order.
     StrayStatus(u16),
     /// Parameter 116 is not 0.
     DriveWord(u16),
     /// Parameter 117 is not 0.
     MotionWord(u16),
-    /// Error in its buffer.
+    /// An error in the error buffer of the drive.
     Error(ErrorCode),
-    /// Faults since the last acknowledgement.
+    /// Number of faults since the last acknowledgement.
     Faults(u8),
     /// Numerator and denominator of the position scale, and the limits.
     Range {
@@ -132,14 +131,14 @@ pub enum CheckFinding {
         /// Parameter 160.
         upper: i64,
     },
-    /// Numerator or denominator make no scale.
+    /// Numerator and denominator do not form a scale.
     BadScale {
         /// Parameter 154.
         numerator: i64,
         /// Parameter 156.
         denominator: i64,
     },
-    /// The upper limit is not above the lower one.
+    /// The upper limit does not exceed the lower limit.
     LimitsCrossed {
         /// Parameter 158.
         lower: i64,
@@ -165,12 +164,13 @@ pub enum CheckFinding {
 
 /// Number of readings for measuring the reply time.
 const LOOKS: u32 = 20;
-/// Tenths of a volt: 24 V, 15 % less or 20 % more (`U`).
+/// Supply voltage in tenths of a volt: 24 V, 15 % less or 20 % more (`U`).
 const SUPPLIES: std::ops::RangeInclusive<i64> = 204..=288;
-/// Degrees Celsius that a device or a drive tolerates (`U`: the manual contradicts itself, reference 8.9).
+/// Temperature in degrees Celsius that a device or a drive tolerates (`U`: the manual contradicts itself, reference
+/// 8.9).
 const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
 
-/// Runs the check. It ends early only if the device fails.
+/// Runs the check, which ends early only if the device fails.
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; errors of the exchange.

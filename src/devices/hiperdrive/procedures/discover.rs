@@ -22,7 +22,7 @@ impl DiscoveredDevice {
     }
 }
 
-/// How long replies are collected: a device may delay its reply within the requested limit, but none is requested.
+/// Time for collecting replies. A device may delay its reply up to a requested limit, but none is requested.
 const GATHER: Duration = Duration::from_secs(1);
 /// Interval of checking for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
@@ -50,7 +50,7 @@ pub fn discover(shout: &mut dyn Broadcast, clock: &dyn Clock, cancel: &Cancel) -
     Ok(found)
 }
 
-/// Parses a reply; `None` if the packet is not one.
+/// Parses a reply, or returns `None` if the packet is not one.
 fn answer(packet: &[u8]) -> Option<IdentityItem> {
     let frame = Frame::parse(packet).ok().filter(|frame| frame.command == Command::LIST_IDENTITY)?;
     match frame.body().ok()? {

@@ -47,10 +47,10 @@ impl fmt::Display for RequestedItem {
 pub enum Damage {
     #[error(transparent)]
     Packet(#[from] PacketError),
-    /// Not a value of its parameter.
+    /// The value does not match its parameter.
     #[error(transparent)]
     Value(#[from] ValueError),
-    /// No message in it.
+    /// The frame contains no message.
     #[error("a frame without a message")]
     Empty,
     #[error("a reply to service {got:02X}h where one to {requested:02X}h was expected")]
@@ -66,7 +66,7 @@ pub enum Damage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Late {
     pub took: Duration,
-    /// Time limit of a reply, besides the margin of the line.
+    /// Time limit of a reply, excluding the margin of the line.
     pub waited: Duration,
 }
 
@@ -75,17 +75,17 @@ pub struct Late {
 pub struct Refusal {
     pub service: Service,
     pub status: GeneralStatus,
-    /// The words after the status.
+    /// Extended status words.
     pub extended: Vec<u16>,
 }
 
 impl Refusal {
-    /// Returns the meaning of the first word after the status; `None` if there is none or it is not known.
+    /// Returns the row of the first extended status word, if there is one and it is known.
     pub fn row(&self) -> Option<&'static ExtendedStatusRow> {
         extended_row(self.service, self.status, *self.extended.first()?)
     }
 
-    /// Returns what to do: for the word after the status if it is known, else for the status.
+    /// Returns the remedy for the extended status if known, or else for the status.
     pub fn remedy(&self) -> Option<&'static str> {
         self.row().map(|row| row.remedy).or_else(|| self.status.row().map(|row| row.remedy))
     }
@@ -102,7 +102,7 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Number of a parameter with another length than its type. It is not shown.
+/// A number whose length differs from its parameter's type. It is not displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("parameter {number} ({name}) has the wrong length (bytes received: {got}, expected: {expected})")]
 pub struct WrongLength {
@@ -121,55 +121,50 @@ pub enum Error {
     Link(LinkError),
     #[error("cancelled")]
     Cancelled,
-    /// Bytes keep coming that are no frames.
+    /// Bytes that are not frames keep arriving.
     #[error("bytes keep arriving that are not EtherNet/IP frames")]
     NeverSilent,
     #[error("no reply: {requested} (attempts: {tries})")]
     NoReply {
         requested: RequestedItem,
         tries: u32,
-        /// A reply that arrived too late; `None` if none arrived.
+        /// A reply that arrived too late, if any.
         late: Option<Late>,
     },
     #[error("{requested}: {cause} (attempts: {tries})")]
-    Damaged {
-        requested: RequestedItem,
-        tries: u32,
-        /// Damage of the last reply.
-        cause: Damage,
-    },
+    Damaged { requested: RequestedItem, tries: u32, cause: Damage },
     #[error("{requested}: {status}")]
     Encapsulation { requested: RequestedItem, status: EncapsulationStatus },
     #[error("{requested}: {refusal}")]
     Refused { requested: RequestedItem, refusal: Refusal },
     #[error("another master is connected: 0x{extended:04X}")]
     OtherMaster {
-        /// The word after the status: 0100h or 0106h.
+        /// Extended status word: 0100h or 0106h.
         extended: u16,
     },
-    /// The interval that the device offers for sending or receiving is longer than requested: too long to stop a drive in
-    /// time.
+    /// The interval that the device offers for sending or receiving is longer than requested, too long to stop a drive
+    /// in time.
     #[error("the device answers every {got_ms} ms where every {asked_ms} ms was asked for")]
     TooSlow {
-        /// The interval that was asked for, in milliseconds.
+        /// Requested interval in milliseconds.
         asked_ms: u64,
         got_ms: u64,
     },
     #[error("the cyclic connection is open")]
     InControl,
-    /// Such a link has no cyclic connection, for example a recording.
+    /// The link has no cyclic connection, such as a recording.
     #[error("this link has no cyclic connection")]
     NoCyclic,
-    /// The manual has no such parameter.
+    /// The manual has no parameter with this number.
     #[error("there is no parameter {0}")]
     Unknown(ParameterNumber),
     /// A number that no parameter has.
     #[error("{0} is not a parameter number")]
     NoNumber(u16),
-    /// The place does not exist.
+    /// The port does not exist.
     #[error("there is no drive {}: {} has {}", drive.get(), topology.category(), topology.drives())]
     NoPlace { drive: DriveNumber, topology: Topology },
-    /// No drive is connected at this place.
+    /// No drive is connected to this port.
     #[error("no drive is connected to port {}", drive.get())]
     NoDrive { drive: DriveNumber },
     /// Parameter 152 is 0.
@@ -181,10 +176,10 @@ pub enum Error {
     /// Value refused by the device, with the present range.
     #[error("{0}")]
     Refuses(OutOfRange),
-    /// The number of a parameter has another length than its type.
+    /// The length of a number differs from the type of its parameter.
     #[error(transparent)]
     Length(#[from] WrongLength),
-    /// The value does not fit its parameter; nothing was sent.
+    /// The value does not match its parameter; nothing was sent.
     #[error("parameter {number}: {cause}")]
     Value { number: ParameterNumber, cause: ValueError },
     /// Read-only parameter; nothing was sent.
@@ -196,13 +191,13 @@ pub enum Error {
     /// The parameter moves the drive, which is allowed over the cyclic connection only; nothing was sent.
     #[error("parameter {number} ({name}) is not written: drives move over the cyclic connection alone")]
     Motion { number: ParameterNumber, name: &'static str },
-    /// The drive moves but must stand still.
+    /// The drive is moving but must be at rest.
     #[error("drive {} moves", drive.get())]
     Moving { drive: DriveNumber },
-    /// Its identity is not that of a HIPERDRIVE.
+    /// The identity is not that of a HIPERDRIVE.
     #[error("this is not a HIPERDRIVE: {product:?}")]
     NotHiperdrive {
-        /// Its category, or the name in its identity object.
+        /// Category, or the name in the identity object.
         product: String,
     },
     /// A written value does not read back.
@@ -245,7 +240,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the device can no longer be reached, so that further attempts are useless.
+    /// Returns whether the device is out of reach, so that further attempts are useless.
     pub const fn is_lost(&self) -> bool {
         matches!(self, Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent)
     }
@@ -254,12 +249,12 @@ impl Error {
         matches!(self, Error::Cancelled)
     }
 
-    /// Returns whether the value is unavailable at the moment, or on this device; other parameters may be available.
+    /// Returns whether the value is unavailable at present, or on this device; other parameters may be available.
     pub const fn is_unsaid(&self) -> bool {
         matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
     }
 
-    /// Returns the refusal if the device has answered and does not do it.
+    /// Returns the refusal if the device has replied but refuses the request.
     pub const fn refusal(&self) -> Option<&Refusal> {
         match self {
             Error::Refused { refusal, .. } => Some(refusal),

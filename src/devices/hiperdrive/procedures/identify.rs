@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::protocol::{
 };
 use crate::units::Moment;
 
-/// The identity of an adapter or a hub, and of its drives.
+/// Identity of an adapter or a hub and its drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     pub topology: Topology,
@@ -24,7 +24,7 @@ pub struct Identity {
     pub article_number: String,
     /// Parameter 17.
     pub serial_number: String,
-    /// Parameter 18: week and year.
+    /// Production date, parameter 18: week and year.
     pub production_date: String,
     /// Parameter 19.
     pub version: String,
@@ -44,7 +44,7 @@ pub struct DriveIdentity {
     pub serial_number: String,
     /// Parameter 125.
     pub version: String,
-    /// Parameter 152: the drive is requested.
+    /// Whether the drive is requested, parameter 152.
     pub requested: bool,
 }
 
@@ -53,19 +53,18 @@ pub struct DriveIdentity {
 pub struct Survey {
     pub identity: Identity,
     pub network: Network,
-    /// Every parameter of the device and of its drives. Those that the device refuses are missing.
+    /// All parameters of the device and its drives, except those that the device refuses.
     pub values: BTreeMap<ParameterNumber, Value>,
-    /// Parameters whose numbers have another length than their types. They are not in `values`.
+    /// Numbers whose length differs from the type of their parameter, which are missing in `values`.
     pub wrong_lengths: Vec<WrongLength>,
 }
 
-/// The status of a device and its drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     pub drives: Vec<DriveStatus>,
-    /// Parameter 9: tenths of a volt of the control supply.
+    /// Control supply in tenths of a volt, parameter 9.
     pub supply_tenths: i64,
-    /// Parameter 11: temperature in the device in degrees Celsius.
+    /// Temperature of the device in degrees Celsius, parameter 11.
     pub temperature: i64,
 }
 
@@ -74,22 +73,22 @@ pub struct DriveStatus {
     pub number: DriveNumber,
     /// Parameter 105.
     pub status: StatusWord,
-    /// Parameters 108 to 115 that hold an error, newest first. After power-up they may be old (reference 4).
+    /// Errors stored in parameters 108 to 115, newest first. After power-up they may be old (reference 4).
     pub buffer: Vec<ErrorCode>,
-    /// Parameters 116 to 118: drive, motion, communication. 0 is no error, FFFFh no drive.
+    /// Parameters 116 to 118: drive, motion, communication. 0 means no error, FFFFh no drive.
     pub words: [u16; 3],
-    /// Parameter 197: faults since the last acknowledgement.
+    /// Number of faults since the last acknowledgement, parameter 197.
     pub faults: u8,
-    /// Parameter 119: temperature in the drive in degrees Celsius.
+    /// Temperature of the drive in degrees Celsius, parameter 119.
     pub temperature: i64,
-    /// Parameter 152: the drive is requested.
+    /// Whether the drive is requested, parameter 152.
     pub requested: bool,
 }
 
 /// Receives the next item, and how many of how many have been read.
 pub(super) type IdentifyProgress<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumber);
 
-/// The items that are read one after the other.
+/// Progress through the items that are read one after another.
 struct Steps<'t> {
     done: u64,
     total: u64,
@@ -170,7 +169,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
     Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
 }
 
-/// Reads a text of a drive; empty if the drive does not provide it, as one that is not requested may not (`U`).
+/// Reads a string of a drive; empty if the drive does not provide it, as one that is not requested may not (`U`).
 pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
     match master.read_text(of(base, drive)?) {
         Err(error) if error.is_unsaid() => Ok(String::new()),
@@ -178,7 +177,7 @@ pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber)
     }
 }
 
-/// Reads the category; the name of the device if it has no such parameter.
+/// Reads the category, or the name of the device if it has no such parameter.
 fn category(master: &mut Master<'_>) -> Result<String, Error> {
     match master.read_text(own(13)?) {
         Err(Error::Refused { .. }) => {
@@ -213,7 +212,6 @@ pub fn survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result
     Ok(Survey { identity, network, values, wrong_lengths })
 }
 
-/// Returns every readable parameter of a device and its drives.
 fn readable(identity: &Identity) -> impl Iterator<Item = ParameterNumber> {
     let rows = || PARAMETERS.iter().filter(|row| row.access != Access::Write);
     let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
@@ -274,7 +272,7 @@ fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>
     })
 }
 
-/// Reads the position of a drive: 105, 106, 107, one after the other.
+/// Reads parameters 105, 106 and 107 of a drive.
 ///
 /// # Errors
 /// [`Error::NoPlace`], [`Error::NoDrive`]; errors of the exchange.
@@ -310,7 +308,7 @@ pub(super) fn own(number: u16) -> Result<ParameterNumber, Error> {
     ParameterNumber::new(number).ok_or(Error::NoNumber(number))
 }
 
-/// Returns the number of a drive's parameter from that of drive 1.
+/// Returns the parameter number of a drive, given that of drive 1.
 pub(super) fn of(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
     ParameterNumber::of_drive(base, drive).ok_or(Error::NoNumber(base))
 }

@@ -16,13 +16,13 @@ use crate::units::Moment;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DriveLimits {
     rules: Rules,
-    /// Scale and limits are the factory's, as far as the drive's family is known.
+    /// Whether scale and limits have factory values, as far as the family of the drive is known.
     is_factory: bool,
     /// The scale has changed since the user confirmed the limits.
     unconfirmed: bool,
-    /// When each group of parameters was read; `None` if not since a possible change.
+    /// Time at which each group of parameters was read, or `None` if not since a possible change.
     read: Option<[Moment; GROUPS]>,
-    /// Time of a doubt: all groups must be read after it before the next motion starts.
+    /// Time of a doubt, after which all groups must be read before the next motion starts.
     doubted: Option<Moment>,
 }
 
@@ -35,11 +35,11 @@ pub struct LimitsSeen {
     pub limits: (i64, i64),
 }
 
-/// How long a reading of the limits stays valid: longer than a slow device may take to answer for all of them.
+/// Validity of a reading of the limits: longer than a slow device may take to reply to all requests.
 const VALID: Duration = Duration::from_secs(4);
 
-/// Returns whether a drive with this parameter 186 stops when communication is lost. A value that the manual does not
-/// define does not count.
+/// Returns whether a drive with this parameter 186 stops when communication is lost. Values that the manual does not
+/// define do not qualify.
 pub(super) fn ends_by_itself(timeout: i64) -> bool {
     let row = ParameterNumber::new(TIMEOUT).and_then(ParameterNumber::row);
     timeout != NO_TIMEOUT && row.is_some_and(|row| row.range.holds(timeout))
@@ -53,8 +53,8 @@ impl DriveLimits {
         limits
     }
 
-    /// Takes over the parameters read; `times` has the start of reading each group. If the scale has changed, the limits
-    /// must be confirmed, since they mean other positions. Parameters read before a doubt do not clear it.
+    /// Adopts the parameters read; `times` contains the start of reading each group. If the scale has changed, the
+    /// limits must be confirmed, since they denote other positions. Parameters read before a doubt do not clear it.
     pub fn take(&mut self, rules: Rules, (topology, variant): (Topology, Variant), times: [Moment; GROUPS]) {
         self.unconfirmed |= self.rules.scale.is_some() && self.rules.scale != rules.scale;
         self.is_factory = rules.are_factory(topology, variant);
@@ -63,24 +63,24 @@ impl DriveLimits {
         self.doubted = self.doubted.filter(|since| times.into_iter().any(|at| at < *since));
     }
 
-    /// Returns the parameters as they were read last.
+    /// Returns the parameters as last read.
     pub const fn rules(&self) -> Rules {
         self.rules
     }
 
-    /// Returns when each group of parameters was read; `None` if all are to be read at once.
+    /// Returns the time at which each group of parameters was read, or `None` if all are to be read at once.
     pub fn times(&self) -> Option<[Moment; GROUPS]> {
         self.read.filter(|_| self.doubted.is_none())
     }
 
-    /// Requires the parameters to be read again before the next motion begins: another master may have changed them. A
-    /// running motion continues while the last reading is valid.
+    /// Requires the parameters to be read again before the next motion begins, because another master may have changed
+    /// them. A running motion continues while the last reading is valid.
     pub fn doubt(&mut self, now: Moment) {
         // The clock is read before the doubt is stored: of two threads, the one with the later time may come first.
         self.doubted = self.doubted.max(Some(now));
     }
 
-    /// Forgets the parameters. Limits that have to be confirmed remain unconfirmed.
+    /// Discards the parameters. Limits that must be confirmed remain unconfirmed.
     pub fn forget(&mut self) {
         // The scale stays, so that a change can be detected.
         let rules = Rules { scale: self.rules.scale, ..Rules::default() };
@@ -92,38 +92,38 @@ impl DriveLimits {
         self.unconfirmed = true;
     }
 
-    /// Returns whether the limits have to be confirmed before the drive moves.
+    /// Returns whether the limits must be confirmed before the drive moves.
     pub const fn is_unconfirmed(&self) -> bool {
         self.unconfirmed
     }
 
-    /// Confirms the limits as shown to the user. Returns whether this took effect: it does not if the limits have changed
-    /// since.
+    /// Confirms the limits as shown to the user; returns `false` without effect if the limits have changed since.
     pub fn confirm(&mut self, seen: LimitsSeen) -> bool {
         let counts = self.seen() == Some(seen);
         self.unconfirmed &= !counts;
         counts
     }
 
-    /// Returns the limits to show for a confirmation; `None` if they were not read.
+    /// Returns the limits to show for a confirmation, or `None` if they have not been read.
     pub fn seen(&self) -> Option<LimitsSeen> {
         Some(LimitsSeen { scale: self.rules.scale?, limits: self.rules.limits? })
     }
 
-    /// Returns parameters 158 and 160 in scaled steps; `None` if they were not read or are not a range.
+    /// Returns parameters 158 and 160 in scaled steps, or `None` if they have not been read or do not form a range.
     pub fn limits(&self) -> Option<(i32, i32)> {
         let (lower, upper) = self.rules.limits?;
         let limits = (i32::try_from(lower).ok()?, i32::try_from(upper).ok()?);
         (limits.0 < limits.1).then_some(limits)
     }
 
-    /// Returns parameters 154 and 156; `None` if they were not read or are not a scale.
+    /// Returns the scale of parameters 154 and 156, or `None` if they have not been read or do not form a scale.
     pub fn scale(&self) -> Option<PositionScale> {
         let (numerator, denominator) = self.rules.scale?;
         PositionScale::new(u16::try_from(numerator).ok()?, u16::try_from(denominator).ok()?).ok()
     }
 
-    /// Returns whether a motion may start by this reading: it is recent enough, and has not been doubted since.
+    /// Returns whether a motion may start on the basis of this reading: it is recent enough, and has not been doubted
+    /// since.
     pub fn is_valid(&self, now: Moment) -> bool {
         self.doubted.is_none() && self.is_fresh(now)
     }
@@ -132,7 +132,7 @@ impl DriveLimits {
         self.read.is_some_and(|times| times.into_iter().all(|at| now.since(at) <= VALID))
     }
 
-    /// Returns whether scale and limits are the factory's: an endless run is possible.
+    /// Returns whether scale and limits have factory values, so that an endless run is possible.
     pub const fn allows_endless(&self) -> bool {
         self.is_factory
     }
@@ -153,7 +153,7 @@ impl DriveLimits {
         .collect()
     }
 
-    /// Returns the permit of the drive at this moment; `expert`: the user has allowed an endless run.
+    /// Returns the permit of the drive at this moment; `expert` tells whether the user has allowed an endless run.
     pub fn permit(&self, now: Moment, expert: bool) -> Permit {
         let mut locks = self.locks();
         locks.extend((!locks.contains(&Lock::Unread) && !self.is_fresh(now)).then_some(Lock::Outdated));
@@ -161,7 +161,7 @@ impl DriveLimits {
         Permit { limits: self.limits(), locks, endless, doubted: self.doubted.is_some(), degree: self.degree() }
     }
 
-    /// Returns the steps of one degree as scaled, at least 1; also 1 if the scale was not read.
+    /// Returns the number of scaled steps per degree, at least 1; also 1 if the scale has not been read.
     pub fn degree(&self) -> u32 {
         self.scale().map_or(1, |scale| scale.steps_of_degrees(1.0))
     }

@@ -30,10 +30,10 @@ use crate::units::Moment;
 const QUIET: Duration = Duration::from_millis(50);
 /// Interval of checking for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
-/// Margin beyond the time that the manual gives for a long operation.
+/// Margin beyond the time that the manual states for a long operation.
 const SPARE: Duration = Duration::from_millis(500);
 
-/// The host's side of the explicit messages of a device, for one job.
+/// Host side of the explicit messages of a device, for one job.
 pub struct Master<'a> {
     line: SerialLine<'a>,
     station: &'a mut Station,
@@ -56,7 +56,7 @@ impl<D: Into<Damage>> From<D> for ExchangeError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Repeats {
     Always,
-    /// Sent once; a reply may take `takes` if that is longer than usual.
+    /// The request is sent once; its reply may take `takes` if that is longer than usual.
     Never {
         takes: Option<Duration>,
     },
@@ -66,7 +66,7 @@ enum Repeats {
 const ONCE: Repeats = Repeats::Never { takes: None };
 
 impl<'a> Master<'a> {
-    /// Creates a master over a station's wire, for one job.
+    /// Creates a master over the connection of a station, for one job.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }
@@ -104,7 +104,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Reads a parameter. A number with another length than its type is an error.
+    /// Reads a parameter. A number with the wrong length is an error.
     ///
     /// # Errors
     /// [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`], [`Error::Refused`],
@@ -126,10 +126,10 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads a parameter that is a number.
+    /// Reads a numeric parameter.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// As for [`read`](Self::read).
     pub fn read_number(&mut self, number: ParameterNumber) -> Result<i64, Error> {
         match self.read(number)? {
             Value::Number(value) => Ok(value),
@@ -137,10 +137,10 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reads a parameter that is a text.
+    /// Reads a string parameter.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// As for [`read`](Self::read).
     pub fn read_text(&mut self, number: ParameterNumber) -> Result<String, Error> {
         match self.read(number)? {
             Value::Text(text) => Ok(text),
@@ -148,8 +148,8 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sets a parameter. If the reply is lost, it is read back, and set again only if it does not have the value yet. A
-    /// parameter that triggers an action is never sent twice.
+    /// Sets a parameter. If the reply is lost, the parameter is read back, and set again only if it does not have the
+    /// value yet. A parameter that triggers an action is never sent twice.
     ///
     /// # Errors
     /// [`Error::OutOfRange`], [`Error::ReadOnly`], [`Error::Motion`], with nothing sent; [`Error::Refuses`],
@@ -181,7 +181,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reads the identity object, which every device of EtherNet/IP has.
+    /// Reads the identity object, which every EtherNet/IP device has.
     ///
     /// # Errors
     /// [`Error::Refused`]; errors of the exchange.
@@ -199,7 +199,7 @@ impl<'a> Master<'a> {
         Ok(self.request(requested, &Request::get(class, 1, attribute), Repeats::Always)?.data)
     }
 
-    /// Sets an attribute of the TCP/IP object, once. The device stores it before it replies.
+    /// Sets an attribute of the TCP/IP object, once. The device stores it before replying.
     ///
     /// # Errors
     /// [`Error::Refused`]; errors of the exchange.
@@ -223,7 +223,7 @@ impl<'a> Master<'a> {
         self.request_with(requested, request, &[], repeats).map(|(reply, _)| reply)
     }
 
-    /// Sends a request to an object, with additional items beside the message. Returns those beside the reply as well.
+    /// Sends a request to an object, with additional items next to the message; also returns those next to the reply.
     fn request_with(
         &mut self,
         requested: RequestedItem,
@@ -260,7 +260,7 @@ impl<'a> Master<'a> {
         Ok(frame.session)
     }
 
-    /// Ends the session at the device. There is no reply to this.
+    /// Ends the session at the device, which does not reply.
     ///
     /// # Errors
     /// Errors of the exchange.
@@ -271,7 +271,7 @@ impl<'a> Master<'a> {
         Ok(self.line.send(&bytes, MaskedBytes::clear(&bytes), now)?)
     }
 
-    /// Sends a request, and repeats it if that may help and does no harm.
+    /// Sends a request, and repeats it if that is useful and harmless.
     fn again<T>(
         &mut self,
         requested: RequestedItem,
@@ -379,7 +379,7 @@ impl<'a> Master<'a> {
     }
 }
 
-/// Returns whether a refusal contains the session number. A stream has one session: if the reply to the first
+/// Returns whether a refusal contains the session number. A stream has a single session: if the reply to the first
 /// RegisterSession was lost, the next one is refused with its number.
 fn has_session(answer: &Frame) -> bool {
     answer.command == Command::REGISTER_SESSION
@@ -397,7 +397,7 @@ fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), ExchangeErr
     }
 }
 
-/// Returns the row of a parameter that may be set; one that moves a drive may not.
+/// Returns the row of a settable parameter; one that moves a drive is refused.
 fn settable(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     let row = number.row().ok_or(Error::Unknown(number))?;
     match (row.access, row.number) {
@@ -407,13 +407,13 @@ fn settable(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     }
 }
 
-/// Returns whether setting it triggers an action, so that reading it back proves nothing.
+/// Returns whether setting the parameter triggers an action, so that reading it back proves nothing.
 const fn does_something(row: &ParameterRow) -> bool {
     matches!(row.number, SERVICE | ACKNOWLEDGE | REFERENCE | RESET)
 }
 
 impl Repeats {
-    /// Returns the time limit of a reply, besides the margin of the line; `timeout` is the usual one.
+    /// Returns the time limit of a reply, excluding the margin of the line; `timeout` is the usual one.
     fn within(self, timeout: Duration) -> Duration {
         match self {
             Repeats::Never { takes: Some(takes) } => timeout.max(takes + SPARE),

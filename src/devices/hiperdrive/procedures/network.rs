@@ -10,11 +10,11 @@ use crate::devices::hiperdrive::protocol::AddressSwitch;
 /// IP address and its source. Values that the device refuses are missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Network {
-    /// Parameter 12: the digits of S1 and S2 at power-up.
+    /// Positions of S1 and S2 at power-up, parameter 12.
     pub switch: i64,
-    /// Attribute 3 of the TCP/IP object: the source of the address with the switches at 0.
+    /// Attribute 3 of the TCP/IP object: source of the address with the switches at 0.
     pub control: Option<ConfigurationControl>,
-    /// Attribute 5: address, mask, gateway, name servers, domain.
+    /// Attribute 5 of the TCP/IP object: address, mask, gateway, name servers, domain.
     pub interface: Option<InterfaceConfiguration>,
     pub mac: Option<[u8; 6]>,
 }
@@ -23,7 +23,7 @@ pub struct Network {
 const MAC: (u16, u16) = (0xF6, 3);
 
 impl Network {
-    /// Returns the setting of the switches; `None` for invalid digits.
+    /// Returns the setting of the switches, or `None` for invalid digits.
     pub fn address_switch(&self) -> Option<AddressSwitch> {
         AddressSwitch::parse(u8::try_from(self.switch).ok()?)
     }
@@ -65,7 +65,7 @@ fn attribute<T>(
     parse(&data).map_err(|cause| Error::Damaged { requested, tries: 1, cause: cause.into() })
 }
 
-/// Returns the value; `None` if it was refused.
+/// Returns the value, or `None` if the request was refused.
 fn unless_refused<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
     match ended {
         Ok(value) => Ok(Some(value)),

@@ -52,7 +52,8 @@ pub fn save(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<H
     Ok(HiperdriveProfile::of(identity.profile(), image))
 }
 
-/// Reads what a plan needs of a device: all stored values, these additional parameters, and the positions of its drives.
+/// Reads everything that a plan requires: all stored values, the given additional parameters, and the positions of the
+/// drives.
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; errors of the exchange.

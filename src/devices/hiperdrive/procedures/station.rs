@@ -20,11 +20,11 @@ parameters! {
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
         pub interval: Duration = Duration::from_millis(10), "rpi" => Milliseconds(5..=100), "connect.interval";
-        /// Order of the bytes of process data.
+        /// Byte order of process data.
         pub order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
         /// Port of cyclic data, unless the device reports another.
         pub udp: Option<u16> = None, "udp" => Maybe(Whole(Quantity::Port, 1..=u16::MAX)), "connect.udp_port" like "2222";
-        /// Time limit of a reply, besides the margin of the line.
+        /// Time limit of a reply, excluding the margin of the line.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=LONGEST_TIMEOUT), "connect.reply_time";
     }
 }
@@ -38,20 +38,21 @@ pub struct Station {
     pub link: LinkParameters,
     /// Port of cyclic data, unless the device reports another.
     pub udp: u16,
-    /// A recording replies: its replies have the recorded request numbers.
+    /// Whether a recording replies, whose replies contain the recorded request numbers.
     pub recorded: bool,
     pub(super) line: LineState,
     pub(super) session: Option<u32>,
     pub(super) next: u64,
-    /// Numbers of the last requests that have no reply yet, when they were sent, and whether the device itself takes long.
+    /// Numbers of the last unanswered requests, the times at which they were sent, and whether the device itself takes
+    /// long.
     open: VecDeque<(u64, Moment, bool)>,
-    /// Times of replies, including late ones; without those of operations that take the device long.
+    /// Reply times including late ones, except those of operations that take the device long.
     pub(super) replies: Replies,
-    /// Bytes received that are not a whole frame.
+    /// Received bytes that do not yet form a complete frame.
     pub(super) receiver: Receiver,
     /// Number of frames that arrived after their time limit.
     pub(super) late: u64,
-    /// Identifies the originator of connections: different for each session.
+    /// Identification of the originator of connections, different for each session.
     pub(super) originator: u32,
     pub(super) connections: u16,
     pub(super) known: KnownState,
@@ -66,8 +67,8 @@ pub(super) struct KnownState {
 impl Station {
     /// Upper limit of the time allowed for a reply.
     pub const LONGEST_TIMEOUT: Duration = Duration::from_millis(LONGEST_TIMEOUT);
-    /// Number of unanswered requests whose late replies are recognised: more than are sent before the connection is given
-    /// up.
+    /// Number of unanswered requests whose late replies are recognised, which is more than are sent before the
+    /// connection is abandoned.
     const OPEN: usize = 8;
 
     pub fn new(margin: Duration) -> Self {
@@ -90,10 +91,11 @@ impl Station {
         }
     }
 
-    /// Creates the station from the parameters of its link; `tcp` is the port of its explicit messages.
+    /// Creates the station from the parameters of its link; `tcp` is the port of its explicit messages. Parameters that
+    /// do not concern the connection are ignored.
     ///
     /// # Errors
-    /// A value that cannot be used, with the allowed ones. Parameters that do not concern the connection are ignored.
+    /// A value is invalid; the error lists the allowed ones.
     pub fn from_query(query: &Query, tcp: Option<u16>, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         // A server with its own port for messages uses it for cyclic data as well.
@@ -101,12 +103,11 @@ impl Station {
         Ok(Station { link, udp: link.udp.unwrap_or(beside), ..Station::new(margin) })
     }
 
-    /// Returns the topology; `None` before it was read.
+    /// Returns the topology, or `None` before it was read.
     pub const fn topology(&self) -> Option<Topology> {
         self.known.topology
     }
 
-    /// Returns the number of frames that arrived after their time limit.
     pub const fn late(&self) -> u64 {
         self.late
     }
@@ -116,7 +117,7 @@ impl Station {
         self.replies.clone()
     }
 
-    /// Notes that a request is sent; returns its number.
+    /// Records that a request is being sent; returns its number.
     pub(super) fn begin(&mut self, at: Moment, takes_long: bool) -> u64 {
         let number = self.next;
         self.next = number.wrapping_add(1);
@@ -125,7 +126,7 @@ impl Station {
         number
     }
 
-    /// A frame with this number has come, which answers the request of that number, in time or not.
+    /// Records a frame with the number of a request to which it is the reply, in time or not.
     pub(super) fn note_reply(&mut self, number: u64, at: Moment) {
         if let Some(place) = self.open.iter().position(|(own, ..)| *own == number)
             && let Some((_, sent, false)) = self.open.remove(place)

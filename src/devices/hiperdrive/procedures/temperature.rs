@@ -19,7 +19,7 @@ pub enum Temperature {
 pub struct TemperatureReading {
     pub at: Moment,
     pub what: Temperature,
-    /// Degrees Celsius; `None` if the device does not provide it.
+    /// Temperature in degrees Celsius, or `None` if the device does not provide it.
     pub celsius: Option<i64>,
 }
 
@@ -31,7 +31,7 @@ pub enum Sample {
 }
 
 impl Temperature {
-    /// Returns its parameter.
+    /// Returns the parameter of the temperature.
     ///
     /// # Errors
     /// [`Error::NoNumber`].
@@ -43,10 +43,11 @@ impl Temperature {
     }
 }
 
-/// Reads a temperature by one explicit message, which the cyclic connection does not wait for.
+/// Reads a temperature with a single explicit message, for which the cyclic connection does not wait. A device that
+/// refuses the request does not provide the temperature.
 ///
 /// # Errors
-/// The way. A device that refuses it does not provide it.
+/// Errors of the exchange.
 pub fn temperature(master: &mut Master<'_>, what: Temperature) -> Result<TemperatureReading, Error> {
     let celsius = match master.read_number(what.parameter()?) {
         Ok(celsius) => Some(celsius),

@@ -22,7 +22,7 @@ use crate::profile::{Confirmed, Write};
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, ()>;
 
 impl Interrupted {
-    /// Returns the change of the operation if it is unknown how far it got; `None` if it did not start, as after
+    /// Returns the change of the operation if it is unknown how far it got, or `None` if it did not start, as after
     /// cancellation by the user.
     pub fn unclear(&self) -> Option<String> {
         self.unfinished.as_ref().filter(|_| !self.cause.is_cancelled()).map(Op::item)
@@ -31,7 +31,7 @@ impl Interrupted {
 
 /// Interval between two reads of parameter 47.
 const LOOK: Duration = Duration::from_millis(50);
-/// Wait before the first read after an operation that resets: it may not have started yet.
+/// Wait before the first read after an operation with a reset, which may not have started yet.
 const BEGINS: Duration = Duration::from_millis(100);
 
 /// A device into which a plan is written.
@@ -47,7 +47,7 @@ impl Write for DeviceWrite<'_, '_> {
     type Written = Written;
     type EndState = ();
 
-    /// The drives have to be the same, and none moves.
+    /// Checks that the drives are the same and none of them moves.
     fn confirm(&mut self, plan: &HiperdrivePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let changed = |item: String| Err(Error::Changed { item });
@@ -91,7 +91,7 @@ impl Write for DeviceWrite<'_, '_> {
     fn end_state(&mut self, _: &Error) {}
 }
 
-/// Returns the drives that a plan concerns: all if it concerns the device as a whole.
+/// Returns the drives affected by a plan: all if it affects the device as a whole.
 fn touched(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
     let of_op = |op: &Op| match op {
         Op::Write { number, .. } => number.drive(),
@@ -108,8 +108,8 @@ fn touched(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
     drives
 }
 
-/// Returns whether scale or limits of a drive are only partly written before this operation: with another scale the same
-/// limits mean other positions, so a write must not end in between.
+/// Returns whether scale or limits of a drive are only partly written before this operation: under another scale the
+/// same limits denote other positions, so a write must not end in between.
 fn is_within_a_place(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. } if matches!(number.base(), NUMERATOR | DENOMINATOR | LOWER | UPPER) => number.drive(),
@@ -135,7 +135,8 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
     Ok(())
 }
 
-/// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference 4), and then becomes the position.
+/// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference 4), and then becomes the
+/// position.
 fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
     master.set(number, wanted)?;
     let reads = master.read_number(number)?;
@@ -173,7 +174,7 @@ fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written
     await_idle(master, service, patience)
 }
 
-/// Waits until parameter 47 is 0: the device may reply before it has finished.
+/// Waits until parameter 47 is 0, since the device may reply before it has finished.
 fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> Result<(), Error> {
     let begun = master.now();
     if matches!(service, Service::Reset | Service::FactoryAll) {
@@ -200,7 +201,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
 pub enum Remedy {
     /// The drive has no fault.
     Nothing,
-    /// 197 = 0: a fault of RS-485 only.
+    /// 197 = 0, which only clears an RS-485 fault.
     Acknowledgement,
     /// All drives are reset first.
     Reset,
@@ -223,7 +224,7 @@ pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<Remedy, Err
     })
 }
 
-/// Clears the fault of a drive: 197 = 0. A reset required before it is an operation of its own.
+/// Clears the fault of a drive with 197 = 0. A reset required before is a separate operation.
 fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
     let number = of(ACKNOWLEDGE, drive)?;
     master.set(number, 0)?;
@@ -233,8 +234,8 @@ fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error>
     }
 }
 
-/// Writes the source of the address, then the addresses: setting the source to stored stores the present address
-/// (reference 1).
+/// Writes the source of the address, then the addresses, since setting the source to *stored* stores the present
+/// address (reference 1).
 fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
     if from.source != to.source {
         let attribute = ConfigurationControl::ATTRIBUTE;

@@ -101,7 +101,7 @@ pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     HiperdrivePlan { base: Base { values, network: None }, ops: vec![Op::Service(service)] }
 }
 
-/// Parameters that belong together: the position's scale and the limits.
+/// Parameters that belong together: position scale and limits.
 const PLACE: [u16; 4] = [NUMERATOR, DENOMINATOR, LOWER, UPPER];
 
 /// A parameter with another number.
@@ -149,7 +149,7 @@ impl Write {
     }
 }
 
-/// Checks that a parameter may be written, and with this value.
+/// Checks that a parameter may be written with the given value.
 fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), PlanError> {
     let item = Item(number);
     let row = number.row().ok_or(PlanError::NotRead { item })?;
@@ -161,7 +161,8 @@ fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), Plan
     }
 }
 
-/// Checks that a drive's limits are in order and include its position after all writes; returns the order of writing them.
+/// Checks that the limits of a drive are in order and include its position after all writes; returns the order of
+/// writing them.
 fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Option<i32>) -> Result<Order, PlanError> {
     let missing = PLACE.into_iter().filter_map(|number| ParameterNumber::of_drive(number, drive));
     for number in missing {
@@ -190,8 +191,8 @@ fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Opti
     Ok(if too_low { Order::UpperFirst } else { Order::LowerFirst })
 }
 
-/// Returns the position of a drive in steps of another scale: 256 · numerator / denominator steps per turn, rounded down as
-/// the drive does.
+/// Returns the position of a drive in steps of another scale: 256 · numerator / denominator steps per turn, rounded
+/// down as by the drive.
 fn rescaled(position: i32, old: PositionScale, new: PositionScale) -> i64 {
     let times = i128::from(new.numerator()) * i128::from(old.denominator());
     let by = i128::from(new.denominator()) * i128::from(old.numerator());

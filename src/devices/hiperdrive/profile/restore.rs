@@ -22,7 +22,7 @@ pub struct DeviceState {
 }
 
 impl DeviceState {
-    /// Returns the travel of the drive of a parameter, in the steps of an image.
+    /// Returns the travel of a parameter's drive in the steps of an image.
     pub(super) fn travel(&self, number: ParameterNumber, image: &Image) -> Travel {
         let Some(drive) = number.drive() else { return Travel::UNKNOWN };
         Travel { family: drive_at(&self.identity, drive).and_then(ProfileDrive::family), scale: image.scale(drive) }
@@ -83,7 +83,7 @@ pub fn other_types(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<O
     whole.into_iter().map(|(profile, device)| OtherType::Device { profile, device }).chain(drives).collect()
 }
 
-/// Refuses a device that the profile was not read from, as far as that is not allowed.
+/// Refuses a device other than that of the profile, unless the options allow it.
 fn check_allowed(
     profile: &HiperdriveProfile,
     device: &ProfileIdentity,
@@ -109,7 +109,7 @@ fn check_allowed(
     Ok(())
 }
 
-/// Returns whether an item that differs is left as it is.
+/// Returns whether a differing item is left unchanged.
 fn stays(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item, options: RestoreOptions) -> bool {
     item.0.base() == REFERENCE || !options.with_mounting && is_of_another_mounting(profile, device, item)
 }
@@ -119,7 +119,7 @@ fn is_of_another_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity,
     profile.is_mounting(item) && !is_same_place(profile, device, item)
 }
 
-/// Returns whether the profile was read from this very device, and the drive's parameter from this very drive.
+/// Returns whether the profile was read from this device, and the parameter from this drive.
 fn is_same_place(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     let types = other_types(&profile.identity, device);
     let is_other = |own: &OtherType| match own {

@@ -81,7 +81,6 @@ impl Profile for HiperdriveProfile {
 }
 
 impl HiperdriveProfile {
-    /// Writes parameters of the device, or of a drive.
     fn write_parameters(&self, writer: &mut Writer, drive: Option<DriveNumber>) {
         let unknown = self.unknown.0.get(&drive).map(Vec::as_slice).unwrap_or_default();
         let own: Vec<(ParameterNumber, i64)> = self
@@ -187,8 +186,8 @@ fn read_marked(text: &str) -> Result<Item, EntryError> {
     Ok(item)
 }
 
-/// Reads the parameters of the device, or of a drive by the numbers of drive 1. A number that does not belong there is an
-/// error; a name is an unknown entry and is kept.
+/// Parses the parameters of the device, or of a drive by the numbers of drive 1. A number that does not belong there is
+/// an error; a name is an unknown entry, which is preserved.
 fn read_parameters(
     entries: &mut Entries,
     drive: Option<DriveNumber>,
@@ -226,7 +225,7 @@ fn read_parameters(
     Ok(())
 }
 
-/// Returns why a number does not name a parameter at its place.
+/// Explains why a number is not a valid parameter.
 fn no_parameter(number: &ron::value::Number, drive: Option<DriveNumber>) -> EntryError {
     let number = number.into_f64().to_string();
     match drive {

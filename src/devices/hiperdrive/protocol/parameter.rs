@@ -32,7 +32,7 @@ pub struct ParameterRow {
     pub access: Access,
     /// Whether the value survives a power cycle after it has been saved.
     pub saved: bool,
-    /// If set, the adapter or hub stores it, not a drive.
+    /// Whether the adapter or hub, rather than a drive, stores the value.
     pub(super) kept_by_device: bool,
     /// Allowed values.
     pub range: Range,
@@ -112,7 +112,7 @@ pub struct OutOfRange {
     pub range: Range,
 }
 
-/// CIP class of the device parameters; drive 1 has the next one.
+/// CIP class of the device parameters; the class of drive 1 follows.
 const CLASS: u16 = 0x64;
 
 impl DriveNumber {

@@ -15,7 +15,7 @@ use super::parameter::{Access, Factory, ParameterRow, Range, SlowSet};
 use super::travel::Reach;
 use super::value::Kind;
 
-/// Builds a row that is read-only.
+/// Builds a read-only row.
 const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -> ParameterRow {
     ParameterRow {
         number,
@@ -33,7 +33,7 @@ const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -
 }
 
 impl ParameterRow {
-    /// Makes it writable; the value is lost without supply.
+    /// Makes the row writable; the value is lost at power-off.
     const fn written(self, range: Range, factory: Factory) -> Self {
         ParameterRow { access: Access::ReadWrite, range, factory, ..self }
     }
@@ -59,7 +59,7 @@ impl ParameterRow {
 /// Maximum time for storing to EEPROM (manual 6.2, parameter 47); also applies to the TCP/IP object, which is stored
 /// with each change (5).
 pub const STORES: Duration = Duration::from_millis(200);
-/// Maximum time to reset one drive: as −4 of an adapter, which has one.
+/// Maximum time for resetting a single drive, as for −4 of an adapter.
 const DRIVE_RESETS: Duration = Duration::from_secs(2);
 /// Maximum time to reset all drives of a hub.
 const HUB_RESETS: Duration = Duration::from_secs(8);
@@ -76,12 +76,12 @@ const fn one_drive(value: i64) -> SlowSet {
     SlowSet { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
 }
 
-/// Parameter 47. The manual gives no time for −3, −2 and −1 (`D`: as −4, since they send all parameters to all drives
-/// over RS-485).
+/// Slow values of parameter 47. The manual states no time for −3, −2 and −1 (`D`: as for −4, since they send all
+/// parameters to all drives over RS-485).
 const SAVE_AND_RESET: &[SlowSet] = &[all_drives(-4), all_drives(-3), all_drives(-2), all_drives(-1), stores(1)];
-/// Parameter 152: 0 → 1 resets the drive (`D`: the time it takes).
+/// Slow values of parameter 152: 0 → 1 resets the drive (`D`: the time).
 const REQUEST: &[SlowSet] = &[one_drive(1)];
-/// Parameter 199 (`D`: the time it takes).
+/// Slow values of parameter 199 (`D`: the time).
 const RESET_DRIVE: &[SlowSet] = &[one_drive(0), one_drive(1)];
 
 const fn text(number: u16, name: &'static str, unit: &'static str) -> ParameterRow {

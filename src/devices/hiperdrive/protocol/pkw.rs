@@ -92,7 +92,7 @@ impl Task {
         }
     }
 
-    /// Returns whether an answer can belong to this task. A read may return a word or a double word.
+    /// Returns whether an answer can belong to the task. A read may return a word or a double word.
     const fn takes(self, answer: u8) -> bool {
         match self {
             Task::None => answer == 0,

@@ -112,7 +112,7 @@ pub struct ImageError {
     pub got: usize,
 }
 
-/// Bytes of one drive, and of the parameter words.
+/// Length of a drive's data, and of the parameter words, in bytes.
 const PLACE: usize = 8;
 
 impl ByteOrder {
@@ -187,7 +187,7 @@ impl Layout {
         all.filter(move |layout| layout.length() == length)
     }
 
-    /// Splits bytes into the places of the drives and the parameter words.
+    /// Splits bytes into the data of the drives and the parameter words.
     fn places(self, bytes: &[u8]) -> Result<(Vec<[u8; PLACE]>, Option<Pkw>), ImageError> {
         let (places, rest) = bytes.as_chunks::<PLACE>();
         if !rest.is_empty() || bytes.len() != self.length() {
@@ -199,7 +199,7 @@ impl Layout {
         }
     }
 
-    /// Builds an image from places; missing ones are zero, surplus ones are dropped.
+    /// Builds an image from the data of drives; missing ones are zero, surplus ones are dropped.
     fn image(self, places: impl Iterator<Item = [u8; PLACE]>, pkw: Option<Pkw>) -> Vec<u8> {
         let drives = usize::from(self.topology.drives());
         let words = self.pkw.then(|| pkw.unwrap_or_default().emit(self.order));

@@ -5,11 +5,11 @@ use std::time::Duration;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleLoad {
-    /// Percentage of the nominal torque that the load takes. With less effective torque nothing moves.
+    /// Load as a percentage of the nominal torque. With less effective torque nothing moves.
     pub percent: u8,
-    /// It cannot turn below this position, in steps of 65536 per turn of the shaft.
+    /// Lower obstacle, in steps of 65536 per shaft turn.
     pub wall_below: Option<f64>,
-    /// It cannot turn beyond this position.
+    /// Upper obstacle, in steps of 65536 per shaft turn.
     pub wall_above: Option<f64>,
     /// Degrees Celsius around the drive.
     pub ambient: f64,
@@ -18,11 +18,11 @@ pub struct SpindleLoad {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Defect {
-    /// It does not stop at its target or at its limits.
+    /// The drive does not stop at its target or limits.
     RunsOn,
-    /// It turns the other way.
+    /// The drive turns in the wrong direction.
     Reversed,
-    /// Status bit 15 is set at any position: outside the limits.
+    /// Status bit 15 (outside the limits) is set at any position.
     SaysOutside,
 }
 
@@ -45,14 +45,14 @@ pub(super) struct Axis {
 pub(super) enum AxisDemand {
     /// Not moving.
     Rest,
-    /// Moves to a place, no faster than this.
+    /// Moves to a position at a maximum speed.
     Place { at: f64, speed: f64 },
-    /// Turns at this signed speed.
+    /// Turns at a signed speed.
     Speed(f64),
 }
 
 impl AxisDemand {
-    /// Returns the effective demand in a drive with a defect, from this place.
+    /// Returns the effective demand in a drive with a defect at the given position.
     pub(super) fn with(self, defect: Option<Defect>, place: f64) -> AxisDemand {
         let turned = |speed: f64| if defect == Some(Defect::Reversed) { -speed } else { speed };
         match (self, defect) {
@@ -78,7 +78,7 @@ pub(super) enum TickOutcome {
 pub(super) const TURN: f64 = 65536.0;
 pub(super) const TICK: Duration = Duration::from_millis(1);
 const TICK_S: f64 = 1e-3;
-/// Chosen: 35 rpm are reached, or lost, in a tenth of a second.
+/// Acceleration (assumed): 35 rpm are reached, or lost, in a tenth of a second.
 const ACCELERATION: f64 = 350.0 / 60.0 * TURN;
 
 impl Axis {
@@ -135,7 +135,7 @@ impl Axis {
     }
 }
 
-/// Returns the wall that a position is behind, and whether it is the upper one.
+/// Returns the obstacle beyond which a position is, and whether it is the upper one.
 fn walls(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
     let below = load.wall_below.filter(|wall| place < *wall).map(|wall| (wall, false));
     below.or_else(|| load.wall_above.filter(|wall| place > *wall).map(|wall| (wall, true)))

@@ -13,37 +13,38 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, SEED, VirtualDevice, setting};
 
 parameters! {
-    /// The settings of a virtual adapter or hub and its drives. The default is an adapter with one drive HDA30A with
-    /// factory settings, at rest, without faults. Settings of drives apply to all of them.
+    /// Settings of a virtual adapter or hub and its drives. The default is an adapter with a single drive HDA30A with
+    /// factory settings, at rest and without faults. Drive settings apply to all drives.
     pub struct Config: ConfigError {
-        /// Without it, an adapter with one drive.
+        /// Topology; by default an adapter with one drive.
         pub(super) topology: Topology = Topology::Adapter, "hub" => Checked(Expected::Hub, |text| HUBS.read(text));
-        /// The places with a drive; all by default. Places after the end of a list are empty.
+        /// Ports with a drive; all by default. Ports after the end of the list are empty.
         drives: Option<String> = None, "drives" => Maybe(ANY), "connect.plugged" like "1,0,1";
-        /// The same, place by place; `None`: a drive at every place.
+        /// Presence of a drive in each port; `None` means a drive in every port.
         plugged: Option<Vec<bool>> = None;
-        /// Parameter 120, or its name.
+        /// Variant: parameter 120, or its name.
         pub(super) variant: Variant = Variant::new(7), "variant" => Checked(Expected::Variant, variant);
         /// Parameter 152; the factory setting if not given.
         pub(super) requested: Option<bool> = None, "requested" => Maybe(Words(&[("0", false), ("1", true)]));
         /// Position of the drives, in steps of 65536 per turn.
         pub(super) position: i32 = 0, "position" => Whole(Quantity::Steps, i32::MIN..=i32::MAX);
-        /// Parameter 166: maximum speed in tenths of rpm.
+        /// Maximum speed in tenths of rpm, parameter 166.
         pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
-        /// Load of the spindle: above 100 no drive can move it.
+        /// Spindle load in percent; no drive can move a load above 100.
         load: u8 = SpindleLoad::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
         blocked: bool = false, "blocked" => SWITCH;
-        /// The drives do not stop at a target or a limit, turn the other way, or always set status bit 15.
+        /// Defect: the drives do not stop at a target or limit, turn in the wrong direction, or always set status bit
+        /// 15.
         defect: Option<Defect> = None, "defect" => Maybe(Words(&[
             ("runs-on", Defect::RunsOn), ("reversed", Defect::Reversed), ("says-outside", Defect::SaysOutside),
         ]));
-        /// Ambient temperature of the drives: from 80 on they fail.
+        /// Ambient temperature of the drives, which fail from 80 on.
         temperature: f64 = SpindleLoad::default().ambient, "temperature" => Decimal(Quantity::Celsius, -40.0..=120.0);
         /// Switch S3; at any setting but 0 nothing moves from the bus.
         pub(super) s3: u8 = 0, "s3" => Whole(Quantity::SwitchPosition, 0..=9);
         pub(super) switch: u8 = 0, "switch" => Checked(Expected::SwitchDigits, switch);
         pub(super) volts: f64 = 24.0, "supply" => Decimal(Quantity::Volts, 0.0..=100.0);
-        /// Duration of a reset of all drives (47 = −4), which is answered after it.
+        /// Duration of a reset of all drives (47 = −4), after which the reply is sent.
         pub(super) resets: Duration = RESETS, "reset" => Milliseconds(0..=8000);
         /// Parameter 17.
         pub(super) serial_number: u16 = 4711, "serial" => Whole(Quantity::Number, 0..=u16::MAX);
@@ -51,21 +52,22 @@ parameters! {
         pub(super) name: String = "HIPERDRIVE".to_owned(), "name" => Checked(Expected::Ascii { most: 32 }, name);
         /// Byte order of numbers in process data (`U`).
         pub(super) order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
-        /// Texts of parameters have their length in front (`U`).
+        /// Whether parameter strings are preceded by their length (`U`).
         pub(super) counted_texts: bool = false, "text" => Words(&[("plain", false), ("counted", true)]);
         pub(super) seed: u64 = 0, "seed" => SEED;
-        /// `drop`: share of replies lost, and of packets both ways; `flip`, `garbage`: share of replies and packets back with
-        /// a bit inverted, or replaced by random bytes; `silent-after` counts frames and packets.
+        /// `drop`: fraction of replies lost, and of packets in both directions; `flip`, `garbage`: fraction of replies
+        /// and returned packets with an inverted bit, or replaced by random bytes; `silent-after` counts frames and
+        /// packets.
         pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
 
 impl Config {
-    /// Parses keys and values, already percent-decoded. Of a key given twice the last one counts. Numbers are decimal or
+    /// Parses percent-decoded keys and values. If a key occurs twice, its last value counts. Numbers are decimal or
     /// `0x…`.
     ///
     /// # Errors
-    /// A sentence that names the key and the allowed values.
+    /// Names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let mut config: Config = setting::read(VirtualDevice::Device("HIPERDRIVE"), pairs)?;
         config.plugged = config.drives.take().map(|drives| places(&drives, config.topology)).transpose()?;

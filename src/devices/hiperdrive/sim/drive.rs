@@ -47,7 +47,7 @@ pub struct Drive {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Motion {
     Rest,
-    /// Move to a position; a jog step is one that a stop does not end.
+    /// A move to a position; a jog step is one that a stop does not end.
     Job {
         at: f64,
         jog: Option<Jog>,
@@ -63,7 +63,7 @@ enum Motion {
     },
 }
 
-/// Percent of speed and torque of a jog step.
+/// Speed and torque of a jog step in percent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Jog {
     speed: u8,
@@ -115,13 +115,13 @@ impl Drive {
         self.load = load;
     }
 
-    /// Turns the spindle by hand, by this many steps of 65536 per turn.
+    /// Turns the spindle by hand, by the given number of steps of 65536 per turn.
     pub fn turn_by_hand(&mut self, now: Moment, steps: f64) {
         self.advance(now);
         self.axis = Axis::at(self.axis.place() + steps);
     }
 
-    /// Injects an error: it is stored, and if the drive is operational it is a fault that ends the motion.
+    /// Injects an error, which is stored, and which ends the motion as a fault if the drive is operational.
     pub fn fail(&mut self, now: Moment, code: ErrorCode) {
         self.advance(now);
         self.fails(code);
@@ -141,7 +141,7 @@ impl Drive {
         }
     }
 
-    /// Sets whether it may move from the bus (S3 is at 0).
+    /// Sets whether the drive may move over the bus (S3 is at 0).
     pub(super) const fn allow(&mut self, allowed: bool) {
         self.allowed = allowed;
     }
@@ -240,7 +240,7 @@ impl Drive {
         f64::from(position) / self.scale().steps_per_turn() * TURN - self.offset
     }
 
-    /// Advances to a moment, millisecond by millisecond; an earlier one has no effect.
+    /// Advances to a moment in steps of one millisecond; an earlier moment has no effect.
     pub(super) fn advance(&mut self, now: Moment) {
         while self.at + TICK <= now {
             let ticks = if self.is_settled() { now.since(self.at).as_millis().max(1) } else { 1 };
@@ -250,7 +250,7 @@ impl Drive {
         }
     }
 
-    /// Returns whether only its temperature changes by itself.
+    /// Returns whether nothing except the temperature will change.
     fn is_settled(&self) -> bool {
         let begins = self.control.motion_start(self.control, self.status()).is_some();
         self.motion == Motion::Rest && self.axis.is_standing() && !begins && self.next(self.control) == self.state
@@ -264,7 +264,7 @@ impl Drive {
         }
     }
 
-    /// Returns whether it is requested, and S3 does not point to a drive.
+    /// Returns whether the drive is requested, and S3 does not select a drive.
     fn may_move(&self) -> bool {
         self.allowed && self.memory.get(REQUESTED) == Some(1)
     }

@@ -13,7 +13,7 @@ pub(super) struct Memory {
     kept: BTreeMap<u16, i64>,
 }
 
-/// Chosen: the value that the drive determines for parameter 192.
+/// Value of parameter 192 that the drive determines (assumed).
 const COMPLETE_TIME_MS: i64 = 5;
 
 impl Memory {
@@ -27,12 +27,12 @@ impl Memory {
         Memory { now: factory.clone(), kept: factory.clone(), factory }
     }
 
-    /// Returns the value; `None` for a parameter that is not stored here.
+    /// Returns the value of a parameter, or `None` if it is not stored here.
     pub(super) fn get(&self, number: u16) -> Option<i64> {
         self.now.get(&number).copied()
     }
 
-    /// Sets a value; does nothing for a parameter that is not in this memory.
+    /// Sets a value, ignoring parameters that are not stored here.
     pub(super) fn set(&mut self, number: u16, value: i64) {
         if let Some(held) = self.now.get_mut(&number) {
             *held = value;
@@ -48,27 +48,27 @@ impl Memory {
         self.kept.extend(self.now.iter().filter(|(number, _)| is_saved(**number)));
     }
 
-    /// Stores half of the values, by number: the supply was lost meanwhile.
+    /// Stores the first half of the values, as if the supply were lost in the meantime.
     pub(super) fn keep_half(&mut self) {
         let saved: Vec<(u16, i64)> = self.now.iter().map(|(n, v)| (*n, *v)).filter(|(n, _)| is_saved(*n)).collect();
         let half = saved.len() / 2;
         self.kept.extend(saved.into_iter().take(half));
     }
 
-    /// Restores the saved values after a power failure or a reset; values that are never saved get their factory settings.
-    /// The position that was set stays (manual, 198: a reset has no effect on it).
+    /// Restores the saved values after a power failure or a reset; values that are never saved get their factory
+    /// settings. A position that was set is kept (manual, 198: a reset has no effect on it).
     pub(super) fn restart(&mut self) {
         let reference = self.get(REFERENCE);
         self.now = self.kept.clone();
         reference.into_iter().for_each(|position| self.set(REFERENCE, position));
     }
 
-    /// 47 = −2: restores the values that the adapter or hub stores itself, as last saved.
+    /// 47 = −2: restores the last saved values that the adapter or hub stores itself.
     pub(super) fn recall(&mut self) {
         copy_own(&self.kept, &mut self.now);
     }
 
-    /// 47 = −1: restores the factory settings of the values that the adapter or hub stores itself, not saved yet.
+    /// 47 = −1: restores the factory settings of the values that the adapter or hub stores itself, without saving.
     pub(super) fn forget_own(&mut self) {
         copy_own(&self.factory, &mut self.now);
     }

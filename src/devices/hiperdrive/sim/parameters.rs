@@ -16,7 +16,7 @@ use crate::units::Moment;
 /// Why a parameter was not read or written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refused {
-    /// No such parameter, or no such drive.
+    /// The parameter or drive does not exist.
     Unknown,
     /// Read-only parameter.
     ReadOnly,
@@ -34,7 +34,6 @@ impl Refused {
         }
     }
 
-    /// Returns the error of a parameter word.
     pub const fn error(self) -> PkwError {
         match self {
             Refused::Unknown => PkwError::NO_PARAMETER,
@@ -81,12 +80,12 @@ impl Drive {
         Some(Value::Number(value))
     }
 
-    /// Returns whether writing this restarts the drive: 0 → 1 of 152, and 199.
+    /// Returns whether writing this value restarts the drive: 0 → 1 of 152, and 199.
     pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
         number == RESET || (number, value) == (REQUESTED, 1) && self.memory.get(REQUESTED) == Some(0)
     }
 
-    /// Writes a parameter by the number of drive 1; its range has been checked.
+    /// Writes a parameter by the number of drive 1, after its range has been checked.
     pub(super) fn write(&mut self, now: Moment, number: u16, value: i64) -> Result<(), Refused> {
         self.advance(now);
         let mut out = self.out;
@@ -124,7 +123,7 @@ impl Drive {
         Ok(())
     }
 
-    /// 160 is above 158, and the position between them.
+    /// Writes a limit: 160 must be above 158, with the position between them.
     fn write_limit(&mut self, number: u16, value: i64) -> Result<(), Refused> {
         let (low, high) = self.limits();
         let (low, high) = if number == LOWER { (value, high.into()) } else { (low.into(), value) };
@@ -149,7 +148,7 @@ impl Drive {
         Ok(())
     }
 
-    /// Makes the position that of the shaft: between 0 and 1 turn (manual, 198).
+    /// Sets the position to that of the shaft, between 0 and 1 turn (manual, 198).
     pub(super) fn forget_place(&mut self) {
         self.offset = -(self.axis.place() / TURN).floor() * TURN;
     }
@@ -160,7 +159,7 @@ impl Drive {
     }
 }
 
-/// Returns an element of a text, four characters each.
+/// Returns an element of a string; each contains four characters.
 pub(super) fn element(text: &str, element: u16) -> Option<u32> {
     let bytes = text.as_bytes();
     let part = bytes.chunks(4).nth(element.into())?;

@@ -24,26 +24,25 @@ use crate::units::Moment;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     pub topology: Topology,
-    /// The drives, from the first place on.
+    /// Drives by port; `None` for an empty port.
     pub drives: Vec<Option<(Variant, SpindleLoad)>>,
     /// Parameter 17.
     pub serial_number: u16,
 }
 
-/// Virtual adapter or hub with its drives.
 #[derive(Clone, Debug)]
 pub struct Station {
     setup: Setup,
-    /// One entry per place.
+    /// Drives by port.
     drives: Vec<Option<Drive>>,
     memory: Memory,
     master: Option<Master>,
     busy_until: Moment,
-    /// When the last write is answered: a reset of drives is answered after it.
+    /// Time of the reply to the last write, which follows a reset of drives.
     answers_at: Option<Moment>,
-    /// The parameter word received last, and the answer to it in the process data.
+    /// Parameter words received last, and the answer in the process data.
     words: (Pkw, Pkw),
-    /// The next answer, and when it appears.
+    /// Next answer, and when it appears.
     answers: Option<(Moment, Pkw)>,
     resets: Duration,
     plate: NamePlate,
@@ -78,7 +77,7 @@ struct Master {
 
 /// Chosen, within the time given by the manual.
 const SAVES: Duration = Duration::from_millis(150);
-/// Reset of all drives, unless the settings give another time.
+/// Duration of a reset of all drives, unless the settings specify another.
 pub(super) const RESETS: Duration = Duration::from_secs(1);
 const DRIVE_RESETS: Duration = Duration::from_millis(300);
 
@@ -138,28 +137,28 @@ impl Station {
         self.setup.topology
     }
 
-    /// Saves so far, also those that ended badly.
+    /// Returns the number of saves so far, including interrupted ones.
     pub const fn stores(&self) -> u32 {
         self.store.count
     }
 
-    /// Returns whether it has lost its supply: it does not answer until [`power_cycle`](Self::power_cycle).
+    /// Returns whether the station has lost its supply and does not reply until [`power_cycle`](Self::power_cycle).
     pub fn is_dead(&mut self, now: Moment) -> bool {
         self.advance(now);
         self.store.dead
     }
 
-    /// Sets the save, counted from the first, in which the supply is lost; `None`: never.
+    /// Sets the number of the save, starting at 1, during which the supply is lost; `None` disables this.
     pub const fn die_in_store(&mut self, number: Option<u32>) {
         self.store.dies_in = number;
     }
 
-    /// Injects a failure from now on; `None` removes it and repairs a lost line.
+    /// Injects a failure of writes; `None` removes it and repairs a lost line.
     pub const fn set_write_fault(&mut self, what: Option<(ParameterNumber, WriteFault)>) {
         self.hindered = ActiveWriteFault::by(what);
     }
 
-    /// Returns whether none of its replies get through.
+    /// Returns whether none of the replies get through.
     pub(super) const fn is_cut_off(&self) -> bool {
         self.hindered.is_cut_off()
     }
@@ -168,7 +167,7 @@ impl Station {
         self.drives.get_mut(usize::from(number.get()) - 1)?.as_mut()
     }
 
-    /// Notes that a master has opened the cyclic connection. Without a packet for this time, it is lost.
+    /// Records that a master has opened the cyclic connection, which is lost without a packet for the given time.
     pub fn open(&mut self, now: Moment, timeout: Duration) {
         self.advance(now);
         self.master = Some(Master { timeout, heard: now });
@@ -186,7 +185,7 @@ impl Station {
         self.master.is_some()
     }
 
-    /// Takes process data. Without a connection, and during a reset of drives, they are dropped.
+    /// Handles process data. Without a connection, and during a reset of drives, they are dropped.
     pub fn cyclic(&mut self, now: Moment, image: &OutImage, runs: bool) {
         self.advance(now);
         let Some(master) = &mut self.master else { return };
@@ -207,7 +206,7 @@ impl Station {
         }
     }
 
-    /// Process data as they are sent at a moment.
+    /// Returns the process data sent at a moment.
     pub fn image(&mut self, now: Moment) -> InImage {
         self.advance(now);
         if let Some((_, answer)) = self.answers.take_if(|(at, _)| *at <= now) {
@@ -251,7 +250,7 @@ impl Station {
         }
     }
 
-    /// Takes the time of the delayed reply to the last write, if it is delayed.
+    /// Returns the time of the reply to the last write, if it is delayed.
     pub const fn answers_at(&mut self) -> Option<Moment> {
         self.answers_at.take()
     }
@@ -369,8 +368,8 @@ impl Station {
         self.drives.iter_mut().flatten()
     }
 
-    /// Carries out timed events when they are due, not at the next access: a supply lost during a save, a master that times
-    /// out.
+    /// Executes timed events when they are due rather than at the next access, such as a loss of supply during a save
+    /// or a time-out of the master.
     fn advance(&mut self, now: Moment) {
         if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
             self.store.dead = true;

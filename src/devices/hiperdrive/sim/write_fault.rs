@@ -5,13 +5,13 @@ use crate::devices::hiperdrive::protocol::ParameterNumber;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WriteFault {
-    /// They are refused: not in this state.
+    /// The write is refused: not possible in this state.
     Refused,
-    /// The line is lost once one has come: it counts, and nothing more gets through.
+    /// The line is lost after a write, which takes effect.
     CutOff,
 }
 
-/// The present fault, and whether the line was lost by it.
+/// The present fault, and whether it has interrupted the line.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ActiveWriteFault {
     fault: Option<(ParameterNumber, WriteFault)>,

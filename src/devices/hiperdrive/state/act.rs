@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest};
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Body;
 
-/// Interval of reading a watched temperature: it changes slowly.
+/// Interval of reading a watched temperature, which changes slowly.
 const WATCHED_EVERY: Duration = Duration::from_secs(2);
 
 impl Unit {
@@ -60,7 +60,7 @@ impl Unit {
         }
     }
 
-    /// Records a temperature beside the position, or stops recording it.
+    /// Starts or stops recording a temperature with the position.
     fn watch_temperature(&mut self, what: Temperature, on: bool) {
         match what {
             Temperature::Device => self.watches_device = on,
@@ -69,7 +69,7 @@ impl Unit {
         self.wish_temperatures();
     }
 
-    /// Returns the temperatures that are recorded with the position of the drive that is shown.
+    /// Returns the temperatures recorded with the position of the selected drive.
     pub fn watched_temperatures(&self) -> Vec<Temperature> {
         let device = self.watches_device.then_some(Temperature::Device);
         device.into_iter().chain(self.watches_drive.then_some(Temperature::Drive(self.drive()))).collect()
@@ -146,7 +146,7 @@ impl Unit {
         };
     }
 
-    /// Starts a job; reports why not and returns false if it cannot.
+    /// Starts a job; reports the reason and returns `false` if it cannot be started.
     pub(super) fn submit(&mut self, job: HiperdriveJob, services: &mut Services) -> bool {
         self.session.submit(job, services)
     }

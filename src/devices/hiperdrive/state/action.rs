@@ -17,25 +17,25 @@ pub enum HiperdriveAction {
     ReadStatus,
     Check,
     SelectDrive(DriveNumber),
-    /// Record a temperature beside the position, or stop recording it.
+    /// Start or stop recording a temperature with the position.
     Watch(Temperature, bool),
     SetMeasure(Measure),
-    /// The drive turns a spindle of this pitch, or none.
+    /// Set the pitch of a drive's spindle, if it has one.
     SetPitch(DriveNumber, Option<Length>),
-    /// Change something that is not written yet.
+    /// Change a value that has not been written yet.
     Edit(Box<Edit>),
     Plan(Box<Change>),
-    /// Open the cyclic connection. This moves nothing.
+    /// Open the cyclic connection, which does not move anything.
     Take,
     Give,
-    /// Move the drive that is shown, or lead it to another state.
+    /// Move the selected drive, or lead it to another state.
     Drive(Motor),
-    /// Set up the axis of the drive that is shown.
+    /// Set up the axis of the selected drive.
     Axis(axis::AxisAction),
     Save(PathBuf),
 }
 
-/// A motion request of the user for the drive that is shown.
+/// A motion request of the user for the selected drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motor {
     Lead(Goal),
@@ -45,7 +45,7 @@ pub enum Motor {
         /// Set for an automatic repetition of the key, which starts nothing.
         repeated: bool,
     },
-    /// A jog of the axis set-up is pressed: slow and weak, whatever is set for other jogs.
+    /// Press of a slow and weak jog in the axis set-up, independent of the settings of other jogs.
     SlowJogPress {
         direction: Direction,
         /// Set for an automatic repetition of the key, which starts nothing.
@@ -53,10 +53,10 @@ pub enum Motor {
     },
     /// Allow the next jog in this direction to lead further out from outside the limits.
     FreeOutward(Direction),
-    /// The jog is still held: sent in every frame.
+    /// The jog is still held; sent in every frame.
     JogHold,
     JogRelease,
-    /// Move by this many steps from the present position, to the end.
+    /// Move by this number of steps from the present position, to the end.
     Step {
         /// In scaled steps.
         by: i32,
@@ -73,13 +73,13 @@ pub enum Motor {
     Pause,
     Resume,
     Stop,
-    /// Jog like this.
+    /// Set the effort for jogging.
     JogEffort(Effort),
-    /// Move, step and run like this.
+    /// Set the effort for moves, steps and runs.
     MoveEffort(Effort),
-    /// The user has confirmed the warning about endless runs, or has revoked it.
+    /// Confirm or revoke the warning about endless runs.
     Expert(bool),
-    /// The user has checked the limits in their own unit.
+    /// Confirm the limits after checking them in the user's own unit.
     ConfirmLimits(DriveNumber),
 }
 

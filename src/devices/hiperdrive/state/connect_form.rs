@@ -29,25 +29,25 @@ pub enum VirtualHub {
     Eight,
 }
 
-/// Entries of the connection form. Entries of another kind of connection are kept and left out of the link. An empty entry
-/// means the default.
+/// Entries of the connection form. Entries of other connection types are preserved and left out of the link. An empty
+/// entry selects the default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HiperdriveForm {
     pub kind: HiperdriveLinkKind,
     pub hub: VirtualHub,
     pub host: String,
-    /// TCP port; empty: 44818.
+    /// TCP port; empty for 44818.
     pub tcp_port: String,
     pub file: String,
     /// Process data have the high byte first.
     pub big_endian: bool,
-    /// Text of other parameters.
+    /// Typed values of other parameters.
     pub typed: Typed,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
 }
 
-/// The parameter for the byte order, and the order that is not usual.
+/// Name and non-default value of the byte order parameter.
 const BIG_ENDIAN: (&str, &str) = ("order", "big");
 /// The port of explicit messages.
 const PORT: &str = "44818";
@@ -106,7 +106,7 @@ impl FormModel for HiperdriveForm {
 }
 
 impl HiperdriveForm {
-    /// Returns the parameters to enter: those of the virtual device, if it is one, and those of the link.
+    /// Returns the parameters to enter: those of the virtual device, if applicable, and those of the link.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == HiperdriveLinkKind::Virtual { Config::entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
@@ -117,13 +117,13 @@ impl HiperdriveForm {
         LinkParameters::entries().into_iter().partition(|own| own.key == "rpi")
     }
 
-    /// Returns the entries of the virtual device. An adapter has one drive.
+    /// Returns the entries of the virtual device. An adapter has a single drive.
     pub fn of_the_virtual(&self) -> Vec<Entry> {
         let has = |own: &Entry| own.key != "drives" || self.hub != VirtualHub::Adapter;
         Config::entries().into_iter().filter(has).collect()
     }
 
-    /// Fills in the entry of a parameter; returns false if no entry can show it.
+    /// Fills in the entry of a parameter; returns `false` if no entry can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("hub", HiperdriveLinkKind::Virtual) {
             let hub = VirtualHub::of_word(value);

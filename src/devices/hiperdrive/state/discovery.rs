@@ -16,12 +16,12 @@ use crate::devices::hiperdrive::procedures::{DiscoveredDevice, Error, discover};
 use crate::devices::hiperdrive::state::explain as words;
 use crate::link::{Cancel, Clock, RealClock, UdpBroadcast};
 
-/// Discovery request, and its replies.
+/// A discovery request with its replies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Discovery {
-    /// Number of the discovery: replies to an earlier one are dropped.
+    /// Number of the discovery; replies to earlier ones are dropped.
     number: u32,
-    /// The devices found, or why the request failed; `None` while replies arrive.
+    /// Devices found, or the reason why the request failed; `None` while replies arrive.
     pub found: Option<Result<Vec<FoundDevice>, Text>>,
 }
 
@@ -31,7 +31,7 @@ pub struct FoundDevice {
     pub port: u16,
     pub name: String,
     pub serial_number: u32,
-    /// Set if its vendor is the maker of HIPERDRIVE.
+    /// Whether the vendor is the manufacturer of HIPERDRIVE.
     pub is_hiperdrive: bool,
 }
 
@@ -62,7 +62,7 @@ impl Discovery {
     }
 }
 
-/// Discovery to use in place of the broadcast. Set by tests only.
+/// A substitute for the broadcast, used by tests only.
 #[derive(Clone)]
 pub struct Discover(Arc<dyn Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync>);
 
@@ -88,7 +88,7 @@ fn ask_all() -> Result<Vec<DiscoveredDevice>, Error> {
     discover(&mut shout, &*clock, &Cancel::default())
 }
 
-/// Discovers devices on this network.
+/// The search for devices on this network.
 #[derive(Default)]
 pub struct DiscoveryFinder {
     pub discovery: Option<Discovery>,
@@ -96,7 +96,7 @@ pub struct DiscoveryFinder {
 
 pub enum DiscoveryAction {
     Discover,
-    /// Fill in a device that replied; the Connect button connects it.
+    /// Fill in a device that replied; the Connect button then connects to it.
     Choose(usize),
 }
 
@@ -135,7 +135,7 @@ impl Finder for DiscoveryFinder {
         }
     }
 
-    /// Takes the answers, those of HIPERDRIVE first.
+    /// Handles the replies, those of HIPERDRIVE first.
     fn done(finder: Option<&mut Self>, done: Answers, _services: &mut Services) {
         let Answers { number, found } = done;
         let discovery = finder.and_then(|finder| finder.discovery.as_mut());

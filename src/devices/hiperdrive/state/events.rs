@@ -26,16 +26,15 @@ use crate::worker::{OpenError, Session};
 
 /// Default interval of reading a drive's position.
 const PACE: Duration = Duration::from_millis(200);
-/// Text id of the notice that the limits of a drive under control cannot be read; it ends once they are read, or are not
-/// needed.
+/// Text id of the notice that the limits of a drive under control cannot be read, which ends once they are read or not
+/// required.
 const RULES: &str = "hd_end.rules";
 
-/// Returns whether a drive in this state moves only after an acknowledgement.
+/// Returns whether a drive in this state requires an acknowledgement before it moves.
 const fn has_failed(state: State) -> bool {
     matches!(state, State::Fault | State::Locked)
 }
 
-/// The part of a session outside its thread.
 pub struct DriveHandle {
     pub(super) motion: Motion,
     pub(super) target: Option<Target>,
@@ -86,7 +85,7 @@ impl Kind for Hiperdrive {
 }
 
 impl Unit {
-    /// Requests missing data as soon as the line is free: why a drive has failed, and the position of the selected drive.
+    /// Requests missing data as soon as the line is free: the cause of a fault, and the position of the selected drive.
     fn ask_on(&mut self, services: &mut Services) {
         if self.survey.is_none() || !self.session.is_ready() {
             return;
@@ -121,7 +120,7 @@ impl Unit {
         services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
-    /// Ends the notice of a fault once no drive has one: the notice is the same for all of them.
+    /// Ends the notice of a fault once no drive has one; all drives share the notice.
     fn settle_fault(&self, failed: bool, services: &mut Services) {
         let fails = |drive: &DriveNumber| self.moves.actual(*drive).is_some_and(|own| has_failed(own.status.state()));
         if !failed && !self.drives().iter().any(fails) {
@@ -138,7 +137,7 @@ impl Unit {
         self.tell_of(drive, weight, vec![words], services);
     }
 
-    /// Takes the position of a drive, and records it for the selected drive.
+    /// Processes the position of a drive, and records it for the selected drive.
     fn see(&mut self, reading: DriveReading) {
         self.take_reading(reading);
         let drive = reading.drive;
@@ -148,7 +147,7 @@ impl Unit {
         }
     }
 
-    /// Polls the position of the drive that is shown, unless the user has chosen another interval.
+    /// Polls the position of the selected drive, unless the user has chosen another interval.
     fn poll(&mut self) {
         let Some(line) = self.session.line.as_mut().filter(|line| line.polling().is_none()) else { return };
         line.poll(Some(PACE));
@@ -173,7 +172,7 @@ impl SessionEvents for Unit {
         super::trace::meaning(frame)
     }
 
-    /// Takes the events of the line since the last call, and refreshes the acts that the window must keep alive.
+    /// Processes the events of the line since the last call, and refreshes the acts that the window must keep alive.
     fn pump(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.moves.beat();

@@ -21,10 +21,10 @@ pub fn step(unit: &Unit, text: &str, measure: Measure, sign: i32) -> Result<i32,
     Ok(steps.saturating_mul(sign))
 }
 
-/// Returns a place as it was typed, within the limits of the drive that is shown.
+/// Parses a position within the limits of the selected drive.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Explains why the entry is invalid.
 pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     let place = |steps| unit.place(unit.drive(), steps);
@@ -38,10 +38,10 @@ pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     }
 }
 
-/// Parses a position, independent of the limits: for the limits themselves, and for setting the position.
+/// Parses a position independently of the limits: for the limits themselves, and for setting the position.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Explains why the entry is invalid.
 pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     let value = number(text).ok_or_else(|| TEXTS.text("hd_entry.number").with("entry", text.trim()))?;
     if measure == Measure::Steps && value.fract() != 0.0 {
@@ -67,10 +67,10 @@ pub fn percent(text: &str) -> Result<Percent, Text> {
     percent.ok_or_else(|| TEXTS.text("hd_entry.percent").with("entry", text.trim()))
 }
 
-/// Parses a parameter, decimal or with `0x`. An empty entry removes it from a profile.
+/// Parses a parameter value, decimal or with `0x`. An empty entry removes it from a profile.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Explains why the entry is invalid.
 pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let digits = digits.replace('\u{2212}', "-");
@@ -98,10 +98,10 @@ pub fn length(text: &str) -> Result<Length, Text> {
         .ok_or_else(|| TEXTS.text("hd_entry.length").with("entry", text.trim()))
 }
 
-/// Returns the scale that gives a step of a drive this length on its spindle.
+/// Returns the scale that gives a step the required length for a spindle pitch.
 ///
 /// # Errors
-/// Why there is none.
+/// Explains why there is none.
 pub fn scale(pitch: Length, step: Length) -> Result<PositionScale, Text> {
     PositionScale::for_spindle(pitch, step).map_err(|error| match error {
         ScaleError::Zero | ScaleError::NoLength => TEXTS.text("hd_entry.length").with("entry", 0),

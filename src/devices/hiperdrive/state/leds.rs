@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 pub struct Leds {
     /// Set for a hub, clear for a bus adapter.
     pub hub: bool,
-    /// Switch S3 of a hub: 0 for all drives, else the drive that the RS485 LED shows.
+    /// Switch S3 of a hub: 0 for all drives, otherwise the drive shown by the RS485 LED.
     pub s3: u8,
     /// RS485.
     pub drives: DriveLight,
@@ -65,7 +65,7 @@ impl Led {
 }
 
 impl Leds {
-    /// Creates the LEDs of a device of this kind, without errors.
+    /// Creates the LEDs of a device with the given topology, without errors.
     pub fn of(topology: Topology) -> Self {
         Leds { hub: topology != Topology::Adapter, ..Leds::default() }
     }
@@ -99,7 +99,6 @@ impl Leds {
         }
     }
 
-    /// Returns the meaning of an LED in its present state.
     pub fn meaning_of(&self, lamp: Led) -> LedMeaning {
         let (severity, meaning, remedy) = match lamp {
             Led::Drives => drives(self.subject(), self.drives),
@@ -146,13 +145,13 @@ const BUS: [BusLight; 6] = [
     BusLight::Alternating,
 ];
 
-/// Returns the element after `now`, the first after the last.
+/// Returns the element after `now`, or the first after the last.
 fn next<T: Copy + PartialEq>(all: &[T], now: T) -> T {
     let at = all.iter().position(|own| *own == now).map_or(0, |at| at + 1);
     all.get(at).or(all.first()).copied().unwrap_or(now)
 }
 
-/// Severity, and ids of the texts of meaning and remedy: in English they are the protocol's words.
+/// Severity, and text ids of meaning and remedy; the English texts are those of the protocol tables.
 type Row = (Severity, &'static str, &'static str);
 
 fn drives(subject: LedSubject, light: DriveLight) -> Row {

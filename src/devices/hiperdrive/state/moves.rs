@@ -19,33 +19,32 @@ use crate::units::Moment;
 pub struct Moves {
     /// While the session is open.
     motion: Option<Motion>,
-    /// The state of the drives at the last update.
+    /// State of the drives at the last update.
     view: MotionSnapshot,
     act: Option<Act>,
-    /// Speed and torque of jogs and moves, if they differ from the default.
+    /// Effort of jogs and moves, if it differs from the default.
     jogs: BTreeMap<DriveNumber, Effort>,
     jobs: BTreeMap<DriveNumber, Effort>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
-    /// The way further out from outside the limits, enabled for the next press; the press in progress uses it.
+    /// Direction further out from outside the limits, enabled for the next press and used by the press in progress.
     freed: Option<(DriveNumber, Direction)>,
     used: Option<(DriveNumber, Direction)>,
-    /// Limits of the drives at the last update, and its time. Unconfirmed limits outlive a session.
+    /// Limits of the drives at the last update. Unconfirmed limits outlive a session.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     looked: Moment,
     /// Drives whose limits have changed since the last query.
     limits_changed: BTreeSet<DriveNumber>,
-    /// The cyclic connection was opened since the last query.
+    /// Whether the cyclic connection was opened since the last query.
     taken: bool,
 }
 
-/// The last request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Act {
     drive: DriveNumber,
     number: u64,
     kind: Kind,
-    /// The drive moves by it, or has a job that waits.
+    /// Whether the drive is moving because of the act, or has a waiting job.
     moves: bool,
     is_reported: bool,
 }
@@ -54,7 +53,7 @@ struct Act {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Held,
-    /// By every frame; it does not end by itself.
+    /// Refreshed by every frame; does not end without a stop.
     Run,
     Other,
 }
@@ -79,7 +78,7 @@ impl Default for Moves {
 }
 
 impl Moves {
-    /// Begins a session. Unconfirmed limits stay unconfirmed, the endless run is not allowed yet, and jogs are slow
+    /// Begins a session. Unconfirmed limits remain unconfirmed, the endless run is not allowed yet, and jogs are slow
     /// ([`Effort::JOG`]).
     pub(super) fn begin(&mut self, motion: Motion) {
         for drive in self.unconfirmed() {
@@ -113,7 +112,7 @@ impl Moves {
         }
     }
 
-    /// Takes the drives' state, and refreshes the acts that frames keep alive. Called in every frame.
+    /// Fetches the state of the drives, and refreshes the acts that frames keep alive. Call this in every frame.
     pub(super) fn beat(&mut self) {
         if let (Some(motion), Some(act)) = (&self.motion, &self.act)
             && act.kind != Kind::Held
@@ -138,17 +137,16 @@ impl Moves {
         (self.looked, self.view, self.limits) = (at, view, limits);
     }
 
-    /// Returns the drives whose limits have changed since the last query: by this program or by another master.
+    /// Returns the drives whose limits have changed since the last query, by this program or by another master.
     pub(super) fn take_limits_changed(&mut self) -> BTreeSet<DriveNumber> {
         std::mem::take(&mut self.limits_changed)
     }
 
-    /// Returns whether the cyclic connection was opened since this was asked last.
+    /// Returns whether the cyclic connection was opened since the last query.
     pub(super) fn take_taken(&mut self) -> bool {
         std::mem::take(&mut self.taken)
     }
 
-    /// Returns the end of the last act, once.
     pub(super) fn take_end(&mut self) -> Option<(DriveNumber, Ended)> {
         let act = self.act.filter(|act| !act.is_reported)?;
         let (number, ended) = self.drive(act.drive)?.ended?;
@@ -172,7 +170,7 @@ impl Moves {
         Some(number)
     }
 
-    /// Starts a jog. While one is held, nothing starts.
+    /// Starts a jog, unless another one is held.
     pub(super) fn press(&mut self, drive: DriveNumber, jog: MotionRequest) {
         if !self.is_held() {
             self.intend(drive, jog, Kind::Held);
@@ -193,13 +191,13 @@ impl Moves {
         }
     }
 
-    /// Ends the jog when it is released, or when its button is no longer visible: the drive stops now, not at the next
-    /// update.
+    /// Ends the jog when it is released, or when its button is no longer visible: the drive stops immediately, not at
+    /// the next update.
     pub(crate) fn release(&mut self) {
         self.stop_those(|kind| kind == Kind::Held);
     }
 
-    /// Ends every act that does not end by itself: a jog, a run.
+    /// Ends every act that lasts until it is stopped: a jog or a run.
     pub(crate) fn let_go(&mut self) {
         self.freed = None;
         self.stop_those(|kind| matches!(kind, Kind::Held | Kind::Run));
@@ -218,14 +216,14 @@ impl Moves {
         self.freed = Some((drive, direction));
     }
 
-    /// Returns whether a jog in this direction may lead further out: the next one, or the one being held.
+    /// Returns whether the next or current jog in this direction may lead further out.
     pub fn is_freed(&self, drive: DriveNumber, direction: Direction) -> bool {
         let way = Some((drive, direction));
         self.freed == way || self.used == way && self.is_held()
     }
 
-    /// Starts a move, a step or a change of state, which frames refresh. Returns the number of the act; `None` while the
-    /// session is not open.
+    /// Starts a move, a step or a change of state, which frames refresh. Returns the number of the act, or `None` while
+    /// the session is not open.
     pub(super) fn want(&mut self, drive: DriveNumber, request: MotionRequest) -> Option<u64> {
         let kind = if matches!(request, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
         self.intend(drive, request, kind)
@@ -241,7 +239,7 @@ impl Moves {
         }
     }
 
-    /// Requires that the limits of a drive are confirmed before it moves.
+    /// Requires the limits of a drive to be confirmed before it moves.
     pub(super) fn unconfirm(&mut self, drive: DriveNumber) {
         self.limits.entry(drive).or_default().unconfirm();
         if let Some(motion) = &self.motion {
@@ -249,7 +247,7 @@ impl Moves {
         }
     }
 
-    /// Confirms the limits as shown to the user. Returns whether this took effect.
+    /// Confirms the limits as shown to the user; returns whether this took effect.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: LimitsSeen) -> bool {
         let counts = self.motion.as_ref().is_some_and(|motion| motion.confirm_limits(drive, seen));
         self.look();
@@ -280,7 +278,7 @@ impl Moves {
         }
     }
 
-    /// Returns the handle of the session's motion; `None` while it is not open.
+    /// Returns the motion handle of the session, or `None` while it is not open.
     pub fn motion(&self) -> Option<&Motion> {
         self.motion.as_ref()
     }
@@ -295,7 +293,7 @@ impl Moves {
         &self.view
     }
 
-    /// Returns the state of a drive at the last update; `None` without a cyclic connection.
+    /// Returns the state of a drive at the last update, or `None` without a cyclic connection.
     pub fn drive(&self, drive: DriveNumber) -> Option<&DriveView> {
         self.view.drives.iter().find(|own| own.number == drive).filter(|_| self.view.open)
     }
@@ -308,7 +306,7 @@ impl Moves {
         self.drive(drive).map(|own| own.sent)
     }
 
-    /// Returns the target of a drive's job; `None` if it has none.
+    /// Returns the target of a drive's job, if it has one.
     pub fn target(&self, drive: DriveNumber) -> Option<i32> {
         match self.phase(drive)? {
             Phase::Starting(MotionKind::Job { target }) | Phase::Moving(MotionKind::Job { target }) => Some(target),
@@ -321,22 +319,22 @@ impl Moves {
         self.drive(drive).map(|own| own.phase)
     }
 
-    /// Returns the permit of a drive; `None` while the session is not open.
+    /// Returns the permit of a drive, or `None` while the session is not open.
     pub fn permit(&self, drive: DriveNumber) -> Option<Permit> {
         self.motion.as_ref().map(|motion| motion.permitted(drive))
     }
 
-    /// Returns the limits of a drive at the last update; `None` if they are not known.
+    /// Returns the limits of a drive at the last update, if known.
     pub fn limits(&self, drive: DriveNumber) -> Option<&DriveLimits> {
         self.limits.get(&drive)
     }
 
-    /// Returns whether a motion of a drive may start by the limits at the last update.
+    /// Returns whether a motion of a drive may start with the limits at the last update.
     pub(super) fn are_limits_valid(&self, drive: DriveNumber) -> bool {
         self.limits(drive).is_some_and(|limits| limits.is_valid(self.looked))
     }
 
-    /// Requires that the limits of a drive are read before it moves.
+    /// Requires the limits of a drive to be read before it moves.
     pub(super) fn doubt_limits(&mut self, drive: DriveNumber) {
         self.limits.entry(drive).or_default().doubt(self.looked);
         if let Some(motion) = &self.motion {
@@ -357,7 +355,7 @@ impl Moves {
         held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number)))
     }
 
-    /// Returns the act of the held jog button of a drive, and its direction.
+    /// Returns the act and direction of a drive's held jog button.
     pub fn held(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
         let act = self.act.filter(|act| act.drive == drive && self.is_held())?;
         match self.phase(drive)? {
@@ -366,14 +364,15 @@ impl Moves {
         }
     }
 
-    /// Returns whether data have arrived for long enough: the first packets of a connection contain no valid positions.
+    /// Returns whether data have arrived for long enough, since the first packets of a connection contain no valid
+    /// positions.
     pub fn is_heard(&self) -> bool {
         let link = &self.view.link;
         let packets = u32::try_from(link.received).unwrap_or(u32::MAX);
         self.view.open && link.interval.saturating_mul(packets) >= ARRIVAL_TIME
     }
 
-    /// Returns whether a drive moves, is about to, or is being prepared for it.
+    /// Returns whether a drive is moving, about to move, or being prepared for it.
     pub fn is_moving(&self) -> bool {
         self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_under_way()
     }
@@ -392,7 +391,7 @@ impl Moves {
         self.drive(drive).is_some_and(moves) || self.mover() == Some(drive)
     }
 
-    /// Returns the drive that is being moved by this window, or whose job is paused. Any other request ends that.
+    /// Returns the drive that this window moves, or whose job is paused. Any other request ends that motion.
     pub fn mover(&self) -> Option<DriveNumber> {
         let asked = self.act.filter(|act| act.moves && self.is_under_way()).map(|act| act.drive);
         let has_job =
@@ -410,12 +409,12 @@ impl Moves {
         self.jobs.get(&drive).copied().unwrap_or(Effort::MOVE)
     }
 
-    /// Returns the effort of a running jog; `None` if there is none.
+    /// Returns the effort of a running jog, if any.
     pub fn jogs_with(&self, drive: DriveNumber) -> Option<Effort> {
         self.sent_effort(drive).filter(|_| self.is_jog(drive))
     }
 
-    /// Returns the effort of a running move, step or run; `None` if there is none.
+    /// Returns the effort of a running move, step or run, if any.
     pub fn moves_with(&self, drive: DriveNumber) -> Option<Effort> {
         self.sent_effort(drive).filter(|_| !self.is_jog(drive))
     }

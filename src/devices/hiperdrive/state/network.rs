@@ -16,9 +16,9 @@ pub struct Form {
     pub source: AddressSource,
     pub address: String,
     pub mask: String,
-    /// To other networks; empty for none.
+    /// Default gateway; empty if there is none.
     pub gateway: String,
-    /// Empty for none.
+    /// Name servers; empty if there are none.
     pub name_servers: [String; 2],
     pub domain: String,
 }
@@ -28,17 +28,17 @@ pub struct Form {
 pub enum PowerUp {
     Fixed(Ipv4Addr),
     Stored(Ipv4Addr),
-    /// A stored address is selected, but none is stored.
+    /// The stored address is selected, but no address is stored.
     NothingStored,
     Bootp,
     Dhcp,
     Unknown(u8),
 }
 
-/// A row of the table of switch positions.
+/// A row in the table of switch positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Position {
-    /// Digits of the switches: `0`, `1…96`.
+    /// Digits of the switches, such as `0` or `1…96`.
     pub digits: &'static str,
     pub meaning: Text,
     pub is_now: bool,
@@ -58,15 +58,16 @@ impl Form {
         }
     }
 
-    /// Returns whether addresses are entered: only stored ones are; otherwise a server assigns them.
+    /// Returns whether addresses can be entered, which is only the case for stored ones; otherwise a server assigns
+    /// them.
     pub fn has_addresses(&self) -> bool {
         self.source == AddressSource::Stored
     }
 
-    /// Returns the edited settings. If a server assigns the addresses, the present ones stay.
+    /// Returns the edited settings. If a server assigns the addresses, the present ones are kept.
     ///
     /// # Errors
-    /// Why an entry is invalid.
+    /// Explains why an entry is invalid.
     pub fn settings(&self, now: &NetworkSettings) -> Result<NetworkSettings, Text> {
         if !self.has_addresses() {
             return Ok(NetworkSettings { source: self.source, interface: now.interface.clone() });
@@ -84,7 +85,7 @@ impl Form {
     }
 }
 
-/// Four numbers with points, or nothing for none.
+/// Parses an address of four numbers separated by dots; empty for none.
 fn address(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
     match text.trim() {
         "" => Ok(Ipv4Addr::UNSPECIFIED),
@@ -101,7 +102,7 @@ fn needed(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
     }
 }
 
-/// Returns why a device could not be reached with these settings.
+/// Explains why a device would be unreachable with these settings.
 pub fn refused(error: &AddressError) -> Text {
     match error {
         AddressError::None => TEXTS.text("hd_net.none"),
@@ -118,8 +119,8 @@ pub fn refused(error: &AddressError) -> Text {
 }
 
 impl PowerUp {
-    /// Returns the source of the address with these switches and settings. Unreadable switches count as 0: not all devices
-    /// have any.
+    /// Returns the source of the address for these switches and settings. Unreadable switches count as 0, since not all
+    /// devices have any.
     pub fn of(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
         let stored = match settings.interface.address {
             address if address.is_unspecified() => PowerUp::NothingStored,
@@ -139,7 +140,7 @@ impl PowerUp {
         }
     }
 
-    /// Returns the future address, if it is known now.
+    /// Returns the future address, if already known.
     pub const fn address(self) -> Option<Ipv4Addr> {
         match self {
             PowerUp::Fixed(address) | PowerUp::Stored(address) => Some(address),
@@ -159,8 +160,8 @@ impl PowerUp {
     }
 }
 
-/// Returns the result of writing this after the next power-up, and the consequences for the link. `host` is the present
-/// address of the device, if it is a number.
+/// Describes the effect of the settings after the next power-up, and the consequences for the link. `host` is the
+/// present address of the device, if it is numeric.
 pub fn consequences(
     switch: Option<AddressSwitch>,
     now: &NetworkSettings,
@@ -193,7 +194,6 @@ pub fn consequences(
     texts
 }
 
-/// Returns the meaning of each position of the switches S1 and S2.
 pub fn positions(switch: Option<AddressSwitch>) -> [Position; 5] {
     let row = |digits, meaning, is_now| Position { digits, meaning: TEXTS.text(meaning), is_now };
     let at = |own: AddressSwitch| switch == Some(own);

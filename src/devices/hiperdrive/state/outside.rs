@@ -9,7 +9,6 @@ use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest, Ou
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, nearest_reference};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// A drive outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutsideSeen {
     pub outside: Outside,
@@ -17,13 +16,13 @@ pub struct OutsideSeen {
     pub position: i32,
     /// Parameters 158 and 160.
     pub limits: (i32, i32),
-    /// Farther outside than the repeatability of a drive, so not only at the end of its range.
+    /// Whether the drive is farther outside than its repeatability, and therefore not merely at the end of its range.
     pub is_far: bool,
 }
 
 impl Unit {
-    /// Returns how a drive is outside its limits, by its position or by status bit 15; `None` inside, and if either is
-    /// not known.
+    /// Returns how a drive is outside its limits, by its position or by status bit 15, or `None` if it is inside or
+    /// either is unknown.
     pub fn outside(&self, drive: DriveNumber) -> Option<OutsideSeen> {
         let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
         let degree = self.drive_limits(drive).map_or(1, |own| own.degree());
@@ -36,7 +35,7 @@ impl Unit {
         Some(OutsideSeen { outside, position: actual.position, limits, is_far })
     }
 
-    /// Returns the message for a drive outside its limits; `None` inside, and at the end of its range.
+    /// Returns the message for a drive outside its limits, or `None` inside and at the end of the range.
     pub fn outside_words(&self, drive: DriveNumber) -> Option<Text> {
         let own = self.outside(drive).filter(|own| own.is_far)?;
         let id = if own.outside == Outside::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
@@ -44,10 +43,10 @@ impl Unit {
         Some(text.with_text("range", self.places(drive, own.limits)))
     }
 
-    /// Returns whether a drive may be jogged in this direction now.
+    /// Checks whether a drive may be jogged in this direction now.
     ///
     /// # Errors
-    /// Why it is not allowed.
+    /// Explains why it may not.
     pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
         let outward = self.moves.is_freed(drive, direction);
         self.may(drive, MotionRequest::Jog { direction, effort: Effort::JOG, outward })
@@ -72,10 +71,10 @@ impl Unit {
         self.tell_of(drive, Severity::Warning, vec![why], services);
     }
 
-    /// Returns the change that gives the present place of a drive this position, in scaled steps, and saves it.
+    /// Returns the change that assigns a position in scaled steps to the present location of a drive, and saves it.
     ///
     /// # Errors
-    /// Why the drive would not accept it: outside the limits.
+    /// Explains why the drive would not accept it: outside the limits.
     pub fn reference_here(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
         let (low, high) = self.limits(drive).ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(position).filter(|own| (low..=high).contains(own));

@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::protocol::SpeedScale;
 pub(super) enum RecordedValue {
     /// The drive's own speed, in rpm.
     Speed,
-    /// The target, in steps of this ruler.
+    /// Target in steps of this ruler.
     Target(Ruler),
     /// A temperature, in degrees Celsius.
     Temperature(Temperature),
@@ -36,12 +36,11 @@ impl Record {
         self.track.begin(began);
     }
 
-    /// Records that readings were dropped before the next ones.
     pub(super) fn lose(&mut self, dropped: u64) {
         self.track.note_dropped(dropped);
     }
 
-    /// Takes a reading, with the drive's target at that time.
+    /// Records a reading with the target of the drive at that time.
     pub(super) fn add(&mut self, reading: DriveReading, ruler: Ruler, speed: SpeedScale, target: Option<i32>) {
         let (at, actual) = (reading.at, reading.actual);
         let status = actual.status;
@@ -67,7 +66,7 @@ impl Record {
         self.last = Some(reading);
     }
 
-    /// Records these temperatures from now on. What was recorded of others stays.
+    /// Starts recording the given temperatures. Recordings of others are kept.
     pub(super) fn watch_temperatures(&mut self, wished: &[Temperature]) {
         self.temperatures = wished.to_vec();
         let others = self.track.watched().into_iter().filter(|own| !matches!(own, RecordedValue::Temperature(_)));
@@ -75,7 +74,7 @@ impl Record {
         self.track.watch(&others.chain(wished).collect::<Vec<_>>());
     }
 
-    /// Takes a temperature; one that is not recorded here is of another drive.
+    /// Records a temperature; one that is not recorded here belongs to another drive.
     pub(super) fn add_temperature(&mut self, reading: TemperatureReading) {
         let never = reading.celsius.is_none().then(|| TEXTS.text("hd_watch.never"));
         let value = reading.celsius.map(Value::Whole);
@@ -87,7 +86,7 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Marks that samples are missing before the next ones: another drive was selected.
+    /// Marks a gap before the next samples, because another drive was selected.
     pub(super) fn gap(&mut self) {
         self.last = None;
         self.track.gap();
@@ -100,7 +99,7 @@ impl Record {
     }
 }
 
-/// Returns the meaning of positions: in millimetres first, if the drive turns a spindle.
+/// Returns the meaning of positions, with millimetres first if the drive turns a spindle.
 fn meaning(ruler: Ruler) -> Meaning {
     let mut meaning = Meaning::of_turns(None, ruler.scale.steps_per_turn());
     if let Some(millimetres) = ruler.of(1, Measure::Millimetres) {
@@ -118,8 +117,8 @@ impl Watchable for RecordedValue {
         matches!(self, RecordedValue::Target(_) | RecordedValue::Temperature(_))
     }
 
-    /// Returns whether the recording continues under another meaning: the pitch only changes how steps are shown; with
-    /// another scale a step is another distance.
+    /// Returns whether the recording continues under another meaning: the pitch only changes how steps are displayed,
+    /// but under another scale a step is another distance.
     fn continues(&self, other: &Self) -> bool {
         match (self, other) {
             (RecordedValue::Target(own), RecordedValue::Target(other)) => own.scale == other.scale,

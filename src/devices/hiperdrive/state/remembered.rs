@@ -7,7 +7,7 @@ use super::unit::Unit;
 use crate::app::{RememberedDrives, RemembersDrives, SettingsReadState};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 
-/// The values last exchanged between a device's session and the settings.
+/// Values last exchanged between a device's session and the settings.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Exchanged {
     kept: RememberedDrives,
@@ -15,7 +15,7 @@ pub(super) struct Exchanged {
     measure: Measure,
     unsaved: BTreeMap<u16, i64>,
     unconfirmed: BTreeSet<DriveNumber>,
-    /// The scales in which limits are unconfirmed, as they were read.
+    /// Scales under which limits are unconfirmed, as last read.
     scales: BTreeMap<DriveNumber, (i64, i64)>,
 }
 

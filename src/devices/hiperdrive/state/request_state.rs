@@ -26,7 +26,7 @@ impl Unit {
     /// Checks whether the cyclic connection can be opened now.
     ///
     /// # Errors
-    /// Why it is not allowed.
+    /// Explains why it cannot.
     pub fn can_take(&self) -> Result<(), Text> {
         match self.session.why_not_ready() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
@@ -40,7 +40,7 @@ impl Unit {
     /// Checks whether the cyclic connection can be closed now.
     ///
     /// # Errors
-    /// Why it is not allowed.
+    /// Explains why it cannot.
     pub fn can_give(&self) -> Result<(), Text> {
         // Also while the device does not answer.
         match self.session.line() {
@@ -54,7 +54,7 @@ impl Unit {
     /// Checks whether a drive may be moved now.
     ///
     /// # Errors
-    /// Why it is not allowed.
+    /// Explains why it may not.
     pub fn may_move(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_be_led()?;
         if let Phase::Silent(why) = &self.session.phase {
@@ -76,17 +76,17 @@ impl Unit {
     /// Checks whether a drive may run past its limits.
     ///
     /// # Errors
-    /// Why it is not allowed.
+    /// Explains why it may not.
     pub fn may_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move(drive)?;
         let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
         if permitted { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
 
-    /// Checks whether an endless run can be enabled: limits and scaling of the drive are the factory settings.
+    /// Checks whether an endless run can be enabled, which requires factory limits and scaling.
     ///
     /// # Errors
-    /// Why it cannot.
+    /// Explains why it cannot.
     pub fn could_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         let could = self.moves.limits(drive).is_some_and(DriveLimits::allows_endless);
         if could { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
@@ -138,12 +138,12 @@ impl Unit {
         }
     }
 
-    /// Reports something about a drive, which is named if there are others.
+    /// Reports a message about a drive, which is named if there are several.
     pub(super) fn tell_of(&self, drive: DriveNumber, severity: Severity, texts: Vec<Text>, services: &mut Services) {
         services.notify_part(severity, texts, (Some(&self.session.name()), self.name_of(drive)));
     }
 
-    /// Returns the name of a drive; `None` if there is only one.
+    /// Returns the name of a drive, or `None` if there is only one.
     pub fn name_of(&self, drive: DriveNumber) -> Option<Text> {
         (self.drives().len() > 1).then(|| TEXTS.text("hd_bar.named").with("drive", drive.get()))
     }
@@ -160,8 +160,8 @@ impl Unit {
         TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
     }
 
-    /// Returns a position in all units, since with another scale the same number of steps may be another position. In
-    /// degrees only if they are selected.
+    /// Formats a position in all units, since under another scale the same number of steps may be another position.
+    /// Degrees are only included if selected.
     pub fn in_all_units(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
         let ruler = self.ruler(drive);
         let wanted = |own: &Measure| *own != Measure::Degrees || *own == self.measure;
@@ -174,7 +174,7 @@ impl Unit {
         ruler.measures().filter(wanted).filter_map(place).collect()
     }
 
-    /// Returns the text for a range between two positions, with their unit.
+    /// Formats a range between two positions with their unit.
     pub fn places(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
         let ((low, ..), (high, decimals, unit)) = (self.measured(drive, low), self.measured(drive, high));
         let text = TEXTS.text("hd_entry.range").with_number("low", low, decimals);
@@ -189,7 +189,7 @@ impl Unit {
         (value, ruler.decimals(measure), TEXTS.text(measure.unit()))
     }
 
-    /// Returns the states to which one word leads from the present one; none without control.
+    /// Returns the states to which a single word leads from the present one; none without control.
     pub fn reachable(&self, drive: DriveNumber) -> Vec<State> {
         let Some(state) = self.state(drive).filter(|_| self.may_be_led().is_ok()) else { return Vec::new() };
         let mut reachable = Vec::new();
@@ -208,7 +208,7 @@ impl Unit {
         Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.word())))
     }
 
-    /// Returns the request that leads a drive to a state that is [`reachable`](Self::reachable); `None` for states without
+    /// Returns the request that leads a drive to a [`reachable`](Self::reachable) state, or `None` for states without
     /// one. A fault is left by acknowledging, which leads to the lock.
     pub const fn leads_to(to: State) -> Option<Motor> {
         match to {
@@ -221,7 +221,7 @@ impl Unit {
         }
     }
 
-    /// Returns the running act of a drive, or how the last one ended; `None` without a cyclic connection, and before
+    /// Describes the running act of a drive, or the end of the last one; `None` without a cyclic connection, and before
     /// the first.
     pub fn running_or_last(&self, drive: DriveNumber) -> Option<RequestState> {
         let view = self.moves.drive(drive)?;
@@ -233,7 +233,7 @@ impl Unit {
         Some(RequestState { words, is_well: words::weight(ended) == Severity::Note })
     }
 
-    /// Returns why control was lost, until it is taken again; `None` if it was never taken, or was given up.
+    /// Explains why control was lost, until it is taken again; `None` if it was never taken, or was given up.
     pub fn why_lost(&self) -> Option<Text> {
         let view = self.moves.view();
         view.lost.as_ref().filter(|_| !view.open).map(|lost| words::lost(Some(lost)))
@@ -247,7 +247,7 @@ impl Unit {
         Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))
     }
 
-    /// Returns the torque of a percentage as the drive applies it: rounded up to the next 25 %.
+    /// Returns the torque that the drive applies for a percentage: rounded up to the next 25 %.
     pub fn torque_of(&self, percent: Percent) -> Option<Text> {
         let effective = effective_torque(percent.get());
         (effective != percent.get()).then(|| TEXTS.text("hd_entry.torque").with("percent", effective))

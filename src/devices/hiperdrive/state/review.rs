@@ -95,7 +95,7 @@ impl Reviewed for Hiperdrive {
     }
 }
 
-/// Returns the text of an operation, with positions in millimetres if the pitch of the drive's spindle is known.
+/// Describes an operation, with positions in millimetres if the spindle pitch of the drive is known.
 pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber) -> Option<Length>) -> OpWords {
     let mut words = explained::op(op);
     if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
@@ -114,8 +114,7 @@ pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber)
     words
 }
 
-/// Returns the meaning of a value beyond its number: positions in millimetres, else in turns, under the scale of that
-/// time.
+/// Describes a value beyond its number: positions in millimetres, or else in turns, under the scale at that time.
 fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
     match (number.base(), number.drive()) {
         (LOWER | UPPER | 170 | 176 | REFERENCE, Some(drive)) => {
@@ -131,7 +130,6 @@ fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Len
     }
 }
 
-/// Returns the address of the device after a change of its network settings and a power cycle.
 fn power_up(plan: &Plan<Base, Op>) -> Option<Text> {
     let to = plan.ops.iter().find_map(|op| match op {
         Op::Network { to, .. } => Some(to),

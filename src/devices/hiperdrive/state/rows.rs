@@ -22,33 +22,33 @@ use crate::devices::hiperdrive::state::explain as explained;
 pub struct Row {
     pub number: ParameterNumber,
     pub name: Text,
-    /// Its row of the manual's table.
+    /// Row of the manual's table.
     pub kind: &'static ParameterRow,
-    /// The value read; `None` if it was not read, or is not in the profile.
+    /// Value read, or `None` if it was not read or is not in the profile.
     pub value: Option<Value>,
-    /// The same as text for the table; empty if there is none.
+    /// Value as shown in the table; empty if there is none.
     pub shown: String,
-    /// The meaning of the value, if the number does not show it.
+    /// Meaning of the value, if the number does not reveal it.
     pub meaning: Option<Text>,
-    /// Its unit; `None` if it has none.
+    /// Unit, if any.
     pub unit: Option<Text>,
-    /// The allowed range; `None` for texts.
+    /// Allowed range, or `None` for strings.
     pub range: Option<Text>,
-    /// Travel of its drive, in steps of the edited scale.
+    /// Travel of the drive in steps of the edited scale.
     pub travel: Travel,
     /// The factory setting; empty if not known.
     pub factory: String,
-    /// The edited value; `None` if it cannot be edited, or is not.
+    /// Edited value, or `None` if the parameter is not edited or cannot be.
     pub staged: Option<i64>,
     pub is_edited: bool,
-    /// The value of the previous reading, if it differed.
+    /// Value of the previous reading, if it was different.
     pub changed_from: Option<i64>,
-    /// It can be edited as a value.
+    /// Whether the parameter can be edited as a value.
     pub is_editable: bool,
 }
 
 impl Row {
-    /// Returns why it cannot be edited as a value; `None` if it can.
+    /// Explains why the parameter cannot be edited as a value, or returns `None` if it can.
     pub fn why_not_editable(&self) -> Option<Text> {
         let id = match self.kind.access {
             _ if self.is_editable => return None,
@@ -60,8 +60,7 @@ impl Row {
 }
 
 impl Unit {
-    /// Returns the parameters of a drive, or of the device: of a device those that were read, of a profile those that it
-    /// can contain.
+    /// Returns the parameters of a drive or of the device: those that were read, or those that a profile can contain.
     pub fn rows(&self, of: Option<DriveNumber>) -> Vec<Row> {
         let number = |row: &ParameterRow| match of {
             Some(drive) => ParameterNumber::of_drive(row.number, drive),
@@ -106,7 +105,7 @@ impl Unit {
         }
     }
 
-    /// Returns the cyclic data of a drive that are newer than the reading: its words, measurements, errors.
+    /// Returns cyclic data of a drive that are newer than the reading: words, measurements and errors.
     fn said_since(&self, number: ParameterNumber) -> Option<Value> {
         let drive = number.drive()?;
         let value = match number.base() {
@@ -133,14 +132,14 @@ impl Unit {
         kind.factory_value(topology, family)
     }
 
-    /// Returns the family of a drive, as far as its variant is known.
+    /// Returns the family of a drive, if its variant is known.
     fn family(&self, drive: DriveNumber) -> Option<Family> {
         let in_profile = || self.profile()?.drive(drive)?.variant;
         let variant = self.drive_identity(drive).map(|own| own.variant).or_else(in_profile)?;
         variant.row().map(|row| row.family)
     }
 
-    /// Returns the travel of the drive of a parameter, in steps of the edited scale.
+    /// Returns the travel of a parameter's drive in steps of the edited scale.
     fn travel(&self, number: ParameterNumber) -> Travel {
         number.drive().map_or(Travel::UNKNOWN, |drive| Travel {
             family: self.family(drive),
@@ -148,7 +147,7 @@ impl Unit {
         })
     }
 
-    /// Returns the meaning of a value, if the number does not show it.
+    /// Describes a value, if the number does not reveal its meaning.
     fn meaning(&self, number: ParameterNumber, value: &Value) -> Option<Text> {
         let value = match value {
             Value::Number(value) => value,

@@ -15,7 +15,7 @@ pub struct Ruler {
 /// A number that no position has.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PositionRangeError {
-    /// Does not fit into 32 bits: the minimum and maximum that do.
+    /// The position exceeds 32 bits; minimum and maximum.
     #[error("a position is between {least} and {most}")]
     Bits { least: f64, most: f64 },
     /// Millimetres without a pitch.
@@ -27,7 +27,7 @@ impl Ruler {
     /// Factory scale, without a spindle.
     pub const FACTORY: Ruler = Ruler { scale: PositionScale::FACTORY, pitch: None };
 
-    /// Returns the steps of one unit; `None`: millimetres without a pitch.
+    /// Returns the number of steps per unit, or `None` for millimetres without a pitch.
     fn steps_in(self, measure: Measure) -> Option<f64> {
         let turn = self.scale.steps_per_turn();
         match measure {
@@ -44,15 +44,15 @@ impl Ruler {
         Measure::ALL.into_iter().filter(move |measure| self.steps_in(*measure).is_some())
     }
 
-    /// Converts steps to a unit; `None`: millimetres without a pitch.
+    /// Converts steps to a unit, or returns `None` for millimetres without a pitch.
     pub fn of(self, steps: i64, measure: Measure) -> Option<f64> {
         Some(steps as f64 / self.steps_in(measure)?)
     }
 
-    /// Returns the step that is nearest.
+    /// Returns the nearest step.
     ///
     /// # Errors
-    /// [`PositionRangeError`] where there is none.
+    /// [`PositionRangeError`] if there is none.
     pub fn steps(self, value: f64, measure: Measure) -> Result<i32, PositionRangeError> {
         let unit = self.steps_in(measure).ok_or(PositionRangeError::NoPitch)?;
         let steps = (value * unit).round();

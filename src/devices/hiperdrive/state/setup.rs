@@ -19,19 +19,19 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::store::write_atomically;
 
-/// Parameters of a drive that a set-up uses, by the numbers of drive 1.
+/// Parameters of a drive used by the set-up, by the numbers of drive 1.
 const AXIS: std::ops::RangeInclusive<u16> = 152..=REFERENCE;
 
 impl Unit {
-    /// Returns the set-up of the selected drive; `None` if none has begun.
+    /// Returns the set-up of the selected drive, if one has begun.
     pub fn axis(&self) -> Option<&Axis> {
         self.axes.get(&self.drive())
     }
 
-    /// Checks whether the drive that is shown can be set up.
+    /// Checks whether the selected drive can be set up.
     ///
     /// # Errors
-    /// Why it is not allowed.
+    /// Explains why it cannot.
     pub fn may_set_up(&self) -> Result<(), Text> {
         match self.session.why_not_ready() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
@@ -46,12 +46,12 @@ impl Unit {
     /// Checks whether a change can be planned now.
     ///
     /// # Errors
-    /// Why it is not allowed.
+    /// Explains why it cannot.
     pub fn may_plan(&self) -> Result<(), Text> {
         self.session.why_not_ready().map_or(Ok(()), Err)
     }
 
-    /// Returns the known facts of a drive, for its set-up.
+    /// Returns the facts about a drive for its set-up.
     pub fn seen(&self, drive: DriveNumber) -> DriveFacts {
         let view = self.moves.drive(drive);
         let actual = self.actual(drive);
@@ -84,18 +84,18 @@ impl Unit {
         }
     }
 
-    /// Returns the TCP/IP object; `None` if it was not read, or is not provided.
+    /// Returns the TCP/IP object, or `None` if it was not read or is not provided.
     pub fn network_settings(&self) -> Option<NetworkSettings> {
         let own = self.network()?;
         Some(NetworkSettings { source: own.control?.source(), interface: own.interface.clone()? })
     }
 
-    /// Returns the address switches as they were at power-up.
+    /// Returns the positions of the address switches at power-up.
     pub fn address_switch(&self) -> Option<AddressSwitch> {
         self.network()?.address_switch()
     }
 
-    /// Returns the address of the device, if its link has a numerical one.
+    /// Returns the address of the device, if its link contains a numeric one.
     pub fn host(&self) -> Option<Ipv4Addr> {
         let Source::Link(url) = &self.session.source else { return None };
         let host = url.target.rsplit_once(':').map_or(url.target.as_str(), |(host, _)| host);
@@ -161,7 +161,7 @@ impl Unit {
         self.axes.insert(drive, Axis::new(drive, Some(self.ruler(drive))));
     }
 
-    /// Returns the report of the set-up of the selected drive after its end.
+    /// Returns the report of a finished set-up of the selected drive.
     pub fn axis_report(&self, language: Language) -> Option<String> {
         let axis = self.axis()?;
         let own = self.drive_identity(axis.drive());
@@ -173,7 +173,7 @@ impl Unit {
         report(axis, &self.seen(axis.drive()), &device, language)
     }
 
-    /// Carries out a button's request. Everything persistent goes through a plan and its review.
+    /// Executes the request of a button. Every persistent change goes through a plan and its review.
     fn carry_out(
         &mut self,
         drive: DriveNumber,

@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
 impl Unit {
-    /// Takes over a reading of the device; edits stay, unless they are for another device.
+    /// Adopts a reading of the device; edits are kept, unless they belong to another device.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
             self.replaced_by(&survey.identity.serial_number, services);
@@ -76,7 +76,7 @@ impl Unit {
         }
     }
 
-    /// Returns whether the drive has other limits, another scale or another reference than the table of parameters shows.
+    /// Returns whether limits, scale or reference of the drive differ from the displayed parameters.
     fn is_limited_otherwise(&self, drive: DriveNumber) -> bool {
         let held = self.drive_limits(drive).filter(|_| self.moves.is_open());
         held.and_then(DriveLimits::seen).is_some_and(|own| {
@@ -90,7 +90,7 @@ impl Unit {
             .is_some_and(|(own, shown)| own != shown)
     }
 
-    /// Returns why the known parameters of a drive do not suffice to move it; `None` if they do.
+    /// Explains why the known parameters of a drive do not suffice to move it, or returns `None` if they do.
     pub(super) fn why_unread(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(words::lock(Lock::Unread))
@@ -103,22 +103,23 @@ impl Unit {
         }
     }
 
-    /// Checks whether the displayed limits of a drive can be confirmed: they must equal the drive's, as far as known.
+    /// Checks whether the displayed limits of a drive can be confirmed, which requires that they equal those of the
+    /// drive, as far as known.
     ///
     /// # Errors
-    /// Why they cannot.
+    /// Explains why they cannot.
     pub fn may_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
         self.confirms(drive).map(|_| ())
     }
 
-    /// Returns the limits that are shown, and would be confirmed.
+    /// Returns the displayed limits, which would be confirmed.
     fn confirms(&self, drive: DriveNumber) -> Result<LimitsSeen, Text> {
         self.why_unread(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::seen);
         seen.ok_or_else(|| words::lock(Lock::Unread))
     }
 
-    /// Confirms the displayed limits, and reports if this has no effect at the moment. Returns whether it took effect.
+    /// Confirms the displayed limits; returns whether this took effect, and reports if it did not.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
         // As shown, before another update: later changes were not seen.
         let shown = self.confirms(drive);
@@ -147,7 +148,7 @@ impl Unit {
         }
     }
 
-    /// Returns whether this is another device than the one read before.
+    /// Returns whether the device differs from the one read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         self.identity().is_some_and(|known| {
             (&known.category, &known.serial_number) != (&identity.category, &identity.serial_number)

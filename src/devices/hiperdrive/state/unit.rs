@@ -30,49 +30,49 @@ use crate::devices::hiperdrive::protocol::{
 use crate::devices::hiperdrive::sim::Target;
 use crate::units::Moment;
 
-/// Adapter or hub with its drives, or a profile of one.
+/// An adapter or hub with its drives, or a profile of one.
 pub struct Unit {
     pub session: Session<Hiperdrive>,
     pub survey: Option<Survey>,
-    /// States and errors, as they were read last.
+    /// States and errors as last read.
     pub status: Option<Status>,
-    /// The last device check.
+    /// Results of the last device check.
     pub check: Option<Vec<CheckLine>>,
     pub staged: Staged,
     pub record: Record,
     pub(super) records: BTreeMap<DriveNumber, Record>,
     /// Start of the session, to which the times of recordings refer.
     pub(super) began: Option<Zoned>,
-    /// The drives as they are moved.
+    /// Motion of the drives.
     pub moves: Moves,
     pub measure: Measure,
-    /// Why the last edit was refused.
+    /// Reason why the last edit was refused.
     pub refusal: Option<Text>,
     pub target: Option<Target>,
-    /// The temperatures of the device and of the shown drive are recorded beside its position.
+    /// Whether the temperature of the device is recorded with the position.
     pub(super) watches_device: bool,
     pub(super) watches_drive: bool,
     pub(super) drive: DriveNumber,
     pub(super) pitches: BTreeMap<DriveNumber, Length>,
     pub(super) axes: BTreeMap<DriveNumber, Axis>,
-    /// The virtual device was switched off and on since it was read.
+    /// Whether the supply of the virtual device was switched since it was read.
     pub(super) switched: bool,
     /// Values written and not saved, as far as known.
     pub(super) unsaved: Unsaved,
-    /// The values exchanged with the settings; `None` before the first exchange.
+    /// Values exchanged with the settings, or `None` before the first exchange.
     pub(super) exchanged: Option<Exchanged>,
     /// Limits marked by another window since control was taken.
     pub(super) marks: SettingsReadState,
-    /// The last reading of each drive without control.
+    /// Last reading of each drive without control.
     pub(super) readings: BTreeMap<DriveNumber, DriveReading>,
-    /// Limits and scaling may have changed since they were read: control was taken since.
+    /// Whether limits and scaling may have changed since they were read, because control was taken.
     pub(super) is_stale: bool,
     pub(super) watched: DriveNumber,
     /// Polling has been started automatically since the link was opened.
     pub(super) has_polled: bool,
-    /// Errors are to be read again as soon as the line is free.
+    /// Whether errors must be read again as soon as the line is free.
     pub(super) looks_at_errors: bool,
-    /// Everything is to be read again: another master has changed the limits of a drive.
+    /// Whether everything must be read again, because another master has changed the limits of a drive.
     pub(super) looks_at_all: bool,
 }
 
@@ -114,13 +114,12 @@ impl Unit {
         document.body.get::<HiperdriveProfile>()
     }
 
-    /// Returns the edited profile, if this is one.
+    /// Returns the edited profile, if the session is one.
     pub(crate) fn wanted_profile(&self) -> Option<HiperdriveProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
         Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })
     }
 
-    /// Returns the identity, as far as known.
     pub fn identity(&self) -> Option<&Identity> {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
@@ -129,7 +128,7 @@ impl Unit {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Returns the serial number; `None` if nothing was read.
+    /// Returns the serial number, or `None` if nothing was read.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
@@ -171,17 +170,17 @@ impl Unit {
         record
     }
 
-    /// Returns the identity of a drive; `None` if it has not been read yet.
+    /// Returns the identity of a drive, or `None` if it has not been read yet.
     pub fn drive_identity(&self, drive: DriveNumber) -> Option<&DriveIdentity> {
         self.identity()?.drive(drive)
     }
 
-    /// Returns a parameter as it was read.
+    /// Returns a parameter as last read.
     pub fn value(&self, number: ParameterNumber) -> Option<&Value> {
         self.survey.as_ref()?.values.get(&number)
     }
 
-    /// Returns a number of a drive as it was read, by the number of drive 1.
+    /// Returns a numeric parameter of a drive as last read, given its number for drive 1.
     pub fn number(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         match self.value(ParameterNumber::of_drive(number, drive)?)? {
             Value::Number(value) => Some(*value),
@@ -189,12 +188,12 @@ impl Unit {
         }
     }
 
-    /// Returns the state and errors of a drive, as they were read last.
+    /// Returns state and errors of a drive as last read.
     pub fn drive_status(&self, drive: DriveNumber) -> Option<&DriveStatus> {
         self.status.as_ref()?.drives.iter().find(|own| own.number == drive)
     }
 
-    /// Returns the last data of a drive: from the cyclic connection, or from polling.
+    /// Returns the last data of a drive, from the cyclic connection or from polling.
     pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
         // Values read at the start are void once the connection is lost.
@@ -202,7 +201,8 @@ impl Unit {
         self.moves.actual(drive).or_else(read).or_else(surveyed)
     }
 
-    /// Returns when a drive reported that, on the clock of its session; `None` if it was only part of a full reading.
+    /// Returns the time of the last report of a drive on the session's clock, or `None` if it was only part of a
+    /// complete reading.
     pub(super) fn actual_at(&self, drive: DriveNumber) -> Option<Moment> {
         match self.moves.drive(drive) {
             Some(own) => own.received_at,
@@ -227,7 +227,7 @@ impl Unit {
         self.moves.is_moving() || self.drives().into_iter().any(|drive| self.state_now(drive) == Some(State::Moving))
     }
 
-    /// Returns the polled state of a drive; `None` for one that is not polled now.
+    /// Returns the polled state of a drive, or `None` if it is not polled now.
     pub fn state_now(&self, drive: DriveNumber) -> Option<State> {
         let is_polled = self.session.is_polling() && !self.moves.is_open() && drive == self.watched;
         // Data from before the end of polling are outdated.
@@ -235,12 +235,12 @@ impl Unit {
         self.moves.actual(drive).or(read).map(|own| own.status.state())
     }
 
-    /// Returns the ruler of a drive with its present scale.
+    /// Returns the ruler of a drive for its present scale.
     pub fn ruler(&self, drive: DriveNumber) -> Ruler {
         Ruler { scale: self.scale(drive).unwrap_or(PositionScale::FACTORY), pitch: self.pitch(drive) }
     }
 
-    /// Returns the ruler of a drive with its edited scale.
+    /// Returns the ruler of a drive for its edited scale.
     pub fn wanted_ruler(&self, drive: DriveNumber) -> Ruler {
         let scale = self.staged.wanted().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
         Ruler { scale, pitch: self.pitch(drive) }
@@ -259,18 +259,18 @@ impl Unit {
         scale.unwrap_or(SpeedScale::FACTORY)
     }
 
-    /// Returns the limits of a drive as last read by the worker; `None` for a profile, and before anything was read.
+    /// Returns the limits of a drive as last read by the worker, or `None` for a profile and before anything was read.
     pub fn drive_limits(&self, drive: DriveNumber) -> Option<&DriveLimits> {
         self.moves.limits(drive)
     }
 
-    /// Returns the scale of a drive's position; `None` if it was not read.
+    /// Returns the position scale of a drive, or `None` if it was not read.
     pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
         let as_read = || self.staged.base()?.scale(drive);
         self.drive_limits(drive).and_then(DriveLimits::scale).or_else(as_read)
     }
 
-    /// Returns a drive's limits in scaled steps; `None` if they were not read.
+    /// Returns the limits of a drive in scaled steps, or `None` if they were not read.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i32, i32)> {
         let as_read = || {
             let (lower, upper) = self.staged.base()?.limits(drive)?;
@@ -279,7 +279,7 @@ impl Unit {
         self.drive_limits(drive).and_then(DriveLimits::limits).or_else(as_read)
     }
 
-    /// Returns the limits that the user must check before the drive moves; `None` if there are none to check.
+    /// Returns the limits that the user must check before the drive moves, if any.
     pub fn limits_to_confirm(&self, drive: DriveNumber) -> Option<(i32, i32)> {
         self.limits(drive).filter(|_| self.moves.unconfirmed().contains(&drive))
     }
@@ -288,7 +288,7 @@ impl Unit {
         self.staged.marks(|drive| self.actual(drive).map(|own| i64::from(own.position)))
     }
 
-    /// Returns whether there are edits that are not written.
+    /// Returns whether edits have not been written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
     }

@@ -8,18 +8,18 @@ use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, written};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 
-/// Unsaved values of one adapter or hub with its drives.
+/// Unsaved values of an adapter or hub with its drives.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Unsaved {
     /// The saved values of parameters written since, by number.
     before: BTreeMap<u16, i64>,
-    /// Number of times the position of a drive was set by this program.
+    /// Number of times this program has set the position of a drive.
     set: BTreeMap<DriveNumber, u32>,
     sets: Vec<DriveNumber>,
 }
 
 impl Unsaved {
-    /// Notes that a plan is about to be carried out: from then on its parameters may differ from the saved ones.
+    /// Records that a plan is about to be executed, so that its parameters may differ from the saved ones.
     pub(super) fn begin(&mut self, plan: &HiperdrivePlan) {
         let changes_all = |op: &Op| matches!(op, Op::Service(Service::Factory | Service::Recall));
         let base = plan.base.image();
@@ -46,14 +46,14 @@ impl Unsaved {
         }
     }
 
-    /// Notes that a plan ended early; `begun`: some of it was written, or may have been.
+    /// Records that a plan ended early; `begun` tells whether some of it was written, or may have been.
     pub(super) fn ended(&mut self, begun: bool) {
         for drive in std::mem::take(&mut self.sets) {
             *self.set.entry(drive).or_default() += u32::from(begun);
         }
     }
 
-    /// Compares with a full reading: values equal to the saved ones are no longer a difference.
+    /// Compares with a complete reading: values equal to the saved ones are no longer a difference.
     pub(super) fn read(&mut self, now: &BTreeMap<ParameterNumber, Value>) {
         let is_as_saved = |number: u16, before: i64| {
             ParameterNumber::new(number).is_some_and(|number| now.get(&number) == Some(&Value::Number(before)))
@@ -83,12 +83,12 @@ impl Unsaved {
 }
 
 impl Unit {
-    /// Returns the saved values of a drive that were overwritten since, by the numbers of drive 1.
+    /// Returns the saved values of a drive that have been overwritten since, by the numbers of drive 1.
     pub(super) fn unsaved_of(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
         self.unsaved.of_drive(drive)
     }
 
-    /// Returns how often the position of a drive was set from here.
+    /// Returns how often this program has set the position of a drive.
     pub(super) fn times_set(&self, drive: DriveNumber) -> u32 {
         self.unsaved.set.get(&drive).copied().unwrap_or_default()
     }

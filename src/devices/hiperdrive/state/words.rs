@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as hiperdrive;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// Returns a value as text: words of bits and codes in hexadecimal.
+/// Formats a value; words of bits and codes in hexadecimal.
 pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     match value {
         Value::Text(text) => text.clone(),
@@ -22,7 +22,7 @@ pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     }
 }
 
-/// Returns the unit of a parameter's number; `None` if it has none. A text has none, even if it contains a number.
+/// Returns the unit of a numeric parameter, if it has one. A string has none, even if it contains a number.
 pub fn unit(row: &ParameterRow) -> Option<Text> {
     match row.unit {
         _ if row.kind == Kind::Text => None,
@@ -35,14 +35,14 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
     }
 }
 
-/// Returns a text as a number with its unit; `None` for other texts.
+/// Interprets a string as a number with its unit, or returns `None` for other strings.
 pub fn nominal(number: ParameterNumber, text: &str) -> Option<Text> {
     let unit = number.row().map(|row| row.unit).filter(|unit| !unit.is_empty())?;
     let (value, decimals) = protocol::nominal(text)?;
     Some(TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", plain(unit)))
 }
 
-/// Returns the meaning of a number; `None` if the number shows it.
+/// Describes a number, or returns `None` if it is self-explanatory.
 pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
     let tenths = |id: &'static str, name: &'static str| TEXTS.text(id).with_number(name, value as f64 / 10.0, 1);
     let word = || u16::try_from(value).ok();

@@ -26,7 +26,7 @@ use crate::ui::{Theme, icons};
 /// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct AxisUiState {
-    /// The step that is drawn, and since when, on the window's clock.
+    /// The drawn step, and since when, on the window's clock.
     since: Option<(AxisStep, f64)>,
 }
 
@@ -53,7 +53,7 @@ impl AxisPicture<'_> {
         actions.push(Action::device(self.unit.session.id, Hiperdrive::Axis(action)));
     }
 
-    /// Draws a button of the run, with why it cannot be pressed.
+    /// Draws a button of the run with the reason why it cannot be pressed.
     fn button(&self, ui: &mut Ui, theme: &Theme, own: Button, (icon, word): (&str, &str), actions: &mut Vec<Action>) {
         let allowed = self.axis.ask(own, self.seen).map(|_| ());
         if allowed_button(ui, theme, &allowed, icon, word).clicked() {
@@ -66,7 +66,7 @@ impl AxisPicture<'_> {
 const NUMBERS: f32 = 15.0;
 /// Room for the button that leads on.
 const PRIMARY: f32 = 112.0;
-/// Width below which the list of steps is not beside the step.
+/// Width below which the list of steps is above the step rather than next to it.
 const BESIDE: f32 = 640.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUiState, actions: &mut Vec<Action>) {
@@ -139,7 +139,7 @@ fn intro(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-/// Draws all steps, with the findings of completed ones.
+/// Draws all steps with the findings of completed ones.
 fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     let line = |step: AxisStep| {
         let reached = shown.axis.reached(step);
@@ -167,7 +167,7 @@ fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     steps(ui, theme, &Steps { steps: &lines, ..Steps::default() });
 }
 
-/// Draws the step that counts.
+/// Draws the current step.
 fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
@@ -202,7 +202,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
     });
 }
 
-/// Draws changing messages: a fault, void results, what is missing, findings.
+/// Draws changing messages: a fault, void results, missing conditions, and findings.
 fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let (axis, seen) = (shown.axis, shown.seen);
     let fallen = axis.fallen().map(words::fallen);
@@ -229,7 +229,7 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entri
     }
 }
 
-/// Draws the position of the axis and the state of its drive, always with the same height.
+/// Draws the position of the axis and the state of its drive in constant height.
 fn live(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     theme.sunken().show(ui, |ui| {
         crate::ui::controls::fill(ui);
@@ -252,7 +252,7 @@ fn live(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     });
 }
 
-/// Draws the buttons Back, Cancel and Next. Before a step is settled it can only be cancelled, which stops the motion.
+/// Draws the buttons Back, Cancel and Next. Until a step can be left, it can only be cancelled, which stops the motion.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let settled = Axis::may_leave(shown.looked_at).is_ok();
@@ -288,12 +288,12 @@ fn skip(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
     }
 }
 
-/// Returns the text with a number and its unit unbroken on one line.
+/// Returns the string with every number and its unit kept on one line.
 fn unbroken(words: String) -> String {
     words.replace(" mm", "\u{a0}mm").replace(" %", "\u{a0}%")
 }
 
-/// Draws the content at the right end of a line as high as a button: beside other buttons if there is room, or else
+/// Draws the content at the right end of a line as high as a button: next to other buttons if there is room, or else
 /// below them.
 fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let rest = ui.available_size_before_wrap().x;
@@ -302,7 +302,7 @@ fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
 }
 
-/// Draws the end: possible next steps, what was written, and whether it is saved.
+/// Draws the end of the run: possible next steps, what was written, and whether it is saved.
 fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, end: End, actions: &mut Vec<Action>) {
     let axis = shown.axis;
     let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };

@@ -11,7 +11,7 @@ use crate::ui::controls::{allowed_button, name, paragraph, two_lines};
 use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 use crate::ui::{Theme, icons};
 
-/// Size of STOP: wide enough for a flat hand.
+/// Size of STOP, wide enough for a flat hand.
 const STOP: egui::Vec2 = vec2(112.0, 44.0);
 
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, actions: &mut Vec<Action>) {
@@ -58,7 +58,7 @@ fn control(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     two_lines(ui, theme, words, ink.into());
 }
 
-/// Draws STOP for all drives; also while none is known to move.
+/// Draws STOP for all drives, even while none is known to move.
 fn stop(ui: &mut Ui, theme: &Theme, (open, moves): (bool, bool), actions: &mut Vec<Action>) {
     let palette = theme.palette;
     let word = theme.say("hd_bar.stop");
@@ -95,7 +95,7 @@ fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-/// Draws a drive with its state, as a sign and as text.
+/// Draws a drive with its state as an icon and as a label.
 fn drive_button(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
     let palette = theme.palette;
     let state = if moves { Some(State::Moving) } else { unit.state_now(drive) };

@@ -11,7 +11,6 @@ use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, empty, enabled_button, folding_card, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
 
-/// The services of parameter 47, with their notes.
 const SERVICES: [(Service, &str); 5] = [
     (Service::Save, "hd_services.save"),
     (Service::Recall, "hd_services.recall"),

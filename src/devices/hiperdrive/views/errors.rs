@@ -91,7 +91,7 @@ fn words(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     });
 }
 
-/// Returns the meaning of one of the words 116 to 118 (reference 4).
+/// Returns the meaning of a value of parameters 116 to 118 (reference 4).
 const fn com_word(word: u16) -> &'static str {
     match word {
         0 => "hd_health.well",

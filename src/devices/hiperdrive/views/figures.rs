@@ -11,7 +11,7 @@ use crate::ui::Theme;
 use crate::ui::controls::{card, empty, folding_card, paragraph, row};
 use crate::ui::widgets::series;
 
-/// Status and control word with the names of their bits.
+/// Draws status and control word with the names of their bits.
 pub(super) fn words_card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: DriveNumber) {
     folding_card(ui, theme, TEXTS.text("hd_words.title"), |ui| {
         let Some(actual) = unit.actual(drive) else {
@@ -30,11 +30,11 @@ pub(super) fn words_card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: Driv
     });
 }
 
-/// Height of the histogram, and of the words below it.
+/// Height of the histogram.
 const BARS: f32 = 96.0;
 const WORDS: f32 = 16.0;
 
-/// Draws the cyclic connection: the number of packets, their errors, and the deviation of their intervals.
+/// Draws the cyclic connection: number of packets, errors, and deviation of the intervals.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_link.title"), |ui| {
         let view = unit.moves.view();
@@ -65,7 +65,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     });
 }
 
-/// Draws a bar for each bucket, on a logarithmic scale, so that one late packet in a million is visible.
+/// Draws a bar for each bucket on a logarithmic scale, so that one late packet in a million is visible.
 fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
     let buckets: Vec<Bucket> = histogram.buckets().collect();
     let size = vec2(ui.available_width().max(0.0), BARS + WORDS);

@@ -13,13 +13,13 @@ use crate::ui::Theme;
 use crate::ui::controls::{allowed_button, card, paragraph, problem_below};
 use crate::ui::widgets::{HoldButton, hold_button};
 
-/// Height of the buttons that are held.
+/// Height of the jog buttons.
 const PAD: f32 = 56.0;
 
 /// Speeds that a button sets, in percent.
 const PRESETS: [u8; 4] = [1, 10, 50, 100];
 
-/// Draws the travel of the drive, and what moves it by hand.
+/// Draws the travel of the drive, and the jog controls.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("hd_jog.title"), |ui| {
         travel_ui(ui, theme, unit, &view.target);
@@ -35,7 +35,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     });
 }
 
-/// Draws the steps of an entered length, which run to their end.
+/// Draws the controls for steps of an entered length, which run to their end.
 pub(super) fn step_card_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -65,7 +65,7 @@ pub(super) fn step_card_ui(
     });
 }
 
-/// Draws what the buttons do, or why they move nothing, in the same space: nothing below moves when that changes.
+/// Draws what the buttons do, or why they are disabled, in constant height, so nothing below moves.
 fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<&Text>) {
     let drive = unit.drive();
     let outside = unit.outside(drive).filter(|own| {

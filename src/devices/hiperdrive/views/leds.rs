@@ -12,7 +12,7 @@ use crate::ui::controls::{entry, folding_card, name, options, paragraph, severit
 #[derive(Default)]
 pub(super) struct LedsUiState(Leds);
 
-/// Size of an LED's button, and of the LED in it.
+/// Size of an LED's button.
 const BUTTON: egui::Vec2 = vec2(248.0, 44.0);
 const RADIUS: f32 = 9.0;
 
@@ -27,7 +27,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, LedsUiState(leds): &mut LedsU
     });
 }
 
-/// Draws the choice of the device, and of its switch S3.
+/// Draws the selection of the device and the position of its switch S3.
 fn device(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
     let (mut hub, mut s3) = (leds.hub, leds.s3);
     let word = say(theme, "hd_led.device");
@@ -98,7 +98,7 @@ fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     }
 }
 
-/// Appearance of an LED: its left and its right half, and whether it blinks.
+/// Appearance of an LED: left half, right half, and whether it blinks.
 struct LedStyle {
     left: Option<Color32>,
     right: Option<Color32>,
@@ -134,7 +134,7 @@ fn look(theme: &Theme, leds: &Leds, lamp: Led) -> LedStyle {
     }
 }
 
-/// Draws a disc of two halves; a blinking one has rays.
+/// Draws a disc of two halves; rays denote blinking.
 fn paint(painter: &Painter, theme: &Theme, middle: Pos2, look: LedStyle) {
     let half = |from: f32, colour: Color32| {
         let points = (0..=16_u8).map(|step| {

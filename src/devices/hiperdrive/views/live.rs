@@ -77,7 +77,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     raw_row(ui, theme, actual.position.to_string());
 }
 
-/// Draws the menu of the temperatures that are recorded beside the position.
+/// Draws the menu of temperatures that are recorded with the position.
 pub(super) fn watch_menu(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let word = theme.say("live.watch");
     let watched = unit.watched_temperatures();
@@ -95,7 +95,7 @@ pub(super) fn watch_menu(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut 
     });
 }
 
-/// Returns whether a text fits into the rest of the line.
+/// Returns whether a string fits into the rest of the line.
 fn fits(ui: &Ui, text: &RichText) -> bool {
     let text = WidgetText::from(text.clone());
     let galley = text.into_galley(ui, Some(TextWrapMode::Extend), f32::INFINITY, TextStyle::Body);

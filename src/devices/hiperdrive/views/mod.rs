@@ -54,7 +54,7 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// Returns whether edits on the page are written from it.
+    /// Returns whether the page has a bar for writing edits.
     fn has_edit_bar(self) -> bool {
         self == Page::Parameters
     }
@@ -69,7 +69,7 @@ pub(crate) struct HiperdriveUiState {
     network: network::NetworkUiState,
 }
 
-/// The entered text for one drive.
+/// Typed values for one drive.
 #[derive(Default)]
 struct DriveEntries {
     motion: motion::MotionUiState,
@@ -179,7 +179,7 @@ impl TypedDeviceView for HiperdriveView {
     }
 }
 
-/// Returns a text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a text of this catalogue, or a common one, in the window language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -17,7 +17,7 @@ use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 
 use crate::ui::{Theme, icons};
 
-/// Percentage as it is typed, and the one that counted when it was drawn last.
+/// A percentage as typed, and the value in effect when it was last drawn.
 pub(super) type Draft = Option<(String, Percent)>;
 
 #[derive(Default)]
@@ -31,17 +31,17 @@ pub(super) struct MotionUiState {
     target_problem: Option<Text>,
 }
 
-/// Width of the entry of a position, and of a percentage.
+/// Width of a position entry.
 const NUMBER: f32 = 88.0;
 const PERCENT: f32 = 56.0;
 const MEASURE: f32 = 64.0;
 /// Width from which speed and torque stand in one row, and that of the note between them.
 const ONE_ROW: f32 = 660.0;
 const NOTE: f32 = 112.0;
-/// Height of the message about the drive, and the width from which it is beside a heading.
+/// Height of the status message.
 const SAID: f32 = 32.0;
 const BESIDE: f32 = 560.0;
-/// Height of a window below which the states stand behind the pads.
+/// Height of a window below which the pads come before the state diagram.
 const LOW: f32 = 760.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
@@ -88,7 +88,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     figures::words_card_ui(ui, theme, unit, unit.drive());
 }
 
-/// Draws why motion is locked, and what to do.
+/// Draws why motion is locked and what to do.
 fn locks(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     for lock in unit.moves.locks(drive) {
@@ -119,8 +119,8 @@ fn locks(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     }
 }
 
-/// Draws the diagram and the present activity of the drive: beside the heading, or below in a narrow window. Its height is
-/// constant, since nothing may move under the pointer that holds a drive's button.
+/// Draws the state diagram and the present activity of the drive, which is next to the heading, or below in a narrow
+/// window. The height is constant, since nothing may move under the pointer that holds a drive's button.
 fn states(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let beside = ui.available_width() >= BESIDE;
     let mut acts = Vec::new();
@@ -151,7 +151,7 @@ fn states(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     actions.append(&mut acts);
 }
 
-/// Draws a failure with the way out of it; or the state of the last act.
+/// Draws a fault with the way out of it, or the outcome of the last act.
 fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
@@ -376,7 +376,7 @@ fn note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Pe
     }
 }
 
-/// Draws a length or a position: a number and its unit.
+/// Draws an entry for a length or position, and its unit.
 pub(super) fn length_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -16,7 +16,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Entered text that is not written yet.
+/// Typed values that have not been written yet.
 #[derive(Default)]
 pub(super) struct NetworkUiState {
     /// The settings of the device when typing began.
@@ -152,7 +152,7 @@ fn line(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
     });
 }
 
-/// Draws the meaning of each position, with the present one highlighted.
+/// Draws the meaning of each switch position, with the present one highlighted.
 fn switches(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     folding_card(ui, theme, TEXTS.text("hd_net.switches"), |ui| {
         let switch = unit.address_switch();

@@ -14,7 +14,7 @@ use crate::ui::{Theme, icons};
 
 #[derive(Default)]
 pub(super) struct Draft {
-    /// The position that the place here is to get.
+    /// Position to be assigned to the present location.
     place: String,
     problem: Option<Text>,
 }
@@ -26,8 +26,8 @@ pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
     Some(RichText::new(words).font(theme.strong(theme.sizes.body)).color(theme.palette.bad))
 }
 
-/// Draws what is outside, what is blocked, and what can be done, as a card. Nothing if the drive is inside, or at the end of
-/// its range.
+/// Draws a card stating what is outside, what is blocked, and what can be done. Draws nothing if the drive is inside,
+/// or at the end of its range.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
     let (drive, id) = (unit.drive(), unit.session.id);
     let (Some(words), Some(outside)) = (unit.outside_words(drive), unit.outside(drive)) else {

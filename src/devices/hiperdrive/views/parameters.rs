@@ -18,27 +18,28 @@ use crate::ui::widgets::{
 };
 use crate::ui::{Theme, icons};
 
-/// The filter and the entered text.
+/// Filter and typed values.
 #[derive(Default)]
 pub(super) struct DriveParametersUiState {
     sought: String,
     shown: ParameterFilter,
     table: RegisterView,
-    /// The lines of the table when it was drawn the last time.
+    /// Lines of the table when it was last drawn.
     lines: Vec<Vec<ParameterNumber>>,
-    /// Columns of the table were hidden then: what they say of the selected row stands below it.
+    /// Whether columns of the table were hidden when it was last drawn; their content for the selected row is then
+    /// shown below.
     hides_columns: bool,
     scales: BTreeMap<DriveNumber, scale::ScaleUiState>,
 }
 
-/// Filter of the parameters; or the scale, which two of them define.
+/// Filter of the parameters, or the scaling page for two of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum ParameterFilter {
     All,
     /// Writable parameters; a search by name or number covers all.
     #[default]
     Written,
-    /// Those that are edited or were another value when they were read before.
+    /// Parameters that are edited, or whose value has changed since the previous reading.
     Changed,
     Scale,
 }
@@ -91,7 +92,7 @@ pub(super) fn page_ui(
     }
 }
 
-/// Draws the filter, and why the entered text was refused.
+/// Draws the filter, and the reason why a typed value was refused.
 fn head(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
     ui.horizontal_wrapped(|ui| {
         let sought = say(theme, "hd_params.seek");
@@ -117,7 +118,7 @@ fn head(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
 }
 
 impl DriveParametersUiState {
-    /// Returns whether the table closes its editor once the entry is accepted or refused.
+    /// Returns whether the scaling page is shown, for which the table must have closed its editor.
     fn shows_scale(&self) -> bool {
         self.shown == ParameterFilter::Scale && (self.table.typed().is_none() || self.table.is_refused())
     }
@@ -142,7 +143,7 @@ impl DriveParametersUiState {
         }
     }
 
-    /// Follows a change of the rows: selection and typed text stay with their parameter.
+    /// Adjusts to changed rows: selection and typed value stay with their parameter.
     fn follow(&mut self, rows: &[Vec<Row>]) {
         let lines: Vec<Vec<_>> = rows.iter().map(|rows| rows.iter().map(|row| row.number).collect()).collect();
         if lines == self.lines {
@@ -191,7 +192,7 @@ fn table(
     actions.extend(edits.into_iter().map(act));
 }
 
-/// Returns what the columns that fall away in a narrow window say of a row.
+/// Returns the content of the columns that are hidden in a narrow window for a row.
 fn hidden_columns(theme: &Theme, row: &Row) -> String {
     let named = |id: &'static str, words: String| (!words.is_empty()).then(|| format!("{} {words}", theme.say(id)));
     let range = row.range.as_ref().map(|range| theme.words(range)).unwrap_or_default();

@@ -17,7 +17,7 @@ use crate::ui::widgets::focus_ring;
 /// A state machine to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StateMachine<'a> {
-    /// The present state of the drive; `None`: not known.
+    /// Present state of the drive, if known.
     pub(crate) present: Option<State>,
     /// States that can be reached from the present one.
     pub(crate) reachable: &'a [State],
@@ -32,7 +32,7 @@ const BOX: f32 = 28.0;
 const GAP: f32 = 28.0;
 const BETWEEN: f32 = 16.0;
 const MOST: f32 = 128.0;
-/// Places of the arrows' heads, and half of how wide one is.
+/// Length and half width of an arrowhead.
 const HEAD: f32 = 6.0;
 
 const fn place(state: State) -> (f32, f32) {
@@ -142,7 +142,7 @@ fn box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: BoxSty
     painter.galley(Align2::CENTER_CENTER.align_size_within_rect(words.size(), rect).min, words, look.ink);
 }
 
-/// Draws the lines between the boxes: both directions in the row, three into the fault, two out of the lock.
+/// Draws the arrows between the boxes: both directions in the row, three into the fault, two out of the lock.
 fn arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>) {
     let faint = Color32::from(theme.palette.muted).gamma_multiply(0.7);
     // The arrows from the present state.

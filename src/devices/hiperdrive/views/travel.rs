@@ -19,19 +19,19 @@ use crate::devices::hiperdrive::views::say;
 use crate::ui::widgets::series;
 use crate::ui::{Theme, icons};
 
-/// Heights in points: the line above, the bar, the limits below it.
+/// Height of the line above the bar, in points.
 const LINE: f32 = 20.0;
 const BAR: f32 = 14.0;
 const LIMITS: f32 = 16.0;
 const GAP: f32 = 6.0;
-/// Room at both ends of the bar for a marker that stands there.
+/// Margin at both ends of the bar for a marker.
 const END: f32 = 8.0;
 /// Half the size of the target's diamond.
 const DIAMOND: f32 = 6.0;
-/// Share of the bar beyond a position that is outside the limits.
+/// Share of the bar reserved beyond a position that is outside the limits.
 const BEYOND: f64 = 0.04;
 
-/// The steps that the bar shows, on its pixels.
+/// Mapping of steps to the pixels of the bar.
 struct Scale {
     from: f64,
     to: f64,
@@ -40,7 +40,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// Shows both limits, and a position outside them with some room beyond it.
+    /// Creates a scale that shows both limits, and a position outside them with some margin.
     fn new((low, high): (i32, i32), position: Option<i32>, bar: Rect) -> Self {
         let (low, high) = (f64::from(low), f64::from(high));
         let position = position.map_or(low, f64::from);
@@ -61,12 +61,12 @@ impl Scale {
     }
 }
 
-/// The values that are shown.
+/// The displayed values.
 struct Shown {
     limits: Option<(i32, i32)>,
     position: Option<i32>,
     target: Option<i32>,
-    /// How the drive is outside its limits; `None` inside, and at the end of its range.
+    /// The way in which the drive is outside its limits, or `None` inside and at the end of its range.
     outside: Option<Outside>,
     is_moving: bool,
 }
@@ -119,7 +119,7 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
     }
 }
 
-/// Returns where a drive outside its limits is led back.
+/// Describes the way back for a drive outside its limits.
 fn way_back(outside: Outside) -> Text {
     TEXTS.text(match outside {
         Outside::At(Side::Above) => "hd_travel.back_down",
@@ -128,7 +128,7 @@ fn way_back(outside: Outside) -> Text {
     })
 }
 
-/// Draws position and target above the bar, or how the drive comes back inside its limits.
+/// Draws position and target above the bar, or how the drive returns inside its limits.
 fn line_ui(
     painter: &Painter,
     theme: &Theme,
@@ -188,7 +188,7 @@ fn bar_ui(painter: &Painter, theme: &Theme, bar: Rect, shown: &Shown) {
     painter.rect_stroke(bar, theme.radius, Stroke::new(1.0, edge), StrokeKind::Inside);
 }
 
-/// Draws the limits below the bar, each as near to its place as both have room.
+/// Draws the limits below the bar, each as close to its location as both have room.
 fn limits_ui(painter: &Painter, theme: &Theme, below: Rect, [low, high]: [f32; 2], names: [String; 2]) {
     let ink = Color32::from(theme.palette.muted);
     let galley = |name| painter.layout_no_wrap(name, FontId::monospace(theme.sizes.caption), ink);
@@ -214,7 +214,7 @@ fn target_ink(theme: &Theme) -> Color32 {
     series(theme, 0)
 }
 
-/// Draws the position's marker as a sign; returns where words follow it.
+/// Draws the position marker as a legend; returns where the label follows.
 fn marker(painter: &Painter, at: Pos2, ink: Color32) -> Pos2 {
     painter.rect_filled(Rect::from_center_size(at, vec2(4.0, BAR)), 2.0, ink);
     at + vec2(9.0, 0.0)
@@ -225,7 +225,7 @@ fn diamond(painter: &Painter, at: Pos2, ink: Color32) {
     painter.add(Shape::closed_line(corners.map(|corner| at + corner).to_vec(), Stroke::new(2.0, ink)));
 }
 
-/// Draws the way from a position back to a limit, where there is room for it.
+/// Draws an arrow from a position back to a limit, where there is room.
 fn arrow(painter: &Painter, from: Pos2, limit: f32, ink: Color32) {
     const HEAD: f32 = 6.0;
     let way = limit - from.x;

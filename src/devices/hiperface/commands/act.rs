@@ -93,7 +93,7 @@ fn size(text: &str) -> Result<FieldSize> {
     })
 }
 
-/// Parses `32 code=2 ce=1 we=1`, or a status byte: `0xE9`. By default a field is writable and needs its code.
+/// Parses `32 code=2 ce=1 we=1`, or a status byte such as `0xE9`. By default a field is writable and requires its code.
 fn new_status(words: &[&str]) -> Result<DataFieldStatus> {
     let [first, options @ ..] = words else { return Err(Failure::Usage("the size is missing".to_owned())) };
     let is_hex = first.starts_with("0x") || first.starts_with("0X");

@@ -183,7 +183,7 @@ fn code_list(codes: &[StatusCode]) -> Vec<Json> {
     codes.iter().map(|code| json!({"code": code.byte(), "text": code.text()})).collect()
 }
 
-/// Codes one a line, or that there are none.
+/// Lists codes one per line, or states that there are none.
 pub(super) fn codes_text(codes: &[StatusCode]) -> String {
     if codes.is_empty() {
         return "no errors or warnings\n".to_owned();

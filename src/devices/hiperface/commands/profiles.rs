@@ -113,8 +113,8 @@ fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     Ok(answers)
 }
 
-/// Reports the data fields whose bytes have no known meaning, and stops if one has no answer. A dry run leaves such a
-/// field unchanged.
+/// Reports data fields with bytes of unknown meaning, and stops if no decision is given for one. A dry run leaves such
+/// a field unchanged.
 fn check_answers(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
     let words = |own: &UnknownField| words::unknown_field(own).terminal();
     let fields = &prepared.unknown_fields;

@@ -14,7 +14,6 @@ use crate::link::LinkUrl;
 use crate::units::CharacterFormat;
 use crate::worker::Session;
 
-/// A session with a HIPERFACE encoder on its thread.
 pub(super) type Runner = runner::Runner<Hiperface>;
 
 impl Runs for Hiperface {
@@ -34,7 +33,7 @@ impl Runs for Hiperface {
         session.station().format
     }
 
-    /// Prints every code that the encoder announced, one a line.
+    /// Prints every code that the encoder announced, one per line.
     fn print_message(remark: &DeviceMessage) {
         if let DeviceMessage::CodesUnheard(count) = remark {
             say(&format!("{}\n", words::codes_unheard(*count).terminal()));
@@ -50,7 +49,6 @@ impl Runs for Hiperface {
     }
 }
 
-/// Returns the codes that the encoder announced during the last job.
 pub(super) fn codes_met(runner: &Runner) -> Vec<StatusCode> {
     runner.remarks.iter().flat_map(codes).copied().collect()
 }

@@ -4,7 +4,7 @@
 use crate::devices::hiperface::procedures::PositionReading;
 use crate::devices::hiperface::protocol::{Geometry, StatusCode};
 
-/// Format of positions: degrees for a shaft, millimetres for a scale.
+/// Format of positions: degrees for a shaft, millimetres for a linear encoder.
 pub(super) struct Table {
     linear: bool,
 }
@@ -23,7 +23,7 @@ impl Table {
         }
     }
 
-    /// Returns a line: unknown values are empty; codes as two hexadecimal digits, separated by spaces.
+    /// Returns a row: unknown values are empty; codes are two hexadecimal digits each, separated by spaces.
     pub(super) fn row(&self, reading: &PositionReading) -> String {
         let place = reading.position;
         let number = |number: Option<u64>| number.map_or_else(String::new, |number| number.to_string());

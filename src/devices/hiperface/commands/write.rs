@@ -23,7 +23,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     change_and_show(common, output, change, &write.consent, &item.to_string())
 }
 
-/// Prepares a change, asks, carries it out and prints the result.
+/// Prepares a change, asks for consent, executes it and prints the result.
 pub(super) fn change_and_show(
     common: &Common,
     output: &Output,
@@ -119,7 +119,7 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// Returns the plan as text: each operation old → new, and the cost.
+/// Describes the plan: each operation old → new, and the cost.
 pub(super) fn plan_text(prepared: &Prepared) -> String {
     let plan = &prepared.plan;
     let mut lines = change_lines(plan);
@@ -164,8 +164,8 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
         .collect()
 }
 
-/// Returns old and new value of an operation: status and settings as bytes, which `status:N` and `settings` take, others as
-/// text.
+/// Returns old and new value of an operation: status and settings as bytes, as accepted by `status:N` and `settings`,
+/// others as text.
 fn change_words(op: &Op) -> (String, String) {
     match op {
         Op::Define { from, to, .. } => {

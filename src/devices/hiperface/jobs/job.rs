@@ -13,25 +13,25 @@ use crate::devices::hiperface::protocol::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
 
-/// Persistent writes after which an encoder counts as worn: by the manual, the counter, which is in the same EEPROM, can be
-/// incremented about a million times.
+/// Number of persistent writes at which an encoder has reached its limit: according to the manual, the counter, which
+/// is in the same EEPROM, can be incremented about a million times.
 pub const WEAR_LIMIT: u64 = 1_000_000;
 
 /// A job of a session with a HIPERFACE encoder.
 #[derive(Debug)]
 pub enum HiperfaceJob {
-    /// Reads everything that is displayed: for a window, after connecting.
+    /// Read everything that is displayed after connecting.
     Survey,
     Identify,
     /// The whole error queue.
     Status,
-    /// Reads the position once. With the geometry, if it is already known.
+    /// Read the position once, interpreted with the geometry if already known.
     Position(Option<Geometry>),
-    /// Reads the shaft at rest: position, and sine and cosine if the encoder provides them.
+    /// Read the shaft at rest: position, and sine and cosine if the encoder provides them.
     Rest,
     Read(Item),
     Save(SaveOptions),
-    /// Carries out the start-up sequence with one verdict per item; with a restart first if requested.
+    /// Execute the start-up sequence with a verdict for each item, after a restart if requested.
     Check {
         /// Send 53h first.
         restart: bool,
@@ -39,15 +39,15 @@ pub enum HiperfaceJob {
     /// Sends 53h and waits for the restart.
     Reset,
     Find(FindOptions),
-    /// 67h, and our side after it.
+    /// 67h, and the settings of the host after it.
     ConfigureForNow(LineSettings),
     /// Uses an access code from now on; nothing is sent.
     UseCode {
         number: CodeNumber,
-        /// Its value, which is never shown.
+        /// Access code, which is never displayed.
         code: AccessCode,
     },
-    /// Makes a plan; writes nothing.
+    /// Prepare a plan without writing.
     Prepare(Change),
     /// Carries a plan out.
     Commit(Box<Commit>),
@@ -60,13 +60,13 @@ pub enum Change {
         profile: Box<HiperfaceProfile>,
         options: RestoreOptions,
     },
-    /// Writes bytes of data fields: ranges and bytes; a count must equal the number of bytes.
+    /// Write bytes of data fields; a count must equal the number of bytes.
     Store(Vec<(FieldRange, Vec<u8>)>),
     CreateField {
         number: u8,
         status: DataFieldStatus,
     },
-    /// Changes the status of a field: protection, access code, or, for the last one, size.
+    /// Change the status of a field: protection, access code or, for the last one, size.
     Redefine {
         number: u8,
         status: DataFieldStatus,
@@ -75,7 +75,7 @@ pub enum Change {
         number: u8,
         lock: bool,
     },
-    /// Give the last field another size.
+    /// Change the size of the last field.
     ResizeField {
         number: u8,
         size: FieldSize,
@@ -84,22 +84,23 @@ pub enum Change {
     DeleteField {
         number: u8,
     },
-    /// Changes an access code; its present value is the session's.
+    /// Change an access code, whose present value the session knows.
     ChangeCode {
         number: CodeNumber,
         new: AccessCode,
     },
     SetPosition {
         wanted: u32,
-        /// Exactly this value, even if it breaks the phase to the sine; otherwise the nearest that keeps it.
+        /// Whether to set exactly this value, even if that breaks the phase to the sine, rather than the nearest one
+        /// that preserves it.
         exact: bool,
-        /// 63h: align the code tracks as well.
+        /// Whether to align the code tracks as well (63h).
         synchronise: bool,
         /// The user states that the encoder is a kit, if the type does not tell.
         kit: bool,
     },
-    /// Adds steps to the position, modulo the measuring range; at standstill. It undoes setting a position wherever the
-    /// shaft is now.
+    /// Add steps to the position, modulo the measuring range, at standstill. This undoes setting a position, wherever
+    /// the shaft is now.
     ShiftPosition {
         /// Number of steps.
         steps: i64,
@@ -113,13 +114,13 @@ pub enum Change {
     IncrementCounter,
 }
 
-/// Kind of change, by how an interrupted one is completed.
+/// Kind of change, which determines how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edited bytes: those not yet written remain edits.
+    /// Edited bytes; those not yet written remain edits.
     Bytes,
-    /// One thing, which is done or not.
+    /// A single operation, which is either done or not.
     Single,
 }
 
@@ -138,27 +139,27 @@ pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: HiperfacePlan,
     pub identity: Identity,
-    /// Number of persistent writes of the encoder recorded on this computer; `None` if the logbook has no record.
+    /// Number of persistent writes to the encoder recorded on this computer, or `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
     /// Number of items that already have the right value.
     pub unchanged: u64,
-    /// Items left alone because one side does not have them or cannot read them.
+    /// Items left unchanged because one side lacks them or cannot read them.
     pub missing: Vec<FieldRange>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<FieldRange>,
-    /// Values of another device's mounting that are written: they must be set up again.
+    /// Written values that belong to the mounting of another device and must be set up again.
     pub mounting_written: Vec<FieldRange>,
     /// Data fields with bytes of unknown meaning that differ from another encoder's.
     pub unknown_fields: Vec<UnknownField>,
-    /// Data fields created by the write that this one undoes, and left in place: they have changed since, or are not the
-    /// last.
+    /// Data fields created by the write that this one undoes, and left in place because they have changed since, or are
+    /// not the last.
     pub created_left: Vec<u8>,
     pub other_type: Option<OtherType>,
-    /// The requested position, if the plan sets another one that keeps the phase.
+    /// Requested position, if the plan sets another one that preserves the phase.
     pub wanted_position: Option<u32>,
 }
 
-/// The types of a profile and of the encoder that it goes onto, which is of another one.
+/// Type of a profile and of the encoder of another type to which it is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OtherType {
     pub profile: u8,
@@ -166,8 +167,8 @@ pub struct OtherType {
 }
 
 impl Prepared {
-    /// Returns the values that have to be set up again afterwards. Any value of another mounting, and any byte of
-    /// unknown meaning, may be an offset between encoder and motor.
+    /// Returns the values that must be set up again afterwards. Any value of another mounting, and any byte of unknown
+    /// meaning, may be an offset between encoder and motor.
     pub fn redo(&self) -> Vec<Redo> {
         let values = self.mounting_written.iter().copied().map(Redo::Value);
         let copies = self.unknown_fields.iter().any(UnknownField::is_copied);
@@ -185,7 +186,7 @@ pub type Committed = crate::worker::Committed<Written>;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     Number(i64),
-    /// Analogue value, and its limit if the encoder's extended label contains one.
+    /// Analogue value, and its limit if the extended label contains one.
     Analogue {
         value: i16,
         limit: Option<i16>,
@@ -193,11 +194,11 @@ pub enum Value {
     Bytes(Vec<u8>),
 }
 
-/// A profile as it was read.
+/// A profile as read.
 #[derive(Clone, Debug)]
 pub struct SavedProfile {
     pub profile: HiperfaceProfile,
-    /// Fields that could not be read, with the number of the code that guards them.
+    /// Fields that could not be read, with the number of the access code that protects them.
     pub locked: Vec<(u8, CodeNumber)>,
 }
 
@@ -205,16 +206,16 @@ pub struct SavedProfile {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     Codes(Vec<StatusCode>),
-    /// Number of status codes that may have been lost: 50h removes them from the encoder, and its reply was lost or
-    /// damaged.
+    /// Number of status codes that may have been lost, since 50h removes them from the encoder, and its reply was lost
+    /// or damaged.
     CodesUnheard(u32),
-    /// An encoder that answered while one searched.
+    /// An encoder that replied during a search.
     Found(FoundEncoder),
     /// Something was repeated, or arrived too late.
     Line(LineQuality),
 }
 
-/// Step of a running HIPERFACE job. Its text is that of the command line.
+/// A step of a running HIPERFACE job. It displays as on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
     Field(u64),
@@ -262,7 +263,7 @@ impl From<PlanError> for JobError {
 }
 
 impl JobError {
-    /// Returns whether the encoder is there and has no position to give at the moment.
+    /// Returns whether the encoder is present but has no position to return at the moment.
     pub fn means_no_position(&self) -> bool {
         matches!(self, JobError::Device(error) if error.means_no_position())
     }

@@ -31,14 +31,13 @@ use crate::link::{ByteLink, Clock, LinkError};
 use crate::store::{DeviceKey, Store};
 use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
-/// HIPERFACE encoder with its connection.
 pub struct Hiperface {
     wire: Box<dyn ByteLink>,
     station: Station,
     types: Arc<EncoderTypes>,
-    /// Geometry from the last identification in this session: samples are interpreted with it.
+    /// Geometry from the last identification in this session, used to interpret samples.
     geometry: Option<Geometry>,
-    /// The last identified encoder, as the logbook knows it.
+    /// Logbook key of the last identified encoder.
     identified: Option<DeviceKey>,
     status: StatusKeeper,
     /// The counters of line errors already reported.
@@ -62,8 +61,8 @@ impl Hiperface {
         self.identified = Some(device_key(identity, context.is_virtual));
     }
 
-    /// Stores the status codes that were read, before they are shown. An encoder that is not known yet is identified first,
-    /// since the codes go into its logbook.
+    /// Stores status codes before they are displayed. An unknown encoder is identified first, since the codes go into
+    /// its logbook.
     fn keep_codes(&mut self, context: &mut SessionContext, codes: &[StatusCode]) {
         if codes.is_empty() {
             return;
@@ -88,7 +87,7 @@ impl Hiperface {
 }
 
 impl Session<Hiperface> {
-    /// Creates a session on an open connection. `is_virtual`: the encoder is a virtual one in this process, and its writes
+    /// Creates a session on an open connection. `is_virtual` denotes a virtual encoder in this process, whose writes
     /// are counted separately.
     pub fn new(
         wire: Box<dyn ByteLink>,

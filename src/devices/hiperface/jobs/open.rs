@@ -18,8 +18,8 @@ pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Returns whether a drive may be a second master on the line behind this link. It reads the encoder at power-up and
-/// then uses sine and cosine, so a silent line proves nothing.
+/// Returns whether a drive may be a second master on the line. A drive reads the encoder at power-up and then uses sine
+/// and cosine, so a silent line proves nothing.
 pub fn may_have_other_master(url: &LinkUrl) -> bool {
     matches!(url.scheme, Scheme::Serial | Scheme::Tcp)
 }
@@ -40,7 +40,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     Ok(Session::new(wire, clock, station, store, types, url.scheme == Scheme::Sim))
 }
 
-/// Returns the line, and the virtual encoder, which counts for a link to it alone.
+/// Parses the line settings and the virtual encoder, which is only relevant for a link to one.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if matches!(url.scheme, Scheme::Bridge | Scheme::Modbus | Scheme::Enip) {
         return Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, replay:"));

@@ -15,10 +15,10 @@ pub struct BrokenTypes {
     pub cause: TypeTableError,
 }
 
-/// Returns the built-in table of encoder types; rows in the user's own file go before its rows.
+/// Returns the table of encoder types, in which user-defined rows precede the built-in ones.
 ///
 /// # Errors
-/// If the user's file exists but cannot be read or parsed ([`BrokenTypes`]). [`EncoderTypes::built_in`] can be used
+/// The user's file exists but cannot be read or parsed ([`BrokenTypes`]). [`EncoderTypes::built_in`] can be used
 /// instead.
 pub fn encoder_types(store: &Store) -> Result<EncoderTypes, StoreError> {
     let built_in = EncoderTypes::built_in();

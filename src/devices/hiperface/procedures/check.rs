@@ -9,12 +9,11 @@ use crate::devices::hiperface::protocol::{DataFieldStatus, EncoderTypes, Positio
 
 pub use crate::analysis::check::Verdict;
 
-/// One line of the check.
 pub type HiperfaceStepResult = crate::analysis::check::StepResult<CheckStep, CheckFinding>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
-    /// 53h and the waits after it.
+    /// Restart (53h) with its waiting times.
     Restart,
     /// 50h until the queue is empty.
     Status,
@@ -26,16 +25,16 @@ pub enum CheckStep {
     Limits,
     /// 4Ch and 4Ah on every data field.
     DataFields,
-    /// Repetitions, damaged and late replies, in this check and before in this session.
+    /// Repetitions, damaged and late replies, during this check and before in this session.
     Line,
 }
 
-/// One fact that the check found.
+/// A finding of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
     Code(StatusCode),
     Position(Position),
-    /// The position word, if periods and turns are not known.
+    /// Position word, if periods and turns are unknown.
     RawPosition(u32),
     Name(String),
     SerialNumber(String),
@@ -48,7 +47,7 @@ pub enum CheckFinding {
         number: u8,
         status: DataFieldStatus,
     },
-    /// A data field with an unknown access code, the number of which is in its status.
+    /// A data field with an unknown access code, whose number is in its status.
     FieldLocked {
         number: u8,
         status: DataFieldStatus,
@@ -67,8 +66,8 @@ pub enum CheckFinding {
     Line(LineQuality),
 }
 
-/// Runs the check; with `restart` it begins with 53h, as after power-on. It ends early only if the encoder no longer
-/// replies.
+/// Runs the check; with `restart` it begins with 53h, as after power-on. The check ends early only if the encoder no
+/// longer replies.
 ///
 /// # Errors
 /// Errors of the exchange, or cancellation.
@@ -118,7 +117,7 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperf
     }
 }
 
-/// Returns the limits of the extended label, as far as their channels answer.
+/// Returns the limits of the extended label whose channels reply.
 fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<HiperfaceStepResult>, Error> {
     let Some(label) = identity.extended() else { return Ok(None) };
     let mut findings = Vec::new();
@@ -166,7 +165,7 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperfac
     Ok(HiperfaceStepResult { step: CheckStep::DataFields, verdict, findings })
 }
 
-/// Checks the line. If something had to be repeated it works, but its wiring needs attention.
+/// Checks the line. If something had to be repeated, the line works but its wiring needs attention.
 fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     let quality = master.station().line.quality.clone();
     let verdict = if quality.is_troubled() { Verdict::Attention } else { Verdict::Good };

@@ -16,34 +16,29 @@ pub enum Error {
         address: u8,
         command: Command,
         tries: u32,
-        /// The sent bytes came back: the adapter echoes, so the line itself works.
+        /// Whether the sent bytes came back: the adapter echoes, so the line itself works.
         echo_heard: bool,
     },
     #[error("damaged reply to {} (attempts: {tries}): {cause}", command.row().name)]
-    Damaged {
-        command: Command,
-        tries: u32,
-        /// Damage of the last reply.
-        cause: Damage,
-    },
+    Damaged { command: Command, tries: u32, cause: Damage },
     /// Bytes keep arriving during the required silence.
     #[error("the line is never silent")]
     NeverSilent,
     #[error("{} was refused: {}", command.row().name, list(codes))]
     Rejected { command: Command, codes: Vec<StatusCode> },
-    /// It is not known whether a change was carried out: the encoder can no longer be reached.
+    /// It is unknown whether a change was carried out, because the encoder can no longer be reached.
     #[error("whether {} was carried out is not known: {cause}", command.row().name)]
     Unclear {
         command: Command,
-        /// Why it cannot be read back.
+        /// Reason why the change cannot be read back.
         cause: Box<Error>,
     },
     #[error("cancelled")]
     Cancelled,
-    /// The shaft turns but must stand still.
+    /// The shaft is turning but must be at rest.
     #[error("the shaft moves: {readings:?}")]
     Moving {
-        /// The positions read one after the other.
+        /// Consecutive position readings.
         readings: Vec<u32>,
     },
     /// 63h is for encoders without bearing.
@@ -51,7 +46,7 @@ pub enum Error {
     NotAKit { encoder: String },
     #[error("address {address:02X}h belongs to another encoder")]
     AddressTaken { address: u8 },
-    /// The position asked for is beyond the measuring range.
+    /// The requested position exceeds the measuring range.
     #[error("position {wanted} is outside 0…{last}")]
     PositionRange {
         wanted: u64,
@@ -62,14 +57,14 @@ pub enum Error {
     #[error("data field {field} has bytes 0…{}, not {address}…{}", size.saturating_sub(1), (address + count).saturating_sub(1))]
     OutOfField {
         field: u8,
-        /// First byte asked for.
+        /// Index of the first requested byte.
         address: usize,
-        /// Bytes asked for.
+        /// Number of requested bytes.
         count: usize,
-        /// Bytes there are.
+        /// Number of existing bytes.
         size: usize,
     },
-    /// A field cannot be read because its access code is not the known one.
+    /// A field cannot be read because its access code is unknown.
     #[error("the access code {number} is not known")]
     CodeUnknown { field: u8, number: CodeNumber },
     #[error("{item} has changed since the plan was made")]
@@ -79,16 +74,16 @@ pub enum Error {
     NotVerified { item: PlanItem, expected: String, got: ReadBack },
     #[error("the reply to {} is of another kind: {reply}", command.row().name)]
     OtherReply { command: Command, reply: String },
-    /// The position already had the value that was written, so reading it back proves nothing.
+    /// The position already had the written value, so reading it back proves nothing.
     #[error("the position already had this value, so reading it back does not show whether it was written")]
     PositionUnchanged,
-    /// No data field requires this access code, so it cannot be tried.
+    /// No data field requires this access code, so it cannot be tested.
     #[error("no data field requires access code {number}, so it cannot be tested")]
     CodeGuardsNothing { number: CodeNumber },
     /// The settings byte names a character format that the description reserves.
     #[error("the interface settings 0x{:02X} have a reserved format", settings.byte())]
     ReservedFormat {
-        /// As read from the encoder, or as requested.
+        /// Settings as read from the encoder, or as requested.
         settings: LineSettings,
     },
 }
@@ -106,7 +101,7 @@ pub enum ReadBack {
     /// A number, or bytes.
     #[error("{0}")]
     Value(String),
-    /// A data field does not answer as one of the status that was written.
+    /// A data field does not behave according to the status that was written.
     #[error("another status")]
     AnotherStatus,
 }
@@ -116,20 +111,20 @@ pub enum ReadBack {
 pub enum Damage {
     #[error(transparent)]
     Reply(#[from] ReplyError),
-    /// The reply to a request with an access code; its bytes are not shown, since they may be the echo.
+    /// The reply to a request with an access code is unreadable; its bytes are not shown, since they may be the echo.
     #[error("unreadable frame")]
     Unreadable,
     /// More bytes than a reply has.
     #[error("extra bytes after the reply")]
     Trailing,
-    /// It began too late.
+    /// The reply began too late.
     #[error("the reply came too late")]
     Late,
     #[error("the echo differs from what was sent")]
     Echo,
     #[error("the encoder reports: {0}")]
     AtEncoder(StatusCode),
-    /// Two readings in a row of the same thing differ.
+    /// Two consecutive readings of the same value differ.
     #[error("two readings differ")]
     Inconsistent,
 }
@@ -147,7 +142,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the device can no longer be reached, so that further attempts are useless.
+    /// Returns whether the device is out of reach, so that further attempts are useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } => true,
@@ -156,7 +151,7 @@ impl Error {
         }
     }
 
-    /// Returns whether the encoder is there and has no position to give at the moment.
+    /// Returns whether the encoder is present but has no position to return at the moment.
     pub fn means_no_position(&self) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.spoils_position()))
     }

@@ -9,13 +9,13 @@ use crate::devices::hiperface::protocol::{
     AccessCode, Command, DataFieldStatus, MAX_TRANSFER, Reply, Request, StatusCode,
 };
 
-/// Minimum number of bytes in a transfer: below that the frame is mostly header.
+/// Minimum number of bytes in a transfer, below which a frame consists mostly of its header.
 const LEAST_TRANSFER: usize = 4;
 
 /// Reads the status byte of a field.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal: no such field.
+/// Errors of the exchange, or a refusal because the field does not exist.
 pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataFieldStatus, Error> {
     match master.ask_confirmed(&Request::FieldStatus { field })? {
         Reply::FieldStatus(status) => Ok(status),
@@ -58,7 +58,7 @@ pub fn read_all_fields(
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnreadableField {
     pub number: u8,
-    /// Its status, if it could be read.
+    /// Status of the field, if readable.
     pub status: Option<DataFieldStatus>,
     pub why: Error,
 }
@@ -77,7 +77,7 @@ pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<Fiel
     Ok(tolerated(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
 }
 
-/// Converts an error into a reason, as long as the encoder answers another request.
+/// Converts an error into a reason, as long as the encoder replies to another request.
 ///
 /// # Errors
 /// The encoder no longer replies, or cancellation.
@@ -94,10 +94,11 @@ pub(super) fn tolerated<T>(master: &mut Master<'_>, result: Result<T, Error>) ->
     }
 }
 
-/// Reads `count` bytes of a field from `address`, in transfers of at most 128 bytes.
+/// Reads `count` bytes of a field from `address` on, in transfers of at most 128 bytes.
 ///
-/// A transfer that fails is halved for the next attempt; after five consecutive failures the reading fails. If the line has
-/// damaged anything before, each transfer must give the same bytes twice: an XOR misses some pairs of flipped bits.
+/// A failed transfer is halved for the next attempt; after five consecutive failures the reading fails. If the line has
+/// damaged anything before, each transfer must yield the same bytes twice, because an XOR misses some pairs of flipped
+/// bits.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal.
@@ -161,8 +162,8 @@ pub fn read_range(
     Ok(bytes)
 }
 
-/// Reads one byte with a neighbour: the reply to a transfer of one byte can equal its request, including the access code,
-/// so that an adapter's echo could be mistaken for it. A field has at least sixteen bytes.
+/// Reads one byte together with a neighbour: the reply to a transfer of one byte can equal its request, including the
+/// access code, so the echo of an adapter could be mistaken for it. A field has at least sixteen bytes.
 fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCode) -> Result<Vec<u8>, Error> {
     let start = address.saturating_sub(1);
     let pair = read_range(master, field, start, 2, code)?;

@@ -18,9 +18,10 @@ pub const LISTEN: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FindOptions {
-    /// The user states that exactly one encoder is connected: broadcast may be used if no address replies.
+    /// Whether the user states that exactly one encoder is connected, so that broadcast may be used if no address
+    /// replies.
     pub one_encoder: bool,
-    /// The user will switch the encoder's supply off and on: wait this long for it and use the default window.
+    /// Time to wait until the user has switched the encoder supply off and on, in order to use the default window.
     pub power_cycle: Option<Duration>,
 }
 
@@ -31,7 +32,7 @@ pub struct FoundEncoder {
     pub label: TypeLabel,
 }
 
-/// One attempt, for progress reports.
+/// An attempt, for progress reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Attempt {
     Listening,
@@ -64,7 +65,7 @@ pub enum SearchProgress<'a> {
 /// The end of a search.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Findings {
-    /// Another device sends on this line: nothing was sent.
+    /// Another device is sending on this line, so nothing was sent.
     ForeignTraffic {
         /// Bytes received while listening.
         bytes: usize,
@@ -77,8 +78,8 @@ pub enum Findings {
     },
 }
 
-/// Searches all speeds, parities and addresses; through a link without a speed of its own, all addresses. Afterwards the
-/// port is set as before. Cancellation ends the search with the encoders found until then.
+/// Searches all baud rates, parities and addresses; through a link without a baud rate of its own, all addresses. The
+/// port settings are restored afterwards. Cancellation ends the search with the encoders found so far.
 ///
 /// # Errors
 /// Errors of the connection.
@@ -154,7 +155,7 @@ impl Search<'_> {
     }
 }
 
-/// Returns the formats, most likely first: 9600 with each parity, then the other speeds.
+/// Returns the formats, most likely first: 9600 with each parity, then the other baud rates.
 fn formats() -> Vec<CharacterFormat> {
     let rest = BAUDS.into_iter().rev().filter(|baud| *baud != Baud::B9600);
     std::iter::once(Baud::B9600)
@@ -181,7 +182,8 @@ fn catch_default_window(
     Ok(None)
 }
 
-/// Sends one request without repetition. After a damaged reply it asks once more: a device is present.
+/// Sends one request without repetition. After a damaged reply, which proves that a device is present, sends it once
+/// more.
 fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<FoundEncoder>, Error> {
     master.station().address = address;
     for _ in 0..2 {

@@ -7,22 +7,22 @@ use crate::devices::hiperface::protocol::{
     Request, SerialLabel, StatusCode, TypeLabel,
 };
 
-/// An encoder as it presents itself.
+/// Identity of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
     pub address: u8,
     /// Reply to 52h.
     pub label: TypeLabel,
-    /// Reply to 56h; empty texts if the encoder does not have the command.
+    /// Reply to 56h; empty strings if the encoder does not support the command.
     pub serial: SerialLabel,
-    /// Reply to 4Eh; `None` if the encoder does not have the command.
+    /// Reply to 4Eh, or `None` if the encoder does not support the command.
     pub memory: Option<FreeMemory>,
     pub name: String,
-    /// Periods and turns: as given by the user, from the extended label, or from the table of types.
+    /// Periods and turns given by the user, by the extended label, or by the table of types.
     pub geometry: Option<Geometry>,
-    /// Without bearing: its tracks are synchronised with 63h. `None` if not known.
+    /// Whether the encoder has no bearing and its tracks are synchronised with 63h, if known.
     pub kit: Option<bool>,
-    /// The content of data field FFh, if the encoder has it.
+    /// Content of data field FFh, if the encoder has it.
     pub extended_label: Option<Vec<u8>>,
 }
 
@@ -32,7 +32,7 @@ impl Identity {
     }
 }
 
-/// Returns the identity recorded in a profile: free memory is not recorded.
+/// Returns the identity recorded in a profile, which excludes the free memory.
 pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity {
     let own = &profile.identity;
     let label = TypeLabel {
@@ -60,10 +60,10 @@ pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity
     }
 }
 
-/// Reads type label, serial number, memory and, if the type byte is FFh, the extended label.
+/// Reads type label, serial number, memory and, for type code FFh, the extended label.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal except of 56h and 4Eh, which some types do not have.
+/// Errors of the exchange, or a refusal except of 56h and 4Eh, which some types do not support.
 pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identity, Error> {
     let label = read_type_label(master)?;
     let serial = read_serial(master)?;
@@ -101,7 +101,7 @@ pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Erro
     }
 }
 
-/// Reads serial number and firmware; empty texts if the encoder does not have the command.
+/// Reads serial number and firmware; empty strings if the encoder does not support the command.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal.
@@ -122,7 +122,7 @@ pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
     Ok(read_type_label(master)?.settings)
 }
 
-/// Reads the address of the encoder that replies at the session's address: after a broadcast, its own address.
+/// Reads the address of the encoder that replies at the session's address; after a broadcast, its own address.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal.
@@ -133,14 +133,14 @@ pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
 /// Reads the complete data field FFh: 4Ch for its size, then 4Ah with code 0.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal: the encoder has no extended label.
+/// Errors of the exchange, or a refusal if the encoder has no extended label.
 pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
     let status = super::read_field_status(master, EXTENDED_LABEL_FIELD)?;
     let code = master.station().codes.get(CodeNumber::ZERO);
     read_range(master, EXTENDED_LABEL_FIELD, 0, status.size().bytes(), code)
 }
 
-/// Reads the whole error queue; every code is kept, in the encoder's order.
+/// Reads the complete status queue; codes are kept in the order of the encoder.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -149,7 +149,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     Ok(master.station().take_codes())
 }
 
-/// Returns `None` for a command that the encoder does not have.
+/// Converts the refusal of an unsupported command to `None`.
 fn have<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
     match result {
         Ok(value) => Ok(Some(value)),

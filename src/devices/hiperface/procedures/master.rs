@@ -23,16 +23,15 @@ pub struct Master<'a> {
     station: &'a mut Station,
 }
 
-/// A reply and when it began.
 pub(super) struct Timed {
     pub(super) reply: Reply,
-    /// The falling edge of the start bit of the reply's address.
+    /// Falling edge of the start bit of the reply's address.
     pub(super) at: Moment,
     pub(super) sender: u8,
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master for one job, with the whole time limit ahead.
+    /// Creates a master for one job with the full time limit.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }
@@ -70,7 +69,7 @@ impl<'a> Master<'a> {
         Ok(self.line.drain(duration)?)
     }
 
-    /// Sets baud rate and parity of our side.
+    /// Sets baud rate and parity of the host.
     ///
     /// # Errors
     /// Errors of the connection.
@@ -85,15 +84,15 @@ impl<'a> Master<'a> {
         self.line.ctx.wire.sets_format()
     }
 
-    /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
+    /// Sends a request that changes nothing in the encoder, and repeats it when the line fails.
     ///
     /// # Errors
-    /// If every attempt failed, the encoder refused, or the user cancelled.
+    /// Every attempt failed, the encoder refused, or the user cancelled.
     pub(super) fn ask(&mut self, request: &Request) -> Result<Reply, Error> {
         self.ask_timed(request).map(|timed| timed.reply)
     }
 
-    /// Runs `work`, which reads values to be stored; every reply must come twice.
+    /// Runs `work`, which reads values to be stored; every reply must be received twice.
     pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -101,7 +100,8 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Sends a request like [`ask`](Self::ask); if the line has damaged anything before, the reply must come twice.
+    /// Sends a request like [`ask`](Self::ask); if the line has damaged anything before, the same reply must be
+    /// received twice.
     ///
     /// # Errors
     /// See [`ask`](Self::ask).
@@ -132,11 +132,12 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sends a request that changes the encoder. If it is unclear whether it was carried out, `is_done` reads back; it is
-    /// sent again only if it was not. Returns how often it may have been carried out.
+    /// Sends a request that changes the encoder. If it is unclear whether it was carried out, `is_done` reads back; the
+    /// request is repeated only if it was not. Returns how often it may have been carried out.
     ///
     /// # Errors
-    /// The encoder refused, `is_done` could not tell ([`Error::Unclear`]), or it was not done after five attempts.
+    /// The encoder refused, `is_done` could not determine the result ([`Error::Unclear`]), or the request was not
+    /// carried out in five attempts.
     pub(super) fn send_until_done(
         &mut self,
         request: &Request,
@@ -179,7 +180,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Prepares the line for the next attempt; returns an error if there is none.
+    /// Prepares the line for the next attempt, or returns an error if none is left.
     pub(super) fn may_try_again(
         &mut self,
         request: &Request,
@@ -222,9 +223,9 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Settles like [`settle`](Self::settle), for requests that change the encoder. Codes announced by a reply are left to
-    /// the next exchange, which announces them again. This way no cancellation comes between a change and its counting, and
-    /// after 55h and 67h the encoder no longer replies with the old settings.
+    /// Settles like [`settle`](Self::settle), for requests that change the encoder. Codes announced by a reply are left
+    /// to the next exchange, which announces them again. This way no cancellation comes between a change and its
+    /// counting, and after 55h and 67h the encoder no longer replies with the old settings.
     pub(super) fn acknowledge(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<(), Error> {
         if matches!(answered.answer, Answer::Reply { .. }) {
             self.station.line.recovered();

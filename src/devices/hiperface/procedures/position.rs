@@ -11,21 +11,21 @@ use crate::units::Moment;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionReading {
-    /// When the encoder sampled it: the falling edge of the start bit of the reply's address.
+    /// Time at which the encoder sampled the position: falling edge of the start bit of the reply's address.
     pub at: Moment,
-    /// The word as received.
+    /// Position word as received.
     pub raw: u32,
-    /// The position; `None` if periods and turns are not known.
+    /// Position, or `None` if periods and turns are unknown.
     pub position: Option<Position>,
-    /// The position is within the measuring range and no code makes it invalid.
+    /// Whether the position is within the measuring range and not invalidated by a status code.
     pub valid: bool,
     pub codes: Vec<StatusCode>,
 }
 
-/// Reads the position (42h) and, if the reply announces them, all codes.
+/// Reads the position (42h) and, if the reply announces them, all status codes.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal: the encoder has no position.
+/// Errors of the exchange, or a refusal because the encoder has no position.
 pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PositionReading, Error> {
     let met_before = master.station().codes_met.len();
     let timed = master.ask_timed(&Request::ReadPosition)?;
@@ -42,37 +42,37 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     Position(PositionReading),
-    /// The encoder is there and has no position to give at the moment.
+    /// The encoder is present but has no position to return at the moment.
     NoPosition {
         at: Moment,
         /// The status codes, the reason first.
         codes: Vec<StatusCode>,
     },
-    /// Value that is watched in addition to the position.
+    /// A value watched in addition to the position.
     Watched(WatchedReading),
 }
 
-/// Value that can be watched while the position is polled. All other values of an encoder change only when they are
+/// A value that can be watched while the position is polled. All other values of an encoder change only when they are
 /// written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Watch {
-    /// Analogue channel (44h): 48h is the temperature in °C, others depend on the data sheet, usually 00h and 01h are the
-    /// sine and cosine signals in counts of 10 bits for 5 V.
+    /// Analogue channel (44h): 48h is the temperature in °C; others depend on the data sheet, and 00h and 01h are
+    /// usually the sine and cosine signals in counts of 10 bits for 5 V.
     Analogue(u8),
     /// The counter (46h), 0…FFFFFFh.
     Counter,
 }
 
 impl Watch {
-    /// The temperature in °C, of every encoder that provides it.
+    /// Temperature in °C, of every encoder that provides it.
     pub const TEMPERATURE: Watch = Watch::Analogue(0x48);
 }
 
-/// A watched value as it was read.
+/// A watched value as read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
-    /// When the encoder sampled an analogue value: the falling edge of the start bit of the reply's address. For a counter
-    /// and a refusal, when the reply was parsed.
+    /// Time at which the encoder sampled an analogue value: falling edge of the start bit of the reply's address. For a
+    /// counter and a refusal, the time of parsing the reply.
     pub at: Moment,
     pub watch: Watch,
     pub value: Result<i64, Error>,
@@ -80,8 +80,7 @@ pub struct WatchedReading {
 }
 
 impl WatchedReading {
-    /// Returns whether the encoder does not have this value: it does not know the command or the channel. Any other refusal
-    /// is temporary.
+    /// Returns whether the encoder does not support the command or channel. Any other refusal is temporary.
     pub fn is_refused(&self) -> bool {
         match &self.value {
             Err(Error::Rejected { codes, .. }) => {
@@ -134,15 +133,15 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
     }
 }
 
-/// Reads an analogue channel (44h): usually signed 10 bits for 5 V, otherwise by the data sheet.
+/// Reads an analogue channel (44h): usually signed 10 bits for 5 V, otherwise as stated in the data sheet.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal: the encoder has no such channel.
+/// Errors of the exchange, or a refusal because the channel does not exist.
 pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error> {
     ask_analogue(master, channel).map(|(_, value)| value)
 }
 
-/// Returns an analogue channel, and when the encoder sampled it.
+/// Returns the value of an analogue channel, and when the encoder sampled it.
 fn ask_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
     let timed = master.ask_timed(&Request::ReadAnalogue { channel })?;
     match timed.reply {
@@ -151,7 +150,7 @@ fn ask_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), E
     }
 }
 
-/// Returns the limit of an analogue channel, if the encoder has an extended label that contains it.
+/// Returns the limit of an analogue channel, if the extended label contains one.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -180,8 +179,8 @@ pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
     }
 }
 
-/// Reads the position three times, a tenth of a second apart, and returns the last if the shaft stands still: the readings
-/// differ by at most one step.
+/// Reads the position three times, a tenth of a second apart, and returns the last one if the shaft is at rest: the
+/// readings differ by at most one step.
 ///
 /// # Errors
 /// [`Error::Moving`], or errors of reading.
@@ -201,12 +200,13 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
     }
 }
 
-/// Returns the number of different positions; those of the whole word if the geometry is not known.
+/// Returns the number of distinct positions, or that of the complete word if the geometry is unknown.
 pub(super) fn range_of(geometry: Option<Geometry>) -> u64 {
     geometry.and_then(Geometry::range).unwrap_or(1 << 32)
 }
 
-/// Returns the steps between two positions, the shorter way round: a shaft at rest may jitter across zero.
+/// Returns the number of steps between two positions along the shorter way, since a shaft at rest may jitter across
+/// zero.
 pub(super) fn distance(a: u32, b: u32, range: u64) -> u64 {
     let straight = u64::from(a.abs_diff(b));
     straight.min(range.saturating_sub(straight))

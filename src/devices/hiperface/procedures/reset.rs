@@ -8,20 +8,20 @@ use super::{Error, Master};
 use crate::devices::hiperface::protocol::{LineSettings, Request, StatusCode, Timing};
 use crate::units::CharacterFormat;
 
-/// Wait after the restart: within 100…900 ms of it the encoder listens with factory settings, and this is early in that
-/// window.
+/// Wait after the restart: the encoder listens with factory settings from 100 to 900 ms after it, and this is early in
+/// that window.
 const INTO_DEFAULT_WINDOW: Duration = Duration::from_millis(200);
 /// Reserve over the figure's times for the stored settings, as clocks differ.
 const RESERVE: Duration = Duration::from_millis(100);
 
-/// Restarts the encoder, waits until it listens with its stored settings, and reads its whole status queue: up to four
-/// codes may be waiting from the initialisation.
+/// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue, which
+/// may contain up to four codes from the initialisation.
 ///
-/// If factory settings are stored, requests are sent within the default window; otherwise nothing is sent until the encoder
-/// has applied its settings, because a request within the window would keep it at factory settings.
+/// If factory settings are stored, requests are sent within the default window; otherwise nothing is sent until the
+/// encoder has applied its settings, because a request within the window would keep it at factory settings.
 ///
 /// # Errors
-/// Errors of the exchange; or no reply at the stored settings.
+/// Errors of the exchange, or no reply at the stored settings.
 pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     let stored = read_type_label(master)?.settings;
     let format = stored.format().ok_or(Error::ReservedFormat { settings: stored })?;
@@ -37,10 +37,11 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     })
 }
 
-/// Changes the encoder's interface and the port until the next restart. The reply still arrives with the old settings.
+/// Changes the interface of the encoder and the port until the next restart. The reply still arrives with the old
+/// settings.
 ///
 /// # Errors
-/// A refusal, or no reply at the new settings; then both sides have the old ones, as far as the encoder can be reached.
+/// A refusal, or no reply at the new settings; both sides then have the old ones, as far as the encoder can be reached.
 pub fn change_line_for_now(master: &mut Master<'_>, settings: LineSettings) -> Result<(), Error> {
     let format = settings.format().ok_or(Error::ReservedFormat { settings })?;
     let (old_format, old_timeout) = (master.station().format, master.station().long_timeout);

@@ -8,13 +8,13 @@ use crate::devices::hiperface::protocol::Geometry;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
     pub raw: u32,
-    /// The position is within the measuring range and no code makes it invalid.
+    /// Whether the position is within the measuring range and not invalidated by a status code.
     pub valid: bool,
     /// Sine and cosine, if the encoder provides them.
     pub signals: Option<Signals>,
 }
 
-/// Sine and cosine, each relative to its reference.
+/// Sine and cosine, each relative to its reference wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signals {
     /// Sine in volts.
@@ -24,7 +24,7 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// Analogue channels of sine and cosine, of the types that have them.
+    /// Analogue channels of sine and cosine, for types that have them.
     pub const CHANNELS: (u8, u8) = (0x00, 0x01);
     /// Ten bits for 5 V.
     const VOLTS_PER_COUNT: f64 = 5.0 / 1023.0;
@@ -37,7 +37,7 @@ impl Signals {
         Signals { sine_v: volts(sine), cosine_v: volts(cosine) }
     }
 
-    /// Returns one count as a part of a period, at this amplitude.
+    /// Returns the resolution of one count as a fraction of a period, at this amplitude.
     pub fn resolution_periods(&self) -> f64 {
         let amplitude = self.sine_v.hypot(self.cosine_v).max(Self::VOLTS_PER_COUNT);
         Self::VOLTS_PER_COUNT / amplitude / std::f64::consts::TAU
@@ -47,7 +47,7 @@ impl Signals {
 /// Reads the shaft at rest: position, sine and cosine as means of four readings, and the position again.
 ///
 /// # Errors
-/// [`Error::Moving`], the line, or that there is no position.
+/// [`Error::Moving`], errors of the exchange, or no position.
 pub fn read_at_rest(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<Rest, Error> {
     let before = ensure_standstill(master, geometry)?;
     let signals = read_signals(master)?;

@@ -11,7 +11,8 @@ pub struct SaveOptions {
     pub complete: bool,
 }
 
-/// Reads the whole encoder, everything but the position twice: data stored for years must not depend on one XOR.
+/// Reads the complete encoder, everything except the position twice, since data stored for years must not depend on a
+/// single XOR.
 ///
 /// # Errors
 /// Errors of the exchange; with [`complete`](SaveOptions::complete) also a field that cannot be read.
@@ -43,7 +44,7 @@ fn save_once(
     Ok(profile_of(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
 }
 
-/// Returns a profile of an encoder with these fields.
+/// Creates the profile of an encoder with the given fields.
 pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Recorded) -> HiperfaceProfile {
     let mut profile = HiperfaceProfile {
         identity: ProfileIdentity {

@@ -18,13 +18,14 @@ parameters! {
     pub struct LinkParameters: UrlError {
         pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => Bauds;
         pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::WORDS;
-        /// Destination of requests: 40h…5Fh or broadcast.
+        /// Address of requests: 40h…5Fh or broadcast.
         pub address: u8 = DeviceAddress::FACTORY.byte(),
             "address" => Checked(Expected::AddressOrOnlyOne, read_address);
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
         /// If set, the encoder's time-out is 44 bits, else 11.
         pub long_timeout: bool = true, "timeout" => Checked(Expected::TimeoutBits, read_timeout);
-        /// Additional delay allowed for a reply beyond the protocol's worst case; `None` for the default of the link.
+        /// Additional delay allowed for a reply beyond the worst case of the protocol, or `None` for the default of the
+        /// link.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
         pub periods: Option<u32> = None, "periods" => Maybe(Checked(Expected::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
         pub turns: Option<u32> = None, "turns" => Maybe(Checked(Expected::MostTurns { most: MOST_PERIODS }, read_periods)), "connect.turns" like "4096";
@@ -53,7 +54,8 @@ impl Codes {
     }
 }
 
-/// Access codes given at the start, with their numbers; sessions begin with them. The later one of a number counts.
+/// Access codes given at the start, with their numbers; each session begins with them. If a number occurs twice, its
+/// last code counts.
 #[derive(Clone, Debug, Default)]
 pub struct AccessCodes(Vec<(CodeNumber, AccessCode)>);
 
@@ -71,27 +73,27 @@ impl FromIterator<(CodeNumber, AccessCode)> for AccessCodes {
     }
 }
 
-/// The state of a line and its encoder.
+/// State of a line and its encoder.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// Destination of requests: 40h…5Fh or broadcast.
+    /// Address of requests: 40h…5Fh or broadcast.
     pub address: u8,
     pub format: CharacterFormat,
     /// If set, the encoder's time-out is 44 bits, else 11.
     pub long_timeout: bool,
     pub line: LineState,
     pub codes: Codes,
-    /// Periods and turns as the user gives them, for an encoder type that is not in the table.
+    /// Periods and turns given by the user for an encoder type that is not in the table.
     pub geometry: Option<Geometry>,
-    /// Announced status codes, in the order in which they were read; displaying removes them.
+    /// Announced status codes in the order of reading; displaying removes them.
     pub codes_met: Vec<StatusCode>,
-    /// The same codes, for the logbook: 50h removes them from the encoder, so there is no other copy.
+    /// Status codes for the logbook: 50h removes them from the encoder, so there is no other copy.
     codes_read: Vec<StatusCode>,
-    /// Number of replies to 50h that were missing or damaged: each may have been a status code.
+    /// Number of missing or damaged replies to 50h, each of which may have contained a status code.
     pub(super) codes_unheard: u32,
-    /// Set while values to be stored are read: each must be read twice, even on a line that seems good.
+    /// Whether values to be stored are being read, each of which must be read twice, even on a line that seems good.
     pub(super) thorough: bool,
-    /// Maximum number of bytes to read at once: halved if the line damages long replies, doubled if it does not.
+    /// Maximum number of bytes to read at once, halved if the line damages long replies, and doubled if it does not.
     pub(super) chunk: usize,
 }
 
@@ -113,9 +115,10 @@ impl Station {
     }
 
     /// Creates the station from the parameters of its link; the defaults are the factory setting, and `margin`.
+    /// Parameters that do not concern the line are ignored.
     ///
     /// # Errors
-    /// A value that cannot be used, with the allowed ones. Parameters that do not concern the line are ignored.
+    /// A value is invalid; the error lists the allowed ones.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));
@@ -126,35 +129,34 @@ impl Station {
         Ok(station)
     }
 
-    /// Returns the times of the line with its present settings.
+    /// Returns the timing of the line with its present settings.
     pub fn timing(&self) -> Timing {
         Timing::new(self.format, self.long_timeout)
     }
 
-    /// Returns whether values must be read twice: an XOR misses some pairs of flipped bits.
+    /// Returns whether values must be read twice, because an XOR misses some pairs of flipped bits.
     pub(super) fn reads_twice(&self) -> bool {
         self.thorough || self.line.damaged > 0
     }
 
-    /// Takes status codes that were read from the encoder.
+    /// Stores status codes that were read from the encoder.
     pub(super) fn meet_codes(&mut self, codes: impl IntoIterator<Item = StatusCode>) {
         let codes: Vec<StatusCode> = codes.into_iter().filter(|code| *code != StatusCode::OK).collect();
         self.codes_read.extend(&codes);
         self.codes_met.extend(codes);
     }
 
-    /// Takes the codes to be written to the logbook, before any of them is shown.
+    /// Takes the codes to be written to the logbook, before any of them is displayed.
     pub fn take_codes_read(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_read)
     }
 
-    /// Takes the number of status codes that may have been lost since the last call: replies to 50h that were missing
-    /// or damaged.
+    /// Takes the number of status codes that may have been lost since the last call, in missing or damaged replies to
+    /// 50h.
     pub fn take_codes_unheard(&mut self) -> u32 {
         std::mem::take(&mut self.codes_unheard)
     }
 
-    /// Takes the status codes read since the last call.
     pub fn take_codes(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_met)
     }
@@ -200,14 +202,14 @@ fn read_timeout(text: &str) -> Option<bool> {
     }
 }
 
-/// 32 steps per period in a word of 32 bits.
+/// Maximum number of periods: 32 steps per period in a word of 32 bits.
 pub const MOST_PERIODS: u32 = 1 << 27;
 
 fn read_periods(text: &str) -> Option<u32> {
     number(text).filter(|periods| (1..=MOST_PERIODS).contains(periods))
 }
 
-/// Returns the geometry of `periods=` and `turns=`; one turn if only the periods are given.
+/// Returns the geometry given by `periods=` and `turns=`; one turn if only the periods are given.
 fn geometry(link: &LinkParameters) -> Result<Option<Geometry>, Refused> {
     let turns = link.turns.unwrap_or(1);
     match link.periods {

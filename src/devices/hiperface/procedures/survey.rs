@@ -8,28 +8,27 @@ use super::{
 use crate::devices::hiperface::profile::FieldImage;
 use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 
-/// An encoder as it was found.
+/// Everything read from an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub identity: Identity,
     /// The error queue, in the encoder's order, with the codes announced meanwhile.
     pub codes: Vec<StatusCode>,
-    /// All data fields, without bytes if they cannot be read: the access code is not known, or the reason is in
-    /// `unreadable`.
+    /// All data fields; without bytes if the access code is unknown or the reason is in `unreadable`.
     pub fields: Vec<FieldImage>,
-    /// Data fields that could not be read, for another reason than their access code.
+    /// Data fields that could not be read for a reason other than their access code.
     pub unreadable: Vec<UnreadableField>,
     /// Quality of the line until then.
     pub line: LineQuality,
     pub counter: Option<u32>,
-    /// The position, unless the encoder refuses it for another reason than having none at the moment.
+    /// Position, unless the encoder refuses it for a reason other than having none at the moment.
     pub position: Option<Sample>,
 }
 
-/// Reads the error queue first, then everything else. A feature that a type does not have is no error.
+/// Reads the status queue first, then everything else. A feature that a type does not support is not an error.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal of something that every type has.
+/// Errors of the exchange, or a refusal of something that every type supports.
 pub fn survey(
     master: &mut Master<'_>,
     types: &EncoderTypes,
@@ -51,7 +50,7 @@ pub fn survey(
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
     AsFarAsPossible,
-    /// It ends the reading: data stored for years must be complete.
+    /// An unreadable field ends the reading, since data stored for years must be complete.
     Whole,
 }
 
@@ -78,7 +77,7 @@ pub(super) fn look_around(
     Ok(Survey { identity, codes: Vec::new(), fields, unreadable, line, counter, position })
 }
 
-/// Reads all fields as far as possible; for one that cannot be read, its status is included if known.
+/// Reads all fields as far as possible; for an unreadable one, its status is included if known.
 fn read_readable_fields(
     master: &mut Master<'_>,
     count: u8,

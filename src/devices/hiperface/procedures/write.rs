@@ -36,7 +36,7 @@ pub struct EncoderWrite<'w, 'm> {
 }
 
 impl<'w, 'm> EncoderWrite<'w, 'm> {
-    /// The encoder for which the plan was made has this identity.
+    /// Creates the writer for an encoder with the identity for which the plan was made.
     pub fn new(master: Master<'m>, identity: &'w Identity) -> Self {
         EncoderWrite { master, identity, left: EndState::default() }
     }
@@ -49,7 +49,8 @@ impl Write for EncoderWrite<'_, '_> {
     type Written = Written;
     type EndState = EndState;
 
-    /// Checks that this is the encoder of the plan, by its memory as well: two new encoders have the same identity.
+    /// Checks that this is the encoder of the plan, by its memory as well, since two new encoders have the same
+    /// identity.
     fn confirm(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let label = read_type_label(master)?;
@@ -155,7 +156,7 @@ fn lock_again(
     Ok(())
 }
 
-/// Carries out one operation on an encoder with this number of positions. Returns how often it was sent.
+/// Carries out one operation on an encoder with this number of positions; returns how often it was sent.
 fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u64) -> Result<u32, Error> {
     let code0 = master.station().codes.get(CodeNumber::ZERO);
     match op {
@@ -244,7 +245,7 @@ fn has_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Re
     }
 }
 
-/// Returns whether an access code opens a field that it guards. Without such a field it cannot be tried.
+/// Returns whether an access code opens a field that it protects. Without such a field it cannot be tested.
 fn opens(
     master: &mut Master<'_>,
     base: &Base,
@@ -328,10 +329,10 @@ fn mismatch(op: &Op, expected: String, got: String) -> Error {
     Error::NotVerified { item: op.item(), expected, got: ReadBack::Value(got) }
 }
 
-/// Checks that no encoder replies at an address: two encoders at one address can never be separated again.
+/// Checks that no encoder replies at an address, since two encoders at one address can never be separated again.
 ///
 /// # Errors
-/// [`Error::AddressTaken`], if anything is received; errors of the connection, or cancellation.
+/// [`Error::AddressTaken`] if anything is received; errors of the connection, or cancellation.
 pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
     let before = std::mem::replace(&mut master.station().address, address.byte());
     let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
@@ -342,10 +343,6 @@ pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<()
     }
 }
 
-/// Returns the free memory and number of fields.
-///
-/// # Errors
-/// Errors of the exchange, or a refusal.
 pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
     match master.ask_confirmed(&Request::FreeMemory)? {
         Reply::FreeMemory(memory) => Ok(memory),
@@ -353,7 +350,7 @@ pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
     }
 }
 
-/// Reads all fields that an access code guards, which show whether it was changed.
+/// Reads all fields protected by an access code, which reveal whether it was changed.
 ///
 /// # Errors
 /// Errors of the exchange.

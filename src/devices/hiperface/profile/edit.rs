@@ -25,7 +25,7 @@ pub fn plan_store(
     Ok(plan(field_count, fields, ops))
 }
 
-/// Returns the operations for one field, by ascending address. A field has at most 128 bytes, as has a transfer.
+/// Returns the operations for one field by ascending address. A field has at most 128 bytes, as has a transfer.
 fn stores<'e>(
     field: &FieldImage,
     edits: impl Iterator<Item = &'e (FieldRange, Vec<u8>)>,

@@ -93,7 +93,7 @@ pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameFact
     Ok(facts)
 }
 
-/// Recognises a reply without its request if its length distinguishes it from a request.
+/// Recognises a reply without its request, if its length distinguishes it from a request.
 fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<Answer> {
     let code = AccessCode::FACTORY;
     let candidate = match (Command::from_byte(frame.command)?, frame.payload) {

@@ -127,7 +127,7 @@ impl EncoderTypes {
 }
 
 impl Row {
-    /// 2²⁷: the position word has 32 bits, five of them within a period.
+    /// 2²⁷, since the position word has 32 bits, five of them within a period.
     const MOST: u32 = 1 << 27;
 
     fn check(self) -> Result<EncoderType, TypeTableError> {

@@ -73,7 +73,7 @@ impl ExtendedLabel {
     pub const LINEAR: u8 = 0x01;
     /// Bit 1 of the flags: bipolar counting.
     pub const BIPOLAR: u8 = 0x02;
-    /// A selector word and fifteen limit words.
+    /// Length of a set in bytes: a selector word and fifteen limit words.
     const SET_BYTES: usize = 32;
 
     /// Parses the content of field FFh. Limits beyond the end of the field are omitted.

@@ -157,7 +157,7 @@ impl Request {
         }
     }
 
-    /// Parses the payload; `None` if its length does not fit.
+    /// Parses the payload, or returns `None` if its length is wrong.
     fn parse_payload(&self, payload: &[u8]) -> Result<Option<Reply>, ReplyError> {
         let echoed = |same: bool, reply: Reply| if same { Ok(Some(reply)) } else { Err(ReplyError::Argument) };
         match (self, payload) {

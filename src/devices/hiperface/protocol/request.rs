@@ -206,7 +206,7 @@ impl Request {
             .and_then(Self::checked)
     }
 
-    /// Arguments in the order of the line, and the places of access codes among them.
+    /// Returns the arguments as transmitted, and the indices of access codes among them.
     fn payload(&self) -> (Vec<u8>, Vec<usize>) {
         match self {
             Request::ReadPosition
@@ -240,7 +240,8 @@ impl Request {
         }
     }
 
-    /// `None` for a payload too short to hold the arguments or with an address or code number that cannot be expressed.
+    /// Parses the arguments, or returns `None` if the payload is too short or contains an invalid address or code
+    /// number.
     fn from_payload(command: Command, payload: &[u8]) -> Option<Result<Self, RequestError>> {
         let position = |hh: u8, hl: u8, lh: u8, ll: u8| u32::from_be_bytes([hh, hl, lh, ll]);
         let code = AccessCode::new;
@@ -292,7 +293,7 @@ impl Request {
         }))
     }
 
-    /// Checks the ranges that depend on the frame only; those that depend on the encoder are checked by the encoder.
+    /// Checks the ranges that only depend on the frame; those that depend on the encoder are checked by the encoder.
     fn checked(request: Result<Self, RequestError>) -> Result<Self, RequestError> {
         match request? {
             Request::ReadData { count, .. } if count == 0 || usize::from(count) > MAX_TRANSFER => {

@@ -55,7 +55,7 @@ impl SerialLabel {
     }
 }
 
-/// Returns the text of a fixed-width field: padding (blanks, NUL) trimmed, unprintable bytes made visible.
+/// Decodes a fixed-width string: padding (blanks, NUL) is removed, unprintable bytes are made visible.
 pub(super) fn text(bytes: &[u8]) -> String {
     let start = bytes.iter().position(|b| !matches!(b, 0 | b' ')).unwrap_or(bytes.len());
     let end = bytes.iter().rposition(|b| !matches!(b, 0 | b' ')).map_or(start, |last| last + 1);

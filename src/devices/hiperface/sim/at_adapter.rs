@@ -13,7 +13,7 @@ parameters! {
     }
 }
 
-/// Encoder as delivered at the adapter's serial line, if its settings request one.
+/// An encoder with factory settings on the serial line of the adapter, if its settings request one.
 #[derive(Clone, Copy, Debug)]
 pub struct AtAdapter;
 

@@ -13,15 +13,15 @@ use crate::sim::Faults;
 use crate::sim::line::{Character, Queue, VirtualLine, Wires};
 use crate::units::{CharacterFormat, Moment, Parity};
 
-/// Line with one or several encoders, as seen from the host. Created from a [`Config`].
+/// A line with one or several encoders, as seen from the host. Created from a [`Config`].
 #[derive(Clone)]
 pub struct Bus {
     encoders: Vec<Encoder>,
     echo: bool,
     wires: Wires,
-    /// Characters on their way to the encoders, by their start.
+    /// Characters on their way to the encoders, by start time.
     to_encoders: Queue<Travelling>,
-    /// Characters that the host is going to receive, by their end.
+    /// Characters on their way to the host, by end time.
     to_host: Queue<Travelling>,
     talks: Vec<Talk>,
 }
@@ -48,7 +48,7 @@ struct Talk {
     end: Moment,
 }
 
-/// Next event; of simultaneous events the first of these.
+/// The next event; of simultaneous events the one listed first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderActs(usize),
@@ -57,8 +57,8 @@ pub(crate) enum Event {
 }
 
 impl Bus {
-    /// More than the slowest character takes: a transmission that ended before does not overlap any character still in
-    /// transit.
+    /// Upper bound for the duration of a character: a transmission that ended before does not overlap any character
+    /// still in transit.
     const LONGEST_CHARACTER: Duration = Duration::from_millis(20);
 
     /// Creates the virtual line from `config`. Its encoders have been powered for a long time.
@@ -73,17 +73,16 @@ impl Bus {
         }
     }
 
-    /// Returns the encoders, in the order of their first addresses.
+    /// Returns the encoders in the order of their initial addresses.
     pub fn encoders(&self) -> &[Encoder] {
         &self.encoders
     }
 
-    /// Returns one encoder, 0 first.
     pub fn encoder(&self, index: usize) -> Option<&Encoder> {
         self.encoders.get(index)
     }
 
-    /// Returns one encoder, to turn its shaft or to heat it.
+    /// Returns an encoder, mutably, in order to turn its shaft or to heat it.
     pub fn encoder_mut(&mut self, index: usize) -> Option<&mut Encoder> {
         self.encoders.get_mut(index)
     }
@@ -142,7 +141,7 @@ impl Bus {
         self.wires.inbox.push(byte);
     }
 
-    /// Puts bytes on the line, one character after the other, and gives the moment when the last one is through.
+    /// Puts bytes on the line, one character after another; returns when the last one has been transmitted.
     fn drive(&mut self, talker: Talker, start: Moment, format: CharacterFormat, bytes: &[u8]) -> Moment {
         let sent = self.wires.send(start, format.character_time(), bytes);
         let on_the_way = |character: Character| Travelling { talker, character, format };
@@ -164,15 +163,15 @@ impl Bus {
         sent.end
     }
 
-    /// Returns whether another device drives the line while this character is on it.
+    /// Returns whether another device drives the line during this character.
     fn collides(&self, Travelling { talker, character, .. }: &Travelling) -> bool {
         let other = |talk: &&Talk| talk.talker != *talker;
         self.talks.iter().filter(other).any(|talk| talk.start < character.end && character.start < talk.end)
     }
 }
 
-/// Returns the byte that a receiver makes of an unreadable character. Never an address byte, so that no frame begins
-/// with it.
+/// Returns the byte that a receiver makes of an unreadable character. Never an address byte, so no frame begins with
+/// it.
 fn garbage(rng: &mut Rng) -> u8 {
     rng.u8(0x80..0xFF)
 }

@@ -10,7 +10,7 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
 
 parameters! {
-    /// The settings of a virtual line with encoders. The default is one SKM36 with factory settings, at rest, without
+    /// Settings of a virtual line with encoders. The default is one SKM36 with factory settings, at rest and without
     /// faults.
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
@@ -32,11 +32,11 @@ parameters! {
 }
 
 impl Config {
-    /// Parses keys and values, already percent-decoded. Of a key given twice the last one counts. Numbers are decimal or
-    /// `0x…`; several encoders have consecutive addresses and serial numbers from the first's.
+    /// Parses percent-decoded keys and values. If a key occurs twice, its last value counts. Numbers are decimal or
+    /// `0x…`; several encoders have consecutive addresses and serial numbers, starting with those of the first.
     ///
     /// # Errors
-    /// A sentence that names the key and the allowed values.
+    /// Names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let config: Config = setting::read(VirtualDevice::Encoder, pairs)?;
         config.check_together()?;
@@ -47,7 +47,8 @@ impl Config {
         DeviceAddress::new(self.address.byte().saturating_add(index)).unwrap_or(self.address)
     }
 
-    /// The number at the end of the serial number counts up, so that no two encoders are taken for the same one.
+    /// Returns the serial number of an encoder; its final number counts up, so that no two encoders are mistaken for
+    /// each other.
     pub(super) fn serial_number_of(&self, index: u8) -> String {
         let first = self.serial_number.as_deref().unwrap_or(self.model.serial_number);
         let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -63,12 +64,12 @@ impl Config {
         format!("{own:<9}")
     }
 
-    /// Returns periods and turns: of the given type if it is known, else of the model.
+    /// Returns periods and turns of the given type if known, or else of the model.
     pub(super) fn geometry(&self, types: &EncoderTypes) -> Geometry {
         self.encoder_type.and_then(|code| types.find(code)?.geometry).unwrap_or(self.model.geometry)
     }
 
-    /// Returns whether the encoder has no bearing of its own: by the given type if it is known, else by the model.
+    /// Returns whether the encoder has no bearing, according to the given type if known, or else to the model.
     pub(super) fn is_kit(&self, types: &EncoderTypes) -> bool {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }
@@ -111,7 +112,7 @@ impl Values for Models {
     }
 }
 
-/// Access codes by number: `0:55,2:66`.
+/// Access codes by number, such as `0:55,2:66`.
 struct Codes;
 
 impl Values for Codes {

@@ -31,7 +31,7 @@ impl Wear {
     }
 }
 
-/// Codes to be fetched with 50h, oldest first. It holds four; later ones are lost while it is full.
+/// Status codes waiting for 50h, oldest first. The queue holds four; later ones are lost while it is full.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StatusQueue(VecDeque<StatusCode>);
 
@@ -53,7 +53,7 @@ impl StatusQueue {
     }
 }
 
-/// Encoder without its line.
+/// An encoder without its line.
 #[derive(Clone, Debug)]
 pub(super) struct Electronics {
     model: Model,
@@ -113,7 +113,7 @@ impl Electronics {
         self.watch_temperature(before);
     }
 
-    /// Returns whether the encoder has this command: 63h is for kit encoders only.
+    /// Returns whether the encoder supports the command: 63h is for kit encoders only.
     pub(super) fn has(&self, command: Command) -> bool {
         command != Command::Synchronise || self.kit
     }
@@ -121,7 +121,7 @@ impl Electronics {
     /// Carries out a request at `at` and returns the data of its reply. 53h has neither effect nor data here.
     ///
     /// # Errors
-    /// The code with which the encoder refuses; then nothing has changed.
+    /// The code with which the encoder refuses; nothing has changed.
     pub(super) fn execute(&mut self, at: Moment, request: &Request) -> Result<Vec<u8>, StatusCode> {
         let data = self.carry_out(at, request)?;
         let command = request.command();
@@ -210,10 +210,10 @@ impl Electronics {
         }
     }
 
-    /// 4Bh during a power failure: the first half of the bytes is written.
+    /// Handles 4Bh during a power failure: the first half of the bytes is written.
     ///
     /// # Errors
-    /// As for the whole store.
+    /// As for the complete store.
     pub(super) fn store_half(
         &mut self,
         field: u8,
@@ -257,7 +257,7 @@ impl Electronics {
     }
 }
 
-/// Returns the memory as delivered by the motor's maker: field 0 with the name plate, the rest free.
+/// Returns the memory as delivered by the motor manufacturer: field 0 with the name plate, the rest free.
 fn delivered_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
     let mut memory = Memory::new(model.user_blocks);
     if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {

@@ -24,7 +24,8 @@ use crate::units::Moment;
 /// The processing time of commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pace {
-    /// As observed: 3.7 ms for the position, 20 ms and 1.5 ms per byte for a store, half of the longest time for the rest.
+    /// Typical times as observed: 3.7 ms for the position, 20 ms plus 1.5 ms per byte for a store, half of the maximum
+    /// time for all others.
     #[default]
     Typical,
     /// Always the longest time of the manual's table.
@@ -36,7 +37,7 @@ impl Pace {
     const STORE: Duration = Duration::from_millis(20);
     const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
 
-    /// Returns the time of a refused frame: that of the status that answers it.
+    /// Returns the processing time of a refused frame, which is that of the status reply.
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
         let longest = |command: Command| command.row().max_time;
         match (self, verdict) {
@@ -58,7 +59,7 @@ pub(super) struct ReceivedCharacter {
     pub(super) start: Moment,
     pub(super) end: Moment,
     pub(super) byte: u8,
-    /// The parity bit matches, and the stop bit is in its place.
+    /// Whether the parity bit matches and the stop bit is in its place.
     pub(super) intact: bool,
 }
 
@@ -70,19 +71,20 @@ pub(super) struct Transmission {
     pub(super) bytes: Vec<u8>,
 }
 
-/// Virtual encoder. Moments are those of its [`Bus`](super::Bus). It has no `Debug`: frames in it may contain access codes.
+/// A virtual encoder. Moments are those of its [`Bus`](super::Bus). There is no `Debug`, because frames may contain
+/// access codes.
 #[derive(Clone)]
 pub struct Encoder {
     electronics: Electronics,
     faults: Faults,
     pace: Pace,
     power: Power,
-    /// Stored settings as they were at the last start.
+    /// Stored settings at the last start.
     user: LineSettings,
     /// 67h.
     temporary: Option<LineSettings>,
     activity: Activity,
-    /// End of the last character that was lost, with the rest of its frame.
+    /// End of the last lost character, with which the rest of its frame is lost.
     lost: Option<Moment>,
     frames_processed: u32,
     stores_begun: u32,
@@ -112,12 +114,12 @@ struct Reception {
     bytes: Vec<u8>,
     intact: bool,
     overlong: bool,
-    /// Silence lasts long enough then, unless another character begins before.
+    /// Time at which the silence has lasted long enough, unless another character begins before.
     ends: Moment,
 }
 
 impl Reception {
-    /// More than the longest request has (4Bh with 128 bytes: 135).
+    /// Capacity in bytes, more than the longest request (4Bh with 128 bytes: 135).
     const CAPACITY: usize = 140;
 
     fn beginning(ends: Moment) -> Self {
@@ -173,7 +175,7 @@ impl Encoder {
         self.electronics.shaft.set_rpm(now, rpm);
     }
 
-    /// Sets its temperature; beyond the limit it warns once (code 1Eh).
+    /// Sets the temperature; beyond the limit the encoder warns once (code 1Eh).
     pub fn set_temperature(&mut self, celsius: i16) {
         self.electronics.set_temperature(celsius);
     }
@@ -188,7 +190,7 @@ impl Encoder {
         self.electronics.stored_settings
     }
 
-    /// Returns the settings with which it listens at a moment; `None` while it does not listen.
+    /// Returns the settings with which the encoder listens at a moment, or `None` while it does not listen.
     pub fn settings_at(&self, at: Moment) -> Option<LineSettings> {
         if self.silent {
             return None;
@@ -213,7 +215,7 @@ impl Encoder {
         }
     }
 
-    /// Replaces the faults; frames and stores keep their counts.
+    /// Replaces the faults; the counts of frames and stores are kept.
     pub(super) fn set_faults(&mut self, faults: Faults) {
         self.silent = faults.silent_after().is_some_and(|frames| frames <= self.frames_processed);
         self.faults = faults;
@@ -247,7 +249,7 @@ impl Encoder {
         self.electronics.restart();
     }
 
-    /// Returns when [`act`](Self::act) is to be called next.
+    /// Returns when [`act`](Self::act) must be called next.
     pub(super) fn acts_at(&self) -> Option<Moment> {
         match &self.activity {
             Activity::Listening(reception) => reception.as_ref().map(|reception| reception.ends),
@@ -255,7 +257,7 @@ impl Encoder {
         }
     }
 
-    /// Notes the start of a character at its receiver; everything due before has been [done](Self::act).
+    /// Records the start of a character at the receiver, after everything due before has been [done](Self::act).
     pub(super) fn hear(&mut self, heard: ReceivedCharacter) {
         let Some(settings) = self.settings_at(heard.start) else { return };
         let Some(timing) = Timing::of_settings(settings) else { return };
@@ -276,7 +278,7 @@ impl Encoder {
         }
     }
 
-    /// Carries out what is due at `at`, the time returned by [`acts_at`](Self::acts_at).
+    /// Executes what is due at `at`, the time returned by [`acts_at`](Self::acts_at).
     pub(super) fn act(&mut self, at: Moment) -> Option<Transmission> {
         match std::mem::replace(&mut self.activity, Activity::Listening(None)) {
             Activity::Listening(Some(reception)) => {
@@ -319,7 +321,7 @@ impl Encoder {
         self.activity = Activity::Executing { until, settings, verdict };
     }
 
-    /// Parses a request. Whether the encoder has the command is checked before its length and arguments.
+    /// Parses a request. Support for the command is checked before its length and arguments.
     fn understand(&self, frame: &Frame<'_>) -> Result<Request, StatusCode> {
         if Command::from_byte(frame.command).is_some_and(|command| !self.electronics.has(command)) {
             return Err(StatusCode::UNKNOWN_COMMAND);
@@ -327,7 +329,7 @@ impl Encoder {
         Request::parse(frame).map_err(|error| error.status())
     }
 
-    /// Ends the processing: the effect, and the first bit of the reply.
+    /// Ends the processing: applies the effect, and starts the reply.
     fn answer(
         &mut self,
         at: Moment,
@@ -361,7 +363,7 @@ impl Encoder {
         Some(Transmission { start: at, settings, bytes })
     }
 
-    /// Returns whether power is lost during this store: half of it is written.
+    /// Returns whether power is lost during this store, so that only half of it is written.
     fn dies_in(&mut self, request: &Request) -> bool {
         let Request::StoreData { field, address, code, data } = request else { return false };
         if self.electronics.memory.check_store(*field, *address, data.len(), *code).is_err() {
@@ -373,7 +375,7 @@ impl Encoder {
     }
 }
 
-/// Checks the parity, then the checksum, then the length: the order of the reference.
+/// Checks the parity, then the checksum, then the length, in the order of the reference.
 fn valid_frame(reception: &Reception) -> Result<Frame<'_>, StatusCode> {
     if !reception.intact {
         return Err(StatusCode::PARITY);

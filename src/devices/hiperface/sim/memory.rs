@@ -24,7 +24,7 @@ impl Memory {
     /// E, not WE, code 0, no code required, 64 bytes.
     const LABEL_STATUS: DataFieldStatus = DataFieldStatus::from_byte(0x83);
 
-    /// Creates a memory of `blocks` of 16 bytes without any field, every access code at its factory value.
+    /// Creates a memory of `blocks` blocks of 16 bytes, without fields and with all access codes at factory values.
     pub fn new(blocks: u8) -> Self {
         Memory {
             bytes: vec![0xFF; usize::from(blocks) * FieldSize::BLOCK],
@@ -34,7 +34,7 @@ impl Memory {
         }
     }
 
-    /// Creates the same memory with a read-only field FFh of 64 bytes.
+    /// Adds a read-only field FFh of 64 bytes.
     #[must_use]
     pub(super) fn with_extended_label(mut self, content: &[u8]) -> Self {
         let mut label = content.to_vec();
@@ -43,7 +43,7 @@ impl Memory {
         self
     }
 
-    /// Creates the same memory with other access codes.
+    /// Replaces the access codes.
     #[must_use]
     pub(super) fn with_codes(mut self, codes: [AccessCode; 4]) -> Self {
         self.codes = codes;
@@ -69,7 +69,7 @@ impl Memory {
         self.fields.get(usize::from(field)).copied().ok_or(StatusCode::NO_SUCH_FIELD)
     }
 
-    /// Returns all bytes of a field, whatever its code; `None` if it does not exist.
+    /// Returns all bytes of a field, whatever its access code, or `None` if it does not exist.
     pub fn field_bytes(&self, field: u8) -> Option<&[u8]> {
         if field == EXTENDED_LABEL_FIELD {
             return self.extended_label.as_deref();
@@ -85,7 +85,7 @@ impl Memory {
     /// Handles 4Ah.
     ///
     /// # Errors
-    /// 12h, 11h, and 0Fh if the field requires its code.
+    /// 12h, 11h, and 0Fh if the field requires its access code.
     pub fn read(&self, field: u8, address: u8, count: u8, code: AccessCode) -> Result<&[u8], StatusCode> {
         let status = self.status(field)?;
         let bytes = self.field_bytes(field).ok_or(StatusCode::NO_SUCH_FIELD)?;
@@ -98,7 +98,7 @@ impl Memory {
     /// Checks whether 4Bh with `count` bytes would be carried out.
     ///
     /// # Errors
-    /// 12h, 11h, 0Fh if the field requires its code, 0Eh if it is write protected (FFh always is).
+    /// 12h, 11h, 0Fh if the field requires its access code, 0Eh if it is write-protected (FFh always is).
     pub fn check_store(&self, field: u8, address: u8, count: usize, code: AccessCode) -> Result<(), StatusCode> {
         let status = self.status(field)?;
         if usize::from(address) + count > status.size().bytes() {
@@ -111,7 +111,7 @@ impl Memory {
     /// Handles 4Bh.
     ///
     /// # Errors
-    /// Those of [`check_store`](Self::check_store); then nothing is written.
+    /// Those of [`check_store`](Self::check_store); nothing is written.
     pub fn store(&mut self, field: u8, address: u8, data: &[u8], code: AccessCode) -> Result<(), StatusCode> {
         self.check_store(field, address, data.len(), code)?;
         let start = self.place(field).ok_or(StatusCode::NO_SUCH_FIELD)?.start + usize::from(address);
@@ -123,8 +123,8 @@ impl Memory {
     /// Handles 4Dh: creates the next field, changes or deletes an existing one.
     ///
     /// # Errors
-    /// 12h for a number beyond the next one, 0Fh for a wrong code, 0Eh for FFh, 10h if there is no space, or if a field
-    /// other than the last is to change its size or be deleted.
+    /// 12h for a number beyond the next one, 0Fh for a wrong access code, 0Eh for FFh, 10h if the memory is too small,
+    /// or if a field other than the last is to change its size or be deleted.
     pub fn define(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
         let next = usize::from(field) == self.fields.len() && field != EXTENDED_LABEL_FIELD;
         match (next, status.exists()) {
@@ -146,7 +146,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Checks the code for every command that asks for one particular code.
+    /// Checks the access code of commands that require a particular one.
     pub(super) fn check_code(&self, number: CodeNumber, code: AccessCode) -> Result<(), StatusCode> {
         if self.code(number) == code { Ok(()) } else { Err(StatusCode::WRONG_CODE) }
     }
@@ -181,8 +181,8 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the field's present status, if `code` is its code (required even if CE is 0) and it is not the encoder's
-    /// own.
+    /// Returns the present status of a field, if `code` is its access code (required even if CE is 0) and it is not the
+    /// encoder's own field.
     fn check_owner(&self, field: u8, code: AccessCode) -> Result<DataFieldStatus, StatusCode> {
         let present = self.status(field)?;
         self.check_code(present.code(), code)?;

@@ -11,13 +11,13 @@ pub struct Model {
     /// Type byte of 52h; FFh refers to the extended label.
     pub encoder_type: u8,
     pub geometry: Geometry,
-    /// Without a bearing of its own: it has command 63h.
+    /// Whether the encoder has no bearing and supports command 63h.
     pub kit: bool,
     pub serial_number: &'static str,
     pub firmware_version: &'static str,
     /// `DD.MM.YY`.
     pub firmware_date: &'static str,
-    /// EEPROM size in units of 16 bytes, as reported by 52h; part of it is the encoder's own.
+    /// EEPROM size in units of 16 bytes, as reported by 52h; the encoder itself uses a part of it.
     pub eeprom_units: u8,
     /// Blocks of 16 bytes for data fields.
     pub user_blocks: u8,
@@ -27,9 +27,9 @@ pub struct Model {
     pub position: u32,
     /// Degrees Celsius above which code 1Eh is reported.
     pub temperature_limit: i16,
-    /// Content of data field 0 (a multiple of 16 bytes, status C9h for 32); empty: no field.
+    /// Content of data field 0 (a multiple of 16 bytes, status C9h for 32); empty for no field.
     pub name_plate: &'static [u8],
-    /// Content of field FFh, padded with 00h to 64 bytes. Empty: none.
+    /// Content of field FFh, padded with 00h to 64 bytes; empty for no label.
     pub extended_label: &'static [u8],
 }
 
@@ -62,14 +62,16 @@ const fn rotary(periods: u32, turns: u32) -> Geometry {
     Geometry::Rotary { periods, turns }
 }
 
-/// Name plate of a servo motor in the format of a drive maker: designation, then big-endian words: speed in 1/min, rated
-/// and peak current in 10 mA, pole pairs, voltage, commutation offset in 1/65536 turn, serial number (32 bit).
+/// Name plate of a servo motor in the format of a drive manufacturer: designation, then big-endian words: speed in
+/// 1/min, rated and peak current in 10 mA, pole pairs, voltage, commutation offset in 1/65536 turn, serial number (32
+/// bits).
 const MOTOR: &[u8] = b"EMD71K-4 3000rpm\x0B\xB8\x01\x22\x03\x66\x00\x03\x00\xE6\x2A\x5F\x00\x01\xE2\x40";
 
-/// The same layout for the motor into which the kit encoder was built.
+/// Name plate of the motor into which the kit encoder is built, in the same layout.
 const KIT_MOTOR: &[u8] = b"SMK42-08 4500rpm\x11\x94\x00\xB4\x02\x1C\x00\x04\x00\x30\x71\xC4\x00\x03\x0D\x40";
 
-/// 16 periods, 4096 turns, limits 0 and 1 valid: channel 48h, 115 °C. The first byte is the XOR of all others.
+/// Extended label: 16 periods, 4096 turns, limits 0 and 1 valid: channel 48h, 115 °C. The first byte is the XOR of all
+/// others.
 const SEL37_LABEL: &[u8] = b"\x53\x00\x00\x00\x00\x10\x00\x00\x10\x00SEL37-HFB0-K02    \x00\x03\x00\x48\x00\x73";
 
 impl Model {

@@ -13,18 +13,18 @@ use crate::units::Moment;
 pub(super) struct Shaft {
     geometry: Geometry,
     rpm: f64,
-    /// Mechanical place in steps at `since`.
+    /// Mechanical position in steps at `since`.
     place: f64,
     since: Moment,
     offset: u64,
 }
 
 impl Shaft {
-    /// Above this speed no position is available (data sheets: 6000/min for the absolute value).
+    /// Speed above which no position is available (data sheets: 6000/min for the absolute value).
     pub(super) const MAX_RPM: f64 = 6000.0;
-    /// The position word has 32 bits.
+    /// Number of values of the position word, which has 32 bits.
     const WORD: u64 = 1 << 32;
-    /// Analogue values: 10 bits for 5 V.
+    /// Scale of analogue values: 10 bits for 5 V.
     const COUNTS_PER_VOLT: f64 = 1023.0 / 5.0;
     const MEAN_VOLTS: f64 = 2.5;
     const AMPLITUDE_VOLTS: f64 = 0.5;
@@ -47,14 +47,13 @@ impl Shaft {
         u64::from(position) < self.range()
     }
 
-    /// Returns the position word at `at`.
     pub(super) fn position(&self, at: Moment) -> u32 {
         let word = (self.whole_steps(at) + self.offset) % self.range();
         // The range is at most 2³².
         u32::try_from(word).unwrap_or(u32::MAX)
     }
 
-    /// Sets the position of the shaft's present place from `at` on.
+    /// Sets the position at the present shaft angle, from `at` on.
     pub(super) fn set_position(&mut self, at: Moment, position: u32) {
         let range = self.range();
         self.offset = (u64::from(position) % range + range - self.whole_steps(at)) % range;
@@ -84,7 +83,7 @@ impl Shaft {
         self.place(at) as u64 // not negative, below the range
     }
 
-    /// Returns the mechanical place in steps, from 0 up to the range.
+    /// Returns the mechanical position in steps, from 0 up to the range.
     fn place(&self, at: Moment) -> f64 {
         // A linear scale has no turns; there `rpm` counts periods per minute.
         let steps_per_turn = self.geometry.steps_per_turn().unwrap_or(STEPS_PER_PERIOD.into()) as f64;

@@ -14,7 +14,7 @@ use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::LineSettings;
 use crate::devices::hiperface::state::explain as words;
 
-/// Interval of reading a watched value: watched values change slowly, and the position has to wait for them.
+/// Interval of reading a watched value; watched values change slowly, and delay the position.
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {

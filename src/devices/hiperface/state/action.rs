@@ -14,7 +14,7 @@ use crate::profile::PlanId;
 pub enum HiperfaceAction {
     /// Read the error queue.
     ReadStatus,
-    /// While the position is read all the time, read this too, or no more.
+    /// Start or stop reading a value while the position is polled.
     Watch(Watch, bool),
     ReadAnalogue(u8),
     /// Read the shaft at rest: position, sine and cosine.
@@ -26,7 +26,7 @@ pub enum HiperfaceAction {
         restart: bool,
     },
     Reset,
-    /// Other interface settings until the next restart.
+    /// Change the interface settings until the next restart.
     ConfigureForNow(LineSettings),
     UseCode {
         number: CodeNumber,
@@ -41,11 +41,11 @@ pub enum HiperfaceAction {
     },
     Revert(FieldRange),
     Plan(Change),
-    /// Make the plan again with other options, if the change is a restore.
+    /// Prepare the plan again with other options, if the change is a restore.
     PlanAgain(RestoreOptions),
-    /// Write although the encoder counts as worn.
+    /// Write even though the encoder has reached its limit of write cycles.
     ForceWear(bool),
-    /// Write the plan that was shown, and no other.
+    /// Execute the plan with this id, which the user has seen.
     Write(PlanId),
     CloseReview,
     Save(PathBuf),

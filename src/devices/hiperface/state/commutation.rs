@@ -29,25 +29,24 @@ pub enum CommutationAction {
     Use(Slot),
     /// Discard all readings.
     Clear,
-    /// Method 1: put the offset into the memory, as an edit.
+    /// Method 1: enter the offset in the memory, as an edit.
     Store,
     /// Method 2: show the effect of setting the position.
     Set,
 }
 
-/// The assistant for one encoder.
 #[derive(Debug, Default)]
 pub struct Commutation {
     pub form: Form,
-    /// Why the last action was not carried out.
+    /// Reason why the last action was not carried out.
     pub problem: Option<Text>,
     readings: [Option<RestReading>; 3],
-    /// The last position read: the shaft is still there, as far as known.
+    /// The last position read, where the shaft still is as far as known.
     last: Option<Slot>,
     asked: Option<PendingReading>,
 }
 
-/// Running reading: its purpose and the settings at its start, whatever is selected or entered meanwhile.
+/// A reading in progress: its purpose and the settings at its start, whatever is selected or entered in the meantime.
 #[derive(Debug)]
 struct PendingReading {
     slot: Slot,
@@ -61,7 +60,7 @@ pub struct RestReading {
     /// The position in periods, in the whole range of the encoder.
     pub fine_periods: f64,
     pub kind: Kind,
-    /// The position word, if the encoder was read.
+    /// Position word, if the encoder was read.
     pub raw: Option<u32>,
 }
 
@@ -71,10 +70,10 @@ pub enum Kind {
     Fine {
         residual_periods: f64,
         verdict: Verdict,
-        /// The smallest distinguishable step, in periods; `None` if the phase was entered.
+        /// Resolution in periods, or `None` if the phase was entered.
         resolution_periods: Option<f64>,
     },
-    /// The absolute position only: the middle of its step.
+    /// Only the absolute position, at the middle of its step.
     Absolute,
     Typed,
 }
@@ -110,12 +109,12 @@ impl Commutation {
         self.problem = None;
     }
 
-    /// Forgets the readings: they refer to another zero, or are no longer needed.
+    /// Discards the readings, because they refer to another zero or are no longer required.
     pub(super) fn forget_readings(&mut self) {
         (self.readings, self.last, self.problem) = ([None; 3], None, None);
     }
 
-    /// The encoder was read at rest: is it for a slot?
+    /// Stores a reading at rest in the slot for which it was requested, if any.
     pub(super) fn take(&mut self, rest: Rest, geometry: Option<Geometry>) {
         let Some(asked) = self.asked.take() else { return };
         match asked.reading(rest, geometry) {
@@ -124,7 +123,7 @@ impl Commutation {
         }
     }
 
-    /// Handles a failed job; returns true if it is the reading, whose error is shown where it was requested.
+    /// Handles a failed job; returns whether it is the reading, whose error is shown where it was requested.
     pub(super) fn failed(&mut self, why: &Text) -> bool {
         let own = self.asked.take().is_some();
         if own {
@@ -171,7 +170,7 @@ impl PendingReading {
     }
 }
 
-/// Combines absolute position and phase; they disagree if the residual is beyond 14/32.
+/// Combines absolute position and phase; they disagree if the residual exceeds 14/32.
 fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<RestReading, Text> {
     let steps = u64::from(STEPS_PER_PERIOD);
     // An unknown range does not wrap.

@@ -27,8 +27,8 @@ pub enum LinkKind {
     Replay,
 }
 
-/// Entries of the connection form. Entries of another kind of link are kept and left out of the link. An empty entry means
-/// the default.
+/// Entries of the connection form. Entries of other connection types are preserved and left out of the link. An empty
+/// entry selects the default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkForm {
     pub kind: LinkKind,
@@ -44,9 +44,9 @@ pub struct LinkForm {
     /// If set, the encoder's time-out is 44 bits, else 11.
     pub long_timeout: bool,
     pub model: String,
-    /// Text of other parameters.
+    /// Typed values of other parameters.
     pub typed: Typed,
-    /// Parameters of the link that have no entry, or a value that their entry cannot show.
+    /// Link parameters without an entry, or with a value that their entry cannot show.
     pub rest: Vec<(String, String)>,
 }
 
@@ -115,12 +115,12 @@ impl FormModel for LinkForm {
 }
 
 impl LinkForm {
-    /// Returns the virtual encoders to choose from, the usual one first.
+    /// Returns the available virtual encoders, the default one first.
     pub fn models() -> impl Iterator<Item = &'static str> {
         MODELS.iter().map(|model| model.name)
     }
 
-    /// Returns the entries of the virtual encoder that are typed.
+    /// Returns the typed entries of the virtual encoder.
     pub fn of_the_virtual() -> Vec<Entry> {
         chosen(&Config::entries(), &["rpm", "fault"])
     }
@@ -129,13 +129,13 @@ impl LinkForm {
         LinkParameters::entries()
     }
 
-    /// The parameters that are typed: those of the virtual encoder, where it is one, and those of the link.
+    /// Returns the typed parameters: those of the virtual encoder, if applicable, and those of the link.
     fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == LinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
         [own, Self::of_the_link()].concat()
     }
 
-    /// Fills in the entry of a parameter; returns false if no entry can show it.
+    /// Fills in the entry of a parameter; returns `false` if no entry can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("model", LinkKind::Virtual) {
             value.clone_into(&mut self.model);

@@ -17,36 +17,34 @@ use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, LineSettings, 
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
-/// An encoder, or a profile of one.
+/// An encoder or a profile of one.
 pub struct Encoder {
     pub session: Session<Hiperface>,
     pub identity: Option<Identity>,
     pub staged: Staged,
-    /// The error queue as last read, with the codes announced since; `None`: never read.
+    /// Status queue as last read, with the codes announced since, or `None` if never read.
     pub codes: Option<Vec<StatusCode>>,
-    /// Data fields that could not be read for a reason other than their access code, with that reason.
+    /// Data fields that could not be read, with a reason other than their access code.
     pub unreadable: BTreeMap<u8, Text>,
     pub line_quality: LineQuality,
-    /// The last device check.
     pub check: Option<Vec<check::HiperfaceStepResult>>,
-    /// The counter as last read.
     pub counter: Option<u32>,
-    /// The last position set by this program: old and new.
+    /// Old and new value of the last position set by this program.
     pub position_set: Option<(u32, u32)>,
-    /// Analogue values as last read, with their limits; or why the encoder does not provide them.
+    /// Analogue values as last read with their limits, or the reason why the encoder does not provide them.
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
     pub record: Record,
     pub commutation: Commutation,
     pub(super) rest: RestAsked,
     pub(super) meaning: Meaning,
-    /// Access codes that the user gave or changed: the next session with this encoder begins with them.
+    /// Access codes that the user entered or changed, with which the next session with this encoder begins.
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
     pub(super) asked: Option<Item>,
     /// Access codes to be given to the session again once the encoder is identified.
     pub(super) codes_due: Vec<(CodeNumber, AccessCode)>,
     /// Interface settings of the encoder after the running job.
     pub(super) settings_then: Option<LineSettings>,
-    /// Number of the access code given last by the user: reading the fields shows whether it is right.
+    /// Number of the access code entered last, whose correctness is revealed by reading the fields.
     pub(super) tried_code: Option<CodeNumber>,
 }
 
@@ -95,17 +93,17 @@ impl Encoder {
         self.session.log_answer(facts, services);
     }
 
-    /// Returns whether there are edits that are not written.
+    /// Returns whether edits have not been written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
     }
 
-    /// Returns one of its data fields, as in the encoder.
+    /// Returns a data field as in the encoder.
     pub fn field(&self, number: u8) -> Option<&FieldImage> {
         self.staged.device().iter().find(|field| field.number == number)
     }
 
-    /// Returns the edited profile, if this is one.
+    /// Returns the edited profile, if the session is one.
     pub(crate) fn wanted_profile(&self) -> Option<HiperfaceProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
@@ -115,7 +113,7 @@ impl Encoder {
         Some(profile)
     }
 
-    /// Takes over a reading of the encoder; edits stay, unless they are for another encoder.
+    /// Adopts a reading of the encoder; edits are kept, unless they belong to another encoder.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
         let fresh = std::mem::take(&mut self.session.just_connected);
@@ -158,7 +156,7 @@ impl Encoder {
         }
     }
 
-    /// Returns why the bytes of a field cannot be edited; `None` if they can.
+    /// Explains why the bytes of a field cannot be edited, or returns `None` if they can.
     pub fn why_not_edited(&self, field: &FieldImage) -> Option<Text> {
         self.unreadable.get(&field.number).cloned().or_else(|| rules::edit(field).err())
     }
@@ -168,7 +166,7 @@ impl Encoder {
         self.record.add(samples, dropped, geometry);
     }
 
-    /// Reports whether the user's access code opens the fields that it guards; never the code itself.
+    /// Reports whether the access code of the user opens the fields that it protects; never the code itself.
     fn tell_of_code(&mut self, services: &mut Services) {
         let Some(number) = self.tried_code.take() else { return };
         let own = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
@@ -186,7 +184,7 @@ impl Encoder {
         services.notify(severity, vec![text.with("number", number)], Some(&self.session.name()));
     }
 
-    /// Returns whether this is another encoder than the one read before.
+    /// Returns whether the encoder differs from the one read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.label.encoder_type, identity.serial.serial_number.clone());
         self.identity.as_ref().is_some_and(|known| who(known) != who(identity))

@@ -68,14 +68,14 @@ impl Kind for Hiperface {
 }
 
 impl Encoder {
-    /// Reads the encoder. After connecting, it is identified before access codes are given: they are for one encoder only.
+    /// Reads the encoder. After connecting, the encoder is identified before access codes are used, since they belong
+    /// to a single encoder.
     pub(super) fn read_encoder(&mut self, services: &mut Services) {
         let identify = self.session.just_connected && !self.access_codes.is_empty();
         self.submit(if identify { HiperfaceJob::Identify } else { HiperfaceJob::Survey }, services);
     }
 
-    /// Gives the session the next access code of the encoder that is connected again; after the last one the encoder is
-    /// read.
+    /// Passes the next access code of a reconnected encoder to the session; after the last one the encoder is read.
     fn give_codes(&mut self, services: &mut Services) {
         match self.codes_due.pop() {
             Some((number, code)) => self.submit(HiperfaceJob::UseCode { number, code }, services),
@@ -89,8 +89,8 @@ impl Encoder {
         self.codes.get_or_insert_default().extend(codes);
     }
 
-    /// Takes the new address or codes after a write, for the next session as well. The position before it was set is stored
-    /// only here: the encoder does not report its offset.
+    /// Adopts a new address or new codes after a write, for the next session as well. The position before it was set is
+    /// only stored here, since the encoder does not report its offset.
     pub(super) fn follow(&mut self, ops: &[Op], services: &mut Services) {
         for op in ops {
             match op {
@@ -117,7 +117,7 @@ impl Encoder {
         }
     }
 
-    /// Takes the settings that the job has brought about, so that the next session begins with them.
+    /// Adopts the settings that the job has changed, so that the next session begins with them.
     fn follow_settings(&mut self) {
         let Some(settings) = self.settings_then.take() else { return };
         let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.format()) else { return };
@@ -159,7 +159,7 @@ impl Encoder {
         self.session.write_read(Body::new(saved.profile), edits, remarks, services);
     }
 
-    /// After a write that ended early, the session follows those operations that were carried out.
+    /// Adopts the operations that were carried out by a write that ended early.
     fn follow_what_was_done(&mut self, error: &JobError, services: &mut Services) {
         let JobError::Interrupted { interrupted, .. } = error else { return };
         let Some(prepared) = self.review().and_then(Review::writing) else { return };
@@ -233,8 +233,8 @@ impl SessionEvents for Encoder {
         }
     }
 
-    /// Returns whether the link is open and the encoder does not reply; or nothing was read since it was opened, because
-    /// the bytes received are invalid.
+    /// Returns whether the link is open but the encoder does not reply, or nothing was read since it was opened,
+    /// because the bytes received are invalid.
     fn is_silence(&self, error: &JobError) -> bool {
         let cause = match error {
             JobError::Device(cause) => cause,
@@ -274,7 +274,7 @@ impl SessionEvents for Encoder {
         begun
     }
 
-    /// Handles a failed job. A missing feature is a result; an invalid reply is none.
+    /// Handles a failed job. A missing feature is a result; an invalid reply is not.
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);

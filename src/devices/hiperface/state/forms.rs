@@ -7,10 +7,10 @@ use crate::devices::hiperface::protocol::{
 use crate::devices::hiperface::state::TEXTS;
 use crate::units::CharacterFormat;
 
-/// Parses an access code: one byte in hexadecimal.
+/// Parses an access code: one hexadecimal byte.
 ///
 /// # Errors
-/// Why it is invalid; the entry itself is not repeated.
+/// Explains why the entry is invalid without repeating it.
 pub fn access_code(text: &str) -> Result<AccessCode, Text> {
     byte(text).map(AccessCode::new).ok_or_else(|| TEXTS.text("entry.code"))
 }
@@ -18,7 +18,7 @@ pub fn access_code(text: &str) -> Result<AccessCode, Text> {
 /// Parses a new access code, entered twice because it cannot be read back.
 ///
 /// # Errors
-/// Why they are invalid; the entries are not repeated.
+/// Explains why the entries are invalid without repeating them.
 pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
     let code = access_code(text)?;
     if access_code(again)?.byte() == code.byte() { Ok(code) } else { Err(TEXTS.text("entry.codes_differ")) }
@@ -34,7 +34,7 @@ pub fn address(text: &str) -> Result<DeviceAddress, Text> {
         .ok_or_else(|| with_addresses(TEXTS.text("entry.address")).with("entry", text))
 }
 
-/// Adds the first and the last address of an encoder, in hexadecimal.
+/// Adds the lowest and highest address of an encoder in hexadecimal.
 pub(super) fn with_addresses(text: Text) -> Text {
     let [first, last] = [DeviceAddress::FIRST, DeviceAddress::LAST].map(|own| format!("{:02X}", own.byte()));
     text.with("first", first).with("last", last)
@@ -48,11 +48,11 @@ pub fn channel(text: &str) -> Result<u8, Text> {
     byte(text).ok_or_else(|| TEXTS.text("entry.channel").with("entry", text))
 }
 
-/// Parses a position in steps, decimal or with `0x`; or degrees within the first turn followed by `°` or `deg`. No sign, no
-/// exponent, no words.
+/// Parses a position in steps, decimal or with `0x`; or degrees within the first turn followed by `°` or `deg`. Signs,
+/// exponents and words are not allowed.
 ///
 /// # Errors
-/// Why the entry is invalid, with the range if it is known.
+/// Explains why the entry is invalid, with the range if known.
 pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     let text = text.trim();
     let last = geometry.and_then(Geometry::range).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
@@ -82,10 +82,10 @@ pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     u32::try_from(steps).ok().filter(|_| steps <= last).ok_or_else(refused)
 }
 
-/// Returns the interface settings with another format, time-out and wiring; unknown bits of the byte are kept.
+/// Returns the interface settings with another format, time-out and wiring; unknown bits are preserved.
 ///
 /// # Errors
-/// The encoder has no such speed or parity.
+/// The encoder does not support the baud rate or parity.
 pub fn settings(
     from: LineSettings,
     format: CharacterFormat,

@@ -6,10 +6,9 @@ use crate::devices::hiperface::protocol::{Answer, Frame, FrameFact, Reply, Reque
 use crate::devices::hiperface::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// Decoder of frames, in the order in which they were transmitted.
+/// Decoder of frames in the order of transmission.
 #[derive(Debug, Default)]
 pub(super) struct Meaning {
-    /// The last request, and its address.
     request: Option<(u8, Request)>,
 }
 

@@ -11,7 +11,6 @@ use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
 use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 
-/// Recorder of one encoder, with its latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     pub(super) track: Track<Watch>,
@@ -49,7 +48,7 @@ impl Record {
         }
     }
 
-    /// Records these values, and no others, in addition to the position.
+    /// Records exactly these values in addition to the position.
     pub(super) fn watch(&mut self, watched: &[Watch]) {
         self.track.watch(watched);
     }
@@ -58,12 +57,12 @@ impl Record {
         self.track.watched()
     }
 
-    /// Returns the last position, as long as the encoder has one to give.
+    /// Returns the last position, as long as the encoder returns one.
     pub fn last(&self) -> Option<&PositionReading> {
         self.last.as_ref().filter(|_| !self.refused)
     }
 
-    /// Returns whether the encoder has no position to give at the moment.
+    /// Returns whether the encoder has no position to return at the moment.
     pub fn refused(&self) -> bool {
         self.refused
     }

@@ -8,7 +8,7 @@ use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::procedures::Rest;
 use crate::devices::hiperface::protocol::Geometry;
 
-/// A reading that was asked for itself.
+/// A reading requested by the user rather than by the assistant.
 #[derive(Debug, Default)]
 pub(super) struct RestAsked {
     is_under_way: bool,
@@ -34,7 +34,7 @@ impl Encoder {
         self.commutation.take(rest, geometry);
     }
 
-    /// Handles a failed job; returns true if it is such a reading, whose error is shown where it was requested.
+    /// Handles a failed job; returns whether it is such a reading, whose error is shown where it was requested.
     pub(super) fn rest_failed(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Err(why.clone()));

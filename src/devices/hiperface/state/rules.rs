@@ -14,19 +14,19 @@ use crate::devices::hiperface::state::explain as words;
 /// Permission for an action, or why not.
 pub type Allowed = Result<(), Text>;
 
-/// A new field of this size may be created, and which number it would get.
+/// Checks whether a new field of this size can be created; returns its number.
 pub fn create(memory: FreeMemory, size: FieldSize, code: CodeNumber, code_required: bool) -> Allowed {
     allowed(plan_create(memory, memory.fields, DataFieldStatus::new(size, code, code_required)))
 }
 
-/// The field may get this size.
+/// Checks whether the field can be resized.
 pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &Staged) -> Allowed {
     status(field)?;
     edits_stay(staged, field.number, size.bytes())?;
     allowed(plan_redefine(memory, field, field.status.with_size(size)))
 }
 
-/// Checks that the field may change its size: it is the last.
+/// Checks whether the field can change its size, because it is the last.
 pub fn resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
     status(field)?;
     allowed(plan_delete(memory, field))
@@ -38,7 +38,7 @@ pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &Staged) -> Allowe
     edits_stay(staged, field.number, 0)
 }
 
-/// Checks that the field's protection and access code may be changed: the encoder requires its access code.
+/// Checks that protection and access code of the field can be changed, for which the encoder requires its access code.
 pub fn status(field: &FieldImage) -> Allowed {
     match field.bytes {
         Some(_) => Ok(()),
@@ -46,7 +46,7 @@ pub fn status(field: &FieldImage) -> Allowed {
     }
 }
 
-/// Checks a change before the encoder is asked.
+/// Checks a change before the encoder is queried.
 pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
     let field = |number: &u8| staged.device().iter().find(|field| field.number == *number);
     match change {
@@ -68,7 +68,7 @@ pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
     }
 }
 
-/// Carrying the plan out leaves a place for every edit that is not written.
+/// Checks that every unwritten edit still has a location after the plan.
 pub(super) fn keeps_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
     plan.ops.iter().try_for_each(|op| match op {
         Op::Define { field, from: Some(_), to } => {
@@ -78,7 +78,7 @@ pub(super) fn keeps_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
     })
 }
 
-/// Checks that no edit of the field is beyond its first `bytes`.
+/// Checks that no edit of the field is beyond its first `bytes` bytes.
 fn edits_stay(staged: &Staged, field: u8, bytes: usize) -> Allowed {
     match staged.edits().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
         0 => Ok(()),
@@ -98,7 +98,7 @@ pub fn edit(field: &FieldImage) -> Allowed {
     Ok(())
 }
 
-/// Returns the largest size that the last field can get.
+/// Returns the maximum size of the last field.
 pub fn largest(memory: FreeMemory, field: &FieldImage) -> FieldSize {
     let fits = |size: &FieldSize| plan_redefine(memory, field, field.status.with_size(*size)).is_ok();
     FieldSize::all().filter(fits).last().unwrap_or(field.status.size())

@@ -26,10 +26,10 @@ pub struct Search {
     pub(crate) url: LinkUrl,
     pub(crate) options: FindOptions,
     pub(crate) line: Option<LiveSession<Hiperface>>,
-    /// Disconnects when its link is open or cannot be opened.
+    /// Receiver that disconnects when the link is open or cannot be opened.
     pub(crate) over: crossbeam_channel::Receiver<()>,
     pub found: Vec<FoundEncoder>,
-    /// The end of the search; `None` while it runs.
+    /// End of the search, or `None` while it is running.
     pub end: Option<Text>,
 }
 

@@ -8,14 +8,14 @@
 use crate::app::{EditBase, Edits};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 
-/// Data fields with the user's edits: bytes by field and address.
+/// Data fields with edited bytes by field and address.
 pub type Staged = Edits<Vec<FieldImage>>;
 
 impl EditBase for Vec<FieldImage> {
     type Place = (u8, usize);
     type Value = u8;
 
-    /// Returns whether a byte differs from the encoder's, as far as that is known.
+    /// Returns whether a byte differs from that of the encoder, as far as known.
     fn is_edit(&self, (field, address): (u8, usize), byte: u8) -> bool {
         let image = self.iter().find(|image| image.number == field);
         match image.map(|image| (&image.bytes, image.status)) {
@@ -31,25 +31,25 @@ impl EditBase for Vec<FieldImage> {
 pub enum StagedError {
     #[error("data field {field} does not exist")]
     NoField { field: u8 },
-    /// Its access code is not known, so its bytes are not.
+    /// The bytes are unknown, because the access code is.
     #[error("data field {field} is locked")]
     Locked { field: u8 },
     /// The field ends before.
     #[error("data field {field} ends at {last}")]
     Outside {
         field: u8,
-        /// Its last address.
+        /// Index of the last byte.
         last: usize,
     },
 }
 
 impl Staged {
-    /// Takes over a reading of the encoder; edits stay, unless their byte no longer exists or already has the edited value.
+    /// Adopts a reading of the encoder; edits are kept, unless their byte no longer exists or already has the edited
+    /// value.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
         self.read_again(|own| *own = device);
     }
 
-    /// Returns the fields as the encoder has them.
     pub fn device(&self) -> &[FieldImage] {
         self.base()
     }
@@ -66,12 +66,10 @@ impl Staged {
         fields
     }
 
-    /// Returns one byte as the encoder has it.
     pub fn on_device(&self, field: u8, address: usize) -> Option<u8> {
         self.field(field)?.bytes.as_ref()?.get(address).copied()
     }
 
-    /// Returns one byte as edited.
     pub fn byte(&self, field: u8, address: usize) -> Option<u8> {
         self.get((field, address)).or_else(|| self.on_device(field, address))
     }
@@ -106,10 +104,10 @@ impl Staged {
         self.changes().into_iter().map(|range| (range, bytes(&range))).collect()
     }
 
-    /// Puts bytes into a field, as one step that can be undone.
+    /// Writes bytes to a field as one undoable step.
     ///
     /// # Errors
-    /// If the field does not have all of them; then nothing is changed.
+    /// The bytes exceed the field; nothing is changed.
     pub fn put(&mut self, field: u8, address: usize, bytes: &[u8]) -> Result<(), StagedError> {
         let image = self.field(field).ok_or(StagedError::NoField { field })?;
         let size = image.bytes.as_ref().ok_or(StagedError::Locked { field })?.len();
@@ -129,7 +127,7 @@ impl Staged {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }
 
-    /// Takes edits from a draft. Those for bytes that do not exist, or already have the value, are dropped.
+    /// Adopts edits from a draft, dropping those for bytes that do not exist or already have the value.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = (u8, usize, u8)>) {
         self.set(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
     }

@@ -19,7 +19,7 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
-    /// Makes the plan of the review again; an encoder that did not reply is queried again.
+    /// Prepares the plan of the review again; an encoder that did not reply is queried again.
     pub(super) fn plan_again(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;
@@ -69,7 +69,7 @@ impl WithMemory for Encoder {
         self.follow(&ops, services);
     }
 
-    /// Logs nothing: the list of jobs shows the start.
+    /// Logs nothing, because the list of jobs shows the start.
     fn log_begin(&self, _: &Text, _: &Prepared, _: &mut Services) {}
 
     fn plan_with(&mut self, permit: Permit, services: &mut Services) {
@@ -122,7 +122,7 @@ impl Saved for Encoder {
     }
 }
 
-/// Returns a restore with other options; any other change unchanged.
+/// Returns a restore with other options, and any other change unchanged.
 pub(super) fn with_options(change: &Change, options: RestoreOptions) -> Change {
     match change {
         Change::Restore { profile, .. } => Change::Restore { profile: profile.clone(), options },

@@ -19,7 +19,7 @@ use crate::ui::{Theme, icons};
 
 /// Width of an entry for a number.
 const NUMBER: f32 = 96.0;
-/// Width of the column of buttons that read.
+/// Width of the column of read buttons.
 const READ: f32 = 176.0;
 /// Width of an entry for a position.
 const POSITION: f32 = 80.0;
@@ -185,7 +185,7 @@ fn second(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, action
     });
 }
 
-/// Draws one position, read or entered, and both ways to get it.
+/// Draws one position, read or entered, with both ways to obtain it.
 fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut String, actions: &mut Vec<Action>) {
     let commutation = &encoder.commutation;
     let (read, take) = match slot {

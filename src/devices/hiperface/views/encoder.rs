@@ -62,7 +62,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
     });
 }
 
-/// Draws the repetitions on the line while it is connected.
+/// Draws the repetitions on the line while connected.
 fn line_quality(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     if encoder.session.line().is_none() {
         return;
@@ -156,5 +156,5 @@ fn extended_label(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     });
 }
 
-/// Width of the column of addresses.
+/// Width of the address column.
 const ADDRESSES: f32 = 72.0;

@@ -214,7 +214,7 @@ fn field_ui(
     }));
 }
 
-/// Draws the selected field and its actions; disabled ones show why.
+/// Draws the selected field and its actions; disabled ones show the reason.
 fn field_head(
     ui: &mut Ui,
     theme: &Theme,

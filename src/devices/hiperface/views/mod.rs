@@ -46,7 +46,7 @@ pub(crate) struct HiperfaceUiState {
     values: values::ValuesUiState,
     setup: setup::SetupUiState,
     check_restart: bool,
-    /// The analogue channel that is typed, to be watched.
+    /// Typed number of an analogue channel to watch.
     channel: String,
 }
 
@@ -119,7 +119,7 @@ impl TypedDeviceView for HiperfaceView {
     }
 }
 
-/// Returns a text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a text of this catalogue, or a common one, in the window language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

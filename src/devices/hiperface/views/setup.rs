@@ -16,7 +16,6 @@ use crate::ui::controls::{
 use crate::ui::{Theme, icons};
 use crate::units::{CharacterFormat, Parity};
 
-/// Text buffers of the page.
 #[derive(Default)]
 pub(super) struct SetupUiState {
     position: String,
@@ -35,7 +34,6 @@ pub(super) struct SetupUiState {
     code_problem: Option<Text>,
 }
 
-/// Interface settings as they are chosen.
 #[derive(Clone, Copy, PartialEq)]
 struct Chosen {
     format: CharacterFormat,
@@ -69,7 +67,7 @@ pub(super) fn page_ui(
     );
 }
 
-/// Hands a change over, or keeps why it cannot be made.
+/// Passes a change on, or stores the reason why it cannot be made.
 fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Text>, actions: &mut Vec<Action>) {
     match change {
         Ok(change) => {

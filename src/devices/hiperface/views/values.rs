@@ -9,7 +9,6 @@ use crate::devices::hiperface::views::say;
 use crate::ui::controls::{card, card_with, enabled_button, entry, paragraph, text_entry, two_columns};
 use crate::ui::{Theme, icons};
 
-/// Text buffers of the page.
 pub(super) struct ValuesUiState {
     channel: String,
     problem: Option<Text>,

@@ -9,10 +9,10 @@ use crate::ui::Theme;
 use crate::ui::controls::{folding_card, paragraph};
 use crate::ui::wiring::wires_ui;
 
-/// Width of the column of names.
+/// Width of the name column.
 const WIRE: f32 = 56.0;
 
-/// Names of the wires in the manual, and their signals.
+/// Wire names in the manual with their signals.
 const WIRES: [(&str, &str); 8] = [
     ("US", "wiring.supply"),
     ("GND", "wiring.ground"),

@@ -31,7 +31,6 @@ pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
     show(output, &explained)
 }
 
-/// A word of the process data.
 #[derive(Clone, Copy)]
 enum Captured {
     /// 4 digits.
@@ -56,7 +55,7 @@ fn captured(text: &str) -> Result<Captured> {
     })
 }
 
-/// Parses a read-out: its name with hyphens, or its number.
+/// Parses a read-out, given by its name with hyphens or by its number.
 fn read_out(text: &str) -> Result<ReadOut> {
     let named = READ_OUTS.iter().find(|row| row.name.replace(' ', "-") == text).map(|row| row.read_out);
     let numbered = || parse_number(text).and_then(|number| u16::try_from(number).ok()).map(ReadOut::new);

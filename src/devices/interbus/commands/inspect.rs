@@ -91,7 +91,7 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
     Ok(Done::Well)
 }
 
-/// Returns the bits of a position's word that should be 0.
+/// Returns the bits of a position word that should be 0.
 fn stray(status: &Status) -> Option<(u32, String)> {
     let bits = u32::from(status.reading.stray()) << Value::BITS;
     (bits != 0).then(|| (bits, format!("the bits 0x{bits:08X} of IN should be 0")))

@@ -6,21 +6,20 @@ use crate::devices::interbus::protocol::{
     CamOutput, Command, Mode, Parameter, ReadOut, ReadOutValue, Reply, Single, StartupMode, Value, WindowShift,
 };
 
-/// Facts known about a word besides its digits.
+/// Known facts about a word in addition to its digits.
 pub(super) struct WordContext {
     pub(super) mode: Option<Mode>,
     pub(super) read_out: Option<ReadOut>,
     pub(super) shift: Option<WindowShift>,
 }
 
-/// A possible meaning of a word.
 pub(super) struct WordMeaning {
     direction: &'static str,
-    /// Modes in which it has this meaning; empty if in all.
+    /// Modes in which the word has this meaning; empty for all modes.
     modes: Vec<Mode>,
     words: String,
     value: Option<u32>,
-    /// It may be sent, or may be received, in these modes.
+    /// Whether the word may be sent or received in these modes.
     legal: bool,
 }
 
@@ -47,7 +46,7 @@ pub(super) fn of_k1(word: Single) -> WordMeaning {
     WordMeaning { direction: "IN", modes: Vec::new(), words, value: Some(position), legal: true }
 }
 
-/// Returns the request of an OUT word, or why it must not be sent.
+/// Returns the request of an OUT word, or the reason why it must not be sent.
 pub(super) fn of_out(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>, String> {
     let readings = Command::readings(word);
     if let [Command::Unknown(_)] = readings.as_slice() {

@@ -115,7 +115,7 @@ fn item(text: &str) -> Result<Item> {
 #[derive(Clone, Copy)]
 enum Disturbs {
     Reading,
-    /// In addition, cam programs are selected one after the other.
+    /// Also select all cam programs one after another.
     Programs,
     /// A state left by another program is ended, and stored.
     LeadingBack,

@@ -10,7 +10,7 @@ use crate::buses::bridge::protocol::{
 };
 use crate::cli::decode::Explained;
 
-/// Decodes packets. An empty one between two 00 is skipped.
+/// Decodes packets. An empty packet between two terminators is skipped.
 pub(super) fn explain(bytes: &[u8]) -> Vec<Explained> {
     if bytes.iter().all(|byte| *byte == 0) {
         let why = "no bridge packet: only zeros, which end one".to_owned();
@@ -149,7 +149,7 @@ fn hello_words(hello: &Hello) -> Vec<String> {
     ]
 }
 
-/// Explains a frame read by an adapter: the host checks its CRC.
+/// Describes a frame read by an adapter, whose CRC is checked by the host.
 fn frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> {
     let bad = match status {
         BissStatus::OK => {

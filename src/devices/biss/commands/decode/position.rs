@@ -12,17 +12,17 @@ use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 /// Bytes that hold a frame, right-justified.
 pub(super) const BYTES: usize = 6;
 
-/// Hexadecimal digits of a position word as written by `position` and the window: 33 bits.
+/// Number of hexadecimal digits in a position word as written by `position` and the window: 33 bits.
 pub(super) const WORD_DIGITS: usize = 9;
 
-/// Explains the bytes of one frame; `None` if their number does not fit, or other bits are set.
+/// Decodes the bytes of one frame, or returns `None` if their number is wrong or other bits are set.
 pub(super) fn of_bytes(bytes: &[u8]) -> Option<Explained> {
     let raw = bytes.iter().fold(0, |raw: u64, byte| raw << 8 | u64::from(*byte));
     let fits = bytes.len() == BYTES && raw >> Layout::default().bits() == 0;
     fits.then(|| Explained { compact: hex_compact(bytes), ..explain(raw, hex(bytes)) })
 }
 
-/// Decodes bits that were written in this form.
+/// Decodes a frame; `shown` is the form in which it was written.
 pub(super) fn explain(raw: u64, shown: String) -> Explained {
     let mut more = form("position frame");
     let meaning = meaning(raw, &mut more);
@@ -40,7 +40,7 @@ pub(super) fn explain_word(raw: u64, shown: String) -> Explained {
     Explained { compact: shown.clone(), shown, meaning, more }
 }
 
-/// Returns turns, steps and angle as text, and adds them to the JSON.
+/// Describes turns, steps and angle, and adds them to the JSON.
 fn place(layout: &Layout, reading: &PositionData, raw: u64, more: &mut Map<String, Json>) -> String {
     let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.degrees(reading));
     let pairs = [("raw", json!(raw)), ("turns", json!(turns)), ("steps", json!(steps)), ("degrees", json!(degrees))];

@@ -7,7 +7,7 @@ use crate::cli::decode::Explained;
 use crate::devices::biss::commands::words;
 use crate::devices::biss::protocol::{Layout, RegisterAddress};
 
-/// Decodes frames. `requested` is the request before them, and the last of theirs afterwards.
+/// Decodes frames. `requested` is the preceding request, and afterwards the last one among the frames.
 pub(super) fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
     let mut explained = Vec::new();
     let mut request = *requested;
@@ -27,7 +27,7 @@ pub(super) fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Expl
     explained
 }
 
-/// Returns the length of the frame that begins these bytes, from its header.
+/// Returns the length of the frame at the beginning of the bytes, according to its header.
 fn length(bytes: &[u8]) -> usize {
     match bytes {
         [_, _, _, low, high, ..] => usize::from(u16::from_le_bytes([*low, *high])) + Frame::OVERHEAD,
@@ -70,7 +70,7 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
     Ok(lines)
 }
 
-/// Returns the number of a register, and its name if the kit encoder has one.
+/// Returns the number of a register with its name, if the kit encoder has one.
 fn register_words(register: u16) -> String {
     match RegisterAddress::from_global(register) {
         None => format!("0x{register:04X}, which is behind the last"),

@@ -13,16 +13,16 @@ use crate::devices::biss::protocol::{FrameError, RegisterAddress};
 use crate::link::line::LineError;
 use crate::units::Moment;
 
-/// The encoder's number on a line with no other.
+/// Number of an encoder that is alone on its line.
 const SLAVE: u8 = 0;
-/// An encoder that restarts is silent for longer (EDS 02:0Eh, 500 ms): one that replied within this time has not restarted.
+/// Time within which an encoder that replies cannot have restarted, since a restart takes longer (EDS 02:0Eh, 500 ms).
 const BANK_TRUST: Duration = Duration::from_millis(200);
-/// Pause between two attempts: the adapter reports a missing encoder at once.
+/// Pause between two attempts, since the adapter reports a missing encoder immediately.
 const PAUSE: Duration = Duration::from_millis(20);
-/// Number of frames with wrong checksums and none with a right one that cannot be noise (`U`).
+/// Number of frames with wrong checksums, without a single correct one, that cannot be noise (`U`).
 const WRONG_FRAMES: u32 = 16;
 
-/// Why there is no frame.
+/// The reason why there is no frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum NoFrame {
     NoAcknowledge,
@@ -120,7 +120,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Writes, and returns the value that the register gives back. Not repeated.
+    /// Writes a register and returns the value that it reads back. Not repeated.
     fn register_write(&mut self, address: RegisterAddress, value: u8) -> Attempt<u8> {
         let request = Request::BissRegisterWrite { slave: SLAVE, address: address.address(), value };
         let answered = self.adapter().ask_once(&request);
@@ -135,7 +135,7 @@ impl<'a> Master<'a> {
         Ok(Ok(reads))
     }
 
-    /// Evaluates an answer about a register, and its consequence for the selected bank.
+    /// Evaluates a reply about a register, and its consequence for the selected bank.
     fn register_answer(&mut self, answered: Result<Option<TimedReply>, Failure>) -> Attempt<Reply> {
         let trouble = match answered {
             Ok(Some(answered)) => {
@@ -210,7 +210,7 @@ impl<'a> Master<'a> {
         Ok(Err(ExchangeError::NoFrame(no_frame)))
     }
 
-    /// Five frames had wrong checksums. If none was ever right, more frames are examined: with noise some are right, with
+    /// Examines more frames after five had wrong checksums and none was ever correct: with noise some are correct, with
     /// wrong widths none.
     pub(super) fn look_at_more_frames(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
@@ -231,7 +231,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads a frame after a register gave no answer: it shows whether the line itself is at fault.
+    /// Reads a frame after a register gave no reply, to find out whether the line itself is at fault.
     pub(super) fn diagnose(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
         match self.frame_once() {
@@ -255,7 +255,7 @@ impl<'a> Master<'a> {
         self.wait(PAUSE)
     }
 
-    /// Returns the longest time of an exchange: two attempts.
+    /// Returns the maximum duration of an exchange: two attempts.
     pub(super) fn longest_bus_exchange(&self) -> Duration {
         2 * (REPEAT_AFTER + self.station.line.margin)
     }

@@ -16,8 +16,8 @@ use crate::devices::biss::procedures::{Error, Station};
 const SLICE: Duration = Duration::from_millis(20);
 
 impl Master<'_> {
-    /// Returns the next frames of a stream with this interval in microseconds, or the shortest that the adapter supports;
-    /// starts the stream if necessary. `None` over the configuration pin, which has no streams.
+    /// Returns the next frames of a stream with this interval in microseconds, or the shortest that the adapter
+    /// supports; starts the stream if necessary. Returns `None` over the configuration pin, which has no streams.
     ///
     /// # Errors
     /// At the start as for a [`position`](Self::position); then errors of the adapter, or cancellation, after which the
@@ -74,7 +74,7 @@ impl Master<'_> {
         }
     }
 
-    /// Notes that a stream has failed and is over, at the adapter as well if that can be told.
+    /// Records that a stream has failed; ends it at the adapter as well, if possible.
     fn stream_failed(&mut self, error: Error) -> Error {
         if !matches!(error, Error::Cancelled) && self.end_frames().is_err() {
             // Identifying the adapter again sends HELLO, which ends all streams.

@@ -7,7 +7,8 @@ use crate::devices::biss::procedures::Error;
 use crate::devices::biss::procedures::station::{Supply, Transport};
 use crate::devices::biss::protocol::DeviceMode;
 
-/// A write to a register may start a store that no status shows; its duration is not published (`U`).
+/// Time allowed for a store that a register write may start without showing it in a status; its duration is not
+/// published (`U`).
 const SETTLES: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
@@ -31,8 +32,9 @@ impl Master<'_> {
         matches!(self.frame_once(), Ok(Ok((raw, _))) if raw != 0 && raw != ones)
     }
 
-    /// Switches the supply off at the end of a session, unless it was on before or is to stay on. It also stays on if a
-    /// store, a calibration or a restart may be running: cutting the power then would lose the encoder's data.
+    /// Switches the supply off at the end of a session, unless it was on before or is to remain on. It also remains on
+    /// if a store, a calibration or a restart may be in progress, because cutting the power would then lose data of the
+    /// encoder.
     ///
     /// # Errors
     /// Errors of the adapter.
@@ -50,7 +52,7 @@ impl Master<'_> {
         })
     }
 
-    /// Returns whether the encoder may be doing something that needs its power.
+    /// Returns whether the encoder may be executing something that requires power.
     fn is_unfinished(&mut self) -> Result<bool, Error> {
         if self.station.unfinished {
             return Ok(true);

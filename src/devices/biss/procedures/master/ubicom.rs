@@ -16,12 +16,12 @@ use crate::devices::biss::protocol::RegisterAddress;
 use crate::link::line::MOST_KEPT;
 use crate::units::Moment;
 
-/// Bytes of the longest frame: the reply to 03h.
+/// Length of the longest frame in bytes: the reply to 03h.
 const LONGEST_FRAME: usize = PositionWord::BYTES + Frame::OVERHEAD;
-/// Noise that continues for this time after the time limit of a reply is not a reply in progress.
+/// Time after the reply time-out after which continuing noise is not a reply in progress.
 const NOISE: Duration = Duration::from_secs(1);
 
-/// Reply, with the time of its first byte.
+/// A reply with the time of its first byte.
 struct Timed {
     reply: Reply,
     at: Moment,
@@ -44,7 +44,7 @@ impl Master<'_> {
         self.register_once(address.global(), order)
     }
 
-    /// Sends one request that detects the byte order of register numbers.
+    /// Sends a request that reveals the byte order of register numbers.
     pub(super) fn probe_once(&mut self) -> Attempt<u8> {
         self.register_once(Request::PROBE_REGISTER, ByteOrder::LowFirst)
     }
@@ -84,12 +84,12 @@ impl Master<'_> {
         Ok(Ok(PositionReading { is_split_known, ..PositionReading::new(at, &reading, &layout) }))
     }
 
-    /// Returns the time that an exchange takes at most.
+    /// Returns the maximum duration of an exchange.
     pub(super) fn longest_pin_exchange(&self) -> Duration {
         self.characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
     }
 
-    /// Returns the duration of this many characters on the line.
+    /// Returns the duration of the given number of characters on the line.
     fn characters(&self, count: usize) -> Duration {
         let format = self.station.format;
         format.baud.time_of_bits(character_bits(format) * count as u64)

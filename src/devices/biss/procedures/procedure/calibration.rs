@@ -10,15 +10,15 @@ use crate::devices::biss::protocol::{
     CalibrationCommand, CalibrationStatus, Filter, Procedure, ProcedureKind, Role, Temperature,
 };
 
-/// Manual 6.4: "about 5 seconds".
+/// Expected duration of a calibration run, "about 5 seconds" (manual 6.4).
 const EXPECTED: Duration = Duration::from_secs(5);
-/// A run that takes longer has no end.
+/// Time after which a run is considered failed.
 const LIMIT: Duration = Duration::from_secs(20);
 
-/// A calibration that is done.
+/// A completed calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationReport {
-    /// The encoder's temperature before it, if known.
+    /// Temperature of the encoder before the calibration, if known.
     pub celsius: Option<i16>,
     /// Motion of the motor before the first run.
     pub counterclockwise: Option<Motion>,
@@ -57,7 +57,7 @@ impl Guide<'_, '_> {
         Ok(Outcome::Calibrated(CalibrationReport { celsius, counterclockwise, clockwise }))
     }
 
-    /// Calibrates in one run. Cancellation does not stop the second run midway: that would lose the table.
+    /// Calibrates in one run. Cancellation does not stop the second run halfway, since that would lose the table.
     fn calibrate_in(&mut self, run: Run, procedure: &Procedure) -> Result<(), Failure> {
         self.step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;

@@ -20,10 +20,10 @@ pub enum Failure {
     Wiegand {
         run: Run,
         status: WiegandStatus,
-        /// Its error code, whose meaning is not published.
+        /// Error code, whose meaning is not published.
         code: u8,
     },
-    /// The filter in force is not the balanced one.
+    /// The active filter is not the balanced one.
     #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
     NotBalanced { code: u8 },
     /// The device mode that was written does not read back.
@@ -45,7 +45,7 @@ pub enum Failure {
     /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified { item: String, expected: String, got: String },
-    /// The description of this encoder lacks what the plan needs.
+    /// The description of the encoder lacks what the plan requires.
     #[error("no description of this procedure for this encoder")]
     NotDescribed { kind: ProcedureKind },
 }

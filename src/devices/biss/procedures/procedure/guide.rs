@@ -15,26 +15,26 @@ use crate::devices::biss::protocol::{
     Description, DeviceMode, Lock, Procedure, ProcedureKind, RegisterAddress, Role, Temperature,
 };
 
-/// Data sheet, 02:0Eh: until then a restarting encoder receives nothing.
+/// Time during which a restarting encoder receives nothing (data sheet, 02:0Eh).
 const RESTART: Duration = Duration::from_millis(500);
-/// A restart that takes longer has failed.
+/// Time after which a restart is considered failed.
 const RESTART_PATIENCE: Duration = Duration::from_secs(5);
-/// Manual 6.4: a calibrating encoder may not respond, for about five seconds.
+/// Time during which a calibrating encoder may not reply, about five seconds (manual 6.4).
 pub(super) const SILENCE: Duration = Duration::from_secs(10);
 /// Interval of reading a status register.
 const GLANCE: Duration = Duration::from_millis(100);
-/// Interval of positions: at 2000 rpm without counted turns, half a turn takes 15 ms.
+/// Interval between positions: at 2000 rpm, half a turn takes 15 ms, which must not be missed without a multiturn.
 const SAMPLING: Duration = Duration::from_millis(10);
-/// Interval of measurements while the operator is asked.
+/// Interval between measurements while the operator is asked.
 const ASKING: Duration = Duration::from_millis(200);
-/// Duration of measuring the speed of a motor, and of checking whether a shaft stands still.
+/// Duration of measuring the speed of a motor, and of checking whether a shaft is at rest.
 const TURNING: Duration = Duration::from_secs(1);
 const STANDING: Duration = Duration::from_millis(250);
-/// A device mode that is not there by then was not taken.
+/// Time after which a device mode is considered not accepted.
 const MODE: Duration = Duration::from_millis(500);
 /// Time after which a status is no longer expected.
 const STATUS: Duration = Duration::from_secs(5);
-/// A calibrating encoder that does not reply for this time has started (`U`): a damaged reply takes less.
+/// Silence after which a calibrating encoder is considered started (`U`); a damaged reply takes less.
 const BEGUN: Duration = Duration::from_secs(1);
 
 /// Leads an encoder through the operations of a plan.
@@ -54,7 +54,7 @@ pub(super) struct RunCourse {
     pub(super) command: u8,
     /// The status before the command, which may be from an earlier run.
     pub(super) was: u8,
-    /// The status before the run, during it, and after it.
+    /// Status before the run.
     pub(super) before: u8,
     pub(super) active: u8,
     pub(super) done: u8,
@@ -131,8 +131,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.standing.activity = activity;
     }
 
-    /// Returns the encoder to operation and clears the password, whatever has happened. Sends nothing if it is in
-    /// operation already.
+    /// Returns the encoder to operation and clears the password, whatever has happened. Sends nothing if the encoder is
+    /// already in operation.
     pub(in crate::devices::biss::procedures) fn lead_back(&mut self) -> Result<(), Error> {
         let Some(lock) = self.description.lock().filter(|_| !self.standing.is_in_operation()) else { return Ok(()) };
         self.step(ProcedureStep::LeadBack);
@@ -166,8 +166,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Gives a command. If it is not known whether it was received, the next exchange must show it: the status, or the
-    /// values written.
+    /// Sends a command. If it is unknown whether the command was received, the next exchange must reveal it through the
+    /// status or the values written.
     pub(super) fn command(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         match self.master.write(procedure.command, command) {
             Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
@@ -175,7 +175,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Gives the command that writes the flash: from then on it counts as written, until the contrary is known.
+    /// Sends the command that writes the flash, which from then on is considered written until proven otherwise.
     pub(super) fn save(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         let before = self.standing.activity;
         self.does(Activity::Saving);
@@ -220,8 +220,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         result
     }
 
-    /// Starts a run and reads the status until it is done, reporting the expected duration. `explain` interprets any other
-    /// status. The status from before the command does not count until another one has been read.
+    /// Starts a run and reads the status until the run is complete, reporting the expected duration. `explain`
+    /// interprets any other status. The status from before the command is ignored until another one has been read.
     pub(super) fn run(
         &mut self,
         course: &RunCourse,
@@ -264,7 +264,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         Ok(())
     }
 
-    /// Waits for an encoder that restarts, or may restart, until it replies again, and reads its state.
+    /// Waits until an encoder that restarts, or may restart, replies again, and reads its state.
     pub(super) fn restart(&mut self) -> Result<(), Error> {
         self.step(ProcedureStep::Restart);
         self.standing.may_have_restarted();
@@ -280,7 +280,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         Ok(())
     }
 
-    /// Gives the operator at the motor a task, measures, and continues when the measurement fits and the operator confirms.
+    /// Gives the operator at the motor a task, measures, and continues when the measurement fits and the operator
+    /// confirms.
     pub(super) fn attend(&mut self, task: Task) -> Result<Attended, Failure> {
         self.step(ProcedureStep::Await(task));
         let begun = self.master.now();
@@ -305,7 +306,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Reads positions for the time between two questions, and the temperature if it matters.
+    /// Reads positions for the time between two questions, and the temperature if relevant.
     fn measure(&mut self, task: Task, monitor: &mut SpeedMonitor) -> Result<Measured, Failure> {
         let mut measured = Measured::default();
         let end = self.master.now() + ASKING;
@@ -364,8 +365,8 @@ fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mu
     ended
 }
 
-/// Returns the encoder to operation from any mode and clears the password. A running calibration is allowed to finish:
-/// leaving it would lose the table. Returns the mode in which the encoder was.
+/// Returns the encoder to operation from any mode and clears the password. A running calibration is allowed to finish,
+/// since leaving it would lose the table. Returns the previous mode.
 pub(super) fn lead_back(
     master: &mut Master<'_>,
     description: &Description,

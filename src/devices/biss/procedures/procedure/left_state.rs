@@ -4,7 +4,7 @@ use super::Run;
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::DeviceMode;
 
-/// The possible values of something: one, or several if an answer is missing.
+/// The possible values of a quantity: one, or several if a reply is missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Possible<T>(Vec<T>);
 
@@ -12,7 +12,7 @@ pub struct Possible<T>(Vec<T>);
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftState {
     pub mode: Possible<DeviceMode>,
-    /// The password is set, so that device modes can be chosen.
+    /// Whether the password is set, so that device modes can be selected.
     pub password: Possible<bool>,
     pub activity: Activity,
 }
@@ -35,7 +35,7 @@ impl<T: Copy + PartialEq> Possible<T> {
         Possible(vec![value])
     }
 
-    /// Returns all possible values, in the order in which they would have been reached.
+    /// Returns all possible values in the order in which they would have been reached.
     pub fn values(&self) -> &[T] {
         &self.0
     }
@@ -54,7 +54,7 @@ impl<T: Copy + PartialEq> Possible<T> {
         }
     }
 
-    /// Records a write that sets the value to `after`; its result decides what the value is known to be.
+    /// Records a write that sets the value to `after`; its result determines the possible values.
     pub(super) fn becomes(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
             Ok(()) => *self = Possible::known(after),
@@ -74,12 +74,12 @@ impl LeftState {
         }
     }
 
-    /// Returns whether it is certainly in operation, with the password cleared.
+    /// Returns whether the encoder is certainly in operation with the password cleared.
     pub fn is_in_operation(&self) -> bool {
         self.mode.is(DeviceMode::OPERATION) && self.password.is(false)
     }
 
-    /// Notes that a command was sent that restarts it, and that may not have been received.
+    /// Records that a command was sent that restarts the encoder, and that may not have been received.
     pub(super) fn may_have_restarted(&mut self) {
         self.mode.or(DeviceMode::OPERATION);
         self.password.or(false);

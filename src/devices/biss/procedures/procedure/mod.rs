@@ -40,7 +40,7 @@ use crate::devices::biss::protocol::{Descriptions, DeviceMode, Filter, PresetVal
 /// The result of an operation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The operator skipped it, or the part after its first run.
+    /// The operator skipped the procedure, or the part after its first run.
     Skipped {
         after: Option<Run>,
     },
@@ -50,7 +50,7 @@ pub enum Outcome {
     },
     PresetStored {
         value: PresetValue,
-        /// Number of bits of the steps per turn.
+        /// Width of the singleturn in bits.
         singleturn_bits: u8,
     },
     /// A preset was carried out.
@@ -93,11 +93,11 @@ impl Guide<'_, '_> {
     }
 }
 
-/// Returns an encoder to operation and clears the password, whoever changed it: after a lost link, or from another host.
-/// Returns the mode in which it was. Waits for one that is silent because it calibrates.
+/// Returns an encoder to operation and clears the password, whoever changed the mode: after a lost link, or from
+/// another host. Returns the previous mode. Waits for an encoder that is silent because it is calibrating.
 ///
 /// # Errors
-/// Errors of the exchange, or an encoder that does not return.
+/// Errors of the exchange, or the encoder does not return to operation.
 pub fn lead_back(master: &mut Master<'_>, types: &Descriptions) -> Result<DeviceMode, Error> {
     if master.station().description.is_none() {
         master.with_patience(guide::SILENCE, |master| master.read(RegisterAddress::BANK_SELECT))?;

@@ -11,7 +11,7 @@ use super::Motion;
 pub enum Run {
     /// The first run of the calibration.
     CalibrationCounterclockwise,
-    /// The second run of the calibration; its failure loses the table.
+    /// The second run of the calibration, whose failure loses the table.
     CalibrationClockwise,
     /// The first run of the Wiegand test.
     WiegandClockwise,
@@ -34,7 +34,7 @@ impl SpeedRange {
         SpeedRange { least, greatest }
     }
 
-    /// Returns the range widened by the accuracy of a measurement: the accepted speeds.
+    /// Returns the range of accepted speeds, widened by the measuring accuracy.
     pub fn measured(self) -> Self {
         SpeedRange::new(self.least / (1.0 + Self::EXACT), self.greatest / (1.0 - Self::EXACT))
     }
@@ -57,23 +57,23 @@ impl Run {
         matches!(self, Run::CalibrationCounterclockwise | Run::CalibrationClockwise)
     }
 
-    /// Manual 6.3 and 6.4: the speeds at which it may be started.
+    /// Returns the speeds at which the run may be started (manual 6.3 and 6.4).
     pub const fn allowed(self) -> SpeedRange {
         if self.calibrates() { SpeedRange::new(300.0, 700.0) } else { SpeedRange::new(500.0, 2000.0) }
     }
 
-    /// Manual 6.4: the speed with the best result. For the Wiegand test all are equal.
+    /// Returns the speed with the best result (manual 6.4). For the Wiegand test all are equal.
     pub const fn recommended(self) -> SpeedRange {
         if self.calibrates() { SpeedRange::new(498.0, 502.0) } else { self.allowed() }
     }
 
-    /// Manual 6.4: allowed variation of the speed in revolutions per minute. For the Wiegand test the manual requires a
-    /// constant speed, without a number.
+    /// Returns the allowed speed variation in revolutions per minute (manual 6.4). For the Wiegand test the manual
+    /// requires a constant speed, without a number.
     pub const fn fluctuation(self) -> Option<f64> {
         if self.calibrates() { Some(2.0) } else { None }
     }
 
-    /// Returns the speed variation that counts as steady at this speed, as far as it can be measured.
+    /// Returns the speed variation that is considered steady at this speed, as far as it can be measured.
     pub fn accepted_fluctuation(self, rpm: f64) -> f64 {
         match self.fluctuation() {
             Some(fluctuation) => fluctuation + rpm.abs() * SpeedRange::EXACT,
@@ -81,17 +81,17 @@ impl Run {
         }
     }
 
-    /// More than this part of the speed is no steady motor (`U`).
+    /// Speed variation, relative to the speed, above which a motor is not steady (`U`).
     const UNSTEADY: f64 = 0.05;
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Task {
-    /// Turn the motor as this run needs it.
+    /// Turn the motor as the run requires.
     Turn(Run),
-    /// Keep the shaft at rest: data are not accessed while it turns.
+    /// Keep the shaft at rest, because data are not accessed while it turns.
     Stand,
-    /// Keep the shaft at rest at the place that is to get the preset value.
+    /// Keep the shaft at rest at the angle that is to get the preset value.
     StandAtPlace,
 }
 
@@ -99,40 +99,40 @@ pub enum Task {
 pub enum Blocker {
     /// There are not enough positions yet.
     Measuring,
-    /// The encoder gives no position.
+    /// The encoder does not return a position.
     NoPosition,
-    /// The shaft stands still and must turn.
+    /// The shaft is at rest but must turn.
     Standing,
-    /// The shaft turns and must stand still.
+    /// The shaft is turning but must be at rest.
     Turning {
         /// Revolutions per minute, above 0 clockwise.
         rpm: f64,
     },
-    /// It turns the other way.
+    /// The shaft turns in the wrong direction.
     WrongDirection,
-    /// It turns too slowly or too fast.
+    /// The shaft turns too slowly or too fast.
     Speed {
         /// Revolutions per minute, without direction.
         rpm: f64,
         allowed: SpeedRange,
     },
-    /// The motor still accelerates, or its speed varies.
+    /// The motor is still accelerating, or its speed varies.
     Unsteady {
         /// Revolutions per minute.
         spread: f64,
     },
-    /// Manual 6.4: 25…40 °C.
+    /// The temperature is outside 25…40 °C (manual 6.4).
     Temperature { celsius: i16 },
 }
 
 /// Advice before the start, which is possible regardless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Advice {
-    /// Another speed, or a steadier one, gives a better result.
+    /// Another speed, or a steadier one, yields a better result.
     Speed { recommended: SpeedRange },
-    /// Manual 6.4: if this run fails, the table of the calibration is lost.
+    /// If this run fails, the calibration table is lost (manual 6.4).
     TableAtRisk,
-    /// The encoder marks its positions as invalid: the speed is calculated from them regardless.
+    /// The encoder marks its positions as invalid; the speed is calculated from them regardless.
     Marked,
 }
 
@@ -140,22 +140,22 @@ pub enum Advice {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
     pub task: Task,
-    /// Motion of the shaft; `None` until it is measured.
+    /// Motion of the shaft, or `None` until it has been measured.
     pub motion: Option<Motion>,
-    /// The encoder's temperature, if the procedure depends on it.
+    /// Temperature of the encoder, if the procedure depends on it.
     pub celsius: Option<i16>,
-    /// What prevents the start; empty if nothing does.
+    /// Conditions that prevent the start; empty if there are none.
     pub blockers: Vec<Blocker>,
     /// Advice before the start.
     pub advice: Vec<Advice>,
-    /// Duration of the task so far.
+    /// Time since the task was given.
     pub waited: Duration,
 }
 
 impl Demand {
-    /// Manual 6.4: the temperatures of the calibration.
+    /// Temperatures allowed for the calibration (manual 6.4).
     pub const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
-    /// The lowest speed that counts as turning, in revolutions per minute.
+    /// Lowest speed considered as turning, in revolutions per minute.
     const SLOWEST: f64 = 1.0;
 
     pub(super) fn new(task: Task, measured: Measured, waited: Duration) -> Self {
@@ -214,7 +214,7 @@ pub(super) struct Measured {
     pub(super) celsius: Option<i16>,
     /// Positions are marked as invalid.
     pub(super) marked: bool,
-    /// There are no readable positions.
+    /// Whether positions are unreadable.
     pub(super) unreadable: bool,
 }
 
@@ -222,24 +222,24 @@ pub(super) struct Measured {
 pub enum Answer {
     /// Nothing yet.
     Wait,
-    /// Start. Valid only if nothing prevents it.
+    /// Start. Valid only if nothing prevents the start.
     Go,
     /// Skip this part of the run and continue with the next.
     Skip,
     Cancel,
-    /// No operator will come: end, with the obstacles to the start.
+    /// End, because no operator will come, with the conditions that prevented the start.
     GiveUp,
 }
 
 pub trait Operator {
-    /// Prepares for a new task: earlier answers belong to another task.
+    /// Prepares for a new task by discarding confirmations of earlier ones.
     fn on_task_start(&mut self) {}
 
     /// Asks repeatedly, a few times per second, each time with a new measurement.
     fn attend(&mut self, demand: &Demand) -> Answer;
 }
 
-/// No operator: starts as soon as all conditions are met, and waits for them for a limited time.
+/// An absent operator: starts as soon as all conditions are met, for which it waits a limited time.
 #[derive(Clone, Copy, Debug)]
 pub struct Unattended {
     /// The time limit of each task.
@@ -247,7 +247,7 @@ pub struct Unattended {
 }
 
 impl Unattended {
-    /// A measurement that is not there by then does not come.
+    /// Time after which a missing measurement is no longer expected.
     const MEASURING: Duration = Duration::from_secs(5);
 }
 
@@ -266,12 +266,12 @@ impl Operator for Unattended {
     }
 }
 
-/// Operator elsewhere, whose answers arrive here. Clones share them.
+/// An operator elsewhere, whose answers arrive through this channel, shared by its clones.
 #[derive(Clone, Debug, Default)]
 pub struct OperatorChannel(Arc<Mutex<Option<(Task, Answer)>>>);
 
 impl OperatorChannel {
-    /// Answers the present task; an answer to another task, or from before it was given, is ignored.
+    /// Answers the present task; answers to another task, or from before the task was given, are ignored.
     pub fn answer(&self, to: Task, answer: Answer) {
         *self.slot() = Some((to, answer));
     }

@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::{
     PresetCommand, PresetStatus, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
-/// Allowed jitter of the shaft around its new value: 0.35°.
+/// Reciprocal of the allowed jitter around the new value, in revolutions: 0.35°.
 const TREMBLE: u64 = 1024;
 
 impl Guide<'_, '_> {
@@ -67,14 +67,14 @@ fn value_of(procedure: &Procedure) -> Result<RegisterRange, Failure> {
     range.ok_or(Failure::NotDescribed { kind: procedure.kind })
 }
 
-/// Returns the position of the shaft after the preset, as one number of steps.
+/// Returns the position of the shaft after the preset as a single number of steps.
 fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64 {
     let steps = if parts.sets_singleturn() { value.singleturn() } else { from.steps };
     let turns = if parts.sets_multiturn() { value.multiturn() } else { from.turns };
     u64::from(turns) << from.singleturn_bits | u64::from(steps)
 }
 
-/// Returns the steps between two positions, the shorter way round.
+/// Returns the number of steps between two positions along the shorter way.
 fn distance(place: u64, reading: &PositionReading) -> u64 {
     let bits = u32::from(reading.raw().bits);
     let mask = 1_u64.checked_shl(bits).map_or(u64::MAX, |range| range - 1);

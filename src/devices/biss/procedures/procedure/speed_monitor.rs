@@ -14,25 +14,25 @@ pub(super) struct SpeedMonitor {
     window: i64,
     unwrap: Option<Unwrap>,
     steps_per_turn: f64,
-    /// The last window and the position before it, the oldest first.
+    /// Positions of the last window and the one before, oldest first.
     places: VecDeque<(Time, i64)>,
 }
 
 /// The motion of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
-    /// Revolutions per minute, averaged over the measurement; positive clockwise, that is, with rising positions.
+    /// Mean speed in revolutions per minute, positive clockwise, that is, with rising positions.
     pub rpm: f64,
-    /// Largest deviation of the speed of a quarter of the measurement, in revolutions per minute.
+    /// Maximum speed deviation of a quarter of the measurement, in revolutions per minute.
     pub spread: f64,
     pub travel: f64,
 }
 
 impl Motion {
-    /// Allowed jitter of a shaft at standstill as a part of a revolution (`U`).
+    /// Allowed jitter of a shaft at rest, in revolutions (`U`).
     const STILL: f64 = 1.0 / 8192.0;
 
-    /// Returns whether the shaft stands still.
+    /// Returns whether the shaft is at rest.
     pub fn is_still(&self) -> bool {
         self.travel <= Self::STILL
     }
@@ -65,7 +65,7 @@ impl SpeedMonitor {
         }
     }
 
-    /// Returns the measurement; `None` until there are positions for the whole window.
+    /// Returns the measurement, or `None` until there are positions for the whole window.
     pub(super) fn motion(&self) -> Option<Motion> {
         let ((first, _), (last, _)) = (self.places.front()?, self.places.back()?);
         if last.nanoseconds_since(*first) < self.window {
@@ -95,7 +95,7 @@ impl SpeedMonitor {
     }
 }
 
-/// Returns the slope of the second number over the first by least squares. `None` for fewer than two points.
+/// Returns the slope of a least squares fit, or `None` for fewer than two points.
 fn slope(places: &[(f64, f64)]) -> Option<f64> {
     let count = places.len() as f64;
     let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / count;

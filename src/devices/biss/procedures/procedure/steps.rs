@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::DeviceMode;
 /// A step of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ProcedureStep {
-    /// Checks conditions that do not depend on the motor: the filter.
+    /// Checking conditions that do not depend on the motor: the filter.
     Conditions,
     /// Waits for the operator at the motor.
     Await(Task),
@@ -47,7 +47,7 @@ pub enum Detail {
     },
     /// The step takes some time.
     Lasts {
-        /// Time so far.
+        /// Elapsed time.
         elapsed: Duration,
         /// Expected duration, if known.
         expected: Option<Duration>,
@@ -55,7 +55,7 @@ pub enum Detail {
     Demand(Demand),
 }
 
-/// Returns the steps of an operation. A restart of the encoder returns it to operation by itself.
+/// Returns the steps of an operation. A restart returns the encoder to operation without a further step.
 pub fn steps_of(op: &Op) -> Vec<ProcedureStep> {
     let entered = |mode, steps: &[ProcedureStep]| {
         let mut all = vec![ProcedureStep::Enter(mode)];

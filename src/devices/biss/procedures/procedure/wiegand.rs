@@ -7,11 +7,11 @@ use super::{Activity, Failure, Motion, Outcome, ProcedureStep, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, WiegandResult, WiegandStatus};
 
-/// A Wiegand test that is done.
+/// A completed Wiegand test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiegandReport {
     pub result: WiegandResult,
-    /// The result is saved in the encoder, where it shows after a restart.
+    /// Whether the result is saved in the encoder, which shows it after a restart.
     pub saved: bool,
     /// Motion of the motor before the first run.
     pub clockwise: Option<Motion>,
@@ -80,7 +80,7 @@ impl Guide<'_, '_> {
         })
     }
 
-    /// Saves the result. It cannot be read back before a restart: only the encoder's status confirms it.
+    /// Saves the result. It cannot be read back before a restart: only the status of the encoder confirms it.
     fn save_result(&mut self, procedure: &Procedure) -> Result<(), Failure> {
         self.step(ProcedureStep::Save);
         self.does(Activity::Saving);

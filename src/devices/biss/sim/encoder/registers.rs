@@ -1,9 +1,9 @@
-//! The registers outside of the data areas (manual, appendix 9.1).
+//! Registers outside the data areas (manual, appendix 9.1).
 
 use super::Encoder;
 use crate::devices::biss::protocol::{EdsBank, Temperature, WarningRegister};
 
-/// Pulses of the Wiegand sensor measured in production, in tenths of a volt.
+/// Wiegand pulse voltages measured in production, in tenths of a volt.
 const PRODUCTION_PULSES: [u8; 4] = [64, 60, 64, 59];
 
 impl Encoder {

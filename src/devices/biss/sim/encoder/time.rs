@@ -1,4 +1,4 @@
-//! Effects of time: the start ends, the runs of a procedure end, the shaft follows its motor.
+//! Effects of elapsed time: start-up completes, procedure runs end, and the shaft follows its motor.
 
 use super::{Encoder, Power};
 use crate::devices::biss::protocol::{CalibrationStatus, WiegandStatus};
@@ -6,7 +6,7 @@ use crate::devices::biss::sim::calibration::Ended;
 use crate::units::Moment;
 
 impl Encoder {
-    /// Processes everything due by `now`, and turns the shaft with the motor.
+    /// Processes everything that is due by `now` and updates the shaft speed from the motor.
     pub(super) fn settle(&mut self, now: Moment) {
         if let Power::Starting { ready } = self.power
             && ready <= now
@@ -35,7 +35,7 @@ impl Encoder {
         }
     }
 
-    /// Returns whether the first run of a procedure is done, and the second needs the other direction.
+    /// Returns whether a procedure has finished its first run and needs the opposite direction for the second.
     fn waits_for_direction(&self) -> bool {
         self.calibration.status == CalibrationStatus::CounterclockwiseDone
             || self.wiegand.status == WiegandStatus::WaitForDirection

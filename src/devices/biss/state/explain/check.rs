@@ -1,4 +1,4 @@
-//! Texts of the device check.
+//! Labels and messages of the device check.
 
 use super::guide::mode;
 use super::{mismatch, name};

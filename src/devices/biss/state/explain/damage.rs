@@ -1,4 +1,4 @@
-//! Texts of damaged replies.
+//! Messages for damaged replies.
 
 use crate::app::Text;
 use crate::buses::ubicom::protocol::ReplyError;
@@ -6,7 +6,7 @@ use crate::devices::biss::procedures::Damage;
 use crate::devices::biss::protocol::FrameError;
 use crate::devices::biss::state::TEXTS;
 
-/// Returns the text of the damage of a reply.
+/// Returns the message for a damaged reply.
 pub fn damage(damage: &Damage) -> Text {
     let byte = |byte: &u8| format!("0x{byte:02X}");
     match damage {

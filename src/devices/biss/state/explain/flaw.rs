@@ -1,4 +1,4 @@
-//! The words for mistakes in a description's file.
+//! Messages for mistakes in a description file.
 
 use super::layout;
 use crate::app::{Text, explain as general};

@@ -1,4 +1,4 @@
-//! Texts of guided procedures: steps, tasks of the operator, obstacles to a start, results.
+//! Texts for guided procedures: steps, operator tasks, obstacles to a start, and results.
 
 use crate::app::{Severity, Text};
 use crate::devices::biss::procedures::procedure::{
@@ -84,7 +84,7 @@ pub fn blocker(blocker: Blocker) -> Text {
     }
 }
 
-/// Returns the advice before a start.
+/// Returns the advice to show before a start.
 pub fn advice(advice: Advice) -> Text {
     match advice {
         Advice::Speed { recommended } => {
@@ -97,19 +97,19 @@ pub fn advice(advice: Advice) -> Text {
     }
 }
 
-/// Returns the requirements of a calibration on motor and encoder.
+/// Returns what a calibration requires of the motor and the encoder.
 pub fn calibration_needs() -> Text {
     let run = Run::CalibrationCounterclockwise;
     let text = speeds(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
     temperatures(text.with_number("best", run.recommended().middle(), 0))
 }
 
-/// Returns the requirements of a Wiegand test on the motor.
+/// Returns what a Wiegand test requires of the motor.
 pub fn wiegand_needs() -> Text {
     revolutions(speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed()))
 }
 
-/// Adds the revolutions of a Wiegand test in each direction.
+/// Adds the number of revolutions per direction in a Wiegand test.
 fn revolutions(text: Text) -> Text {
     text.with("revolutions", WiegandResult::REVOLUTIONS)
 }
@@ -122,7 +122,7 @@ pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {
     text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
 }
 
-/// Returns the result of an operation, one line per item; for the page and for the report.
+/// Returns the result of an operation, one line per item, for the page and the report.
 pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     match outcome {
         Outcome::Skipped { after } => vec![TEXTS.text(match after {
@@ -155,14 +155,14 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     }
 }
 
-/// Returns the result of an operation, one line per item with its severity; the name of one that was skipped.
+/// Returns the result of an operation, one line per item with its severity. A skipped operation is reported by name.
 pub fn report(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
     let lines = outcome(own);
     if let Outcome::Skipped { .. } = own {
         let named = |words| TEXTS.text("guide.of_operation").with_text("what", procedure(op)).with_text("words", words);
         return lines.into_iter().map(|words| (Severity::Note, named(words))).collect();
     }
-    // The first line tells what was done, or the verdict; the others add to it.
+    // The first line states the action or the verdict; the others add details.
     let severity = |at: usize| match own {
         Outcome::Tested(report) => match at {
             0 => verdict(report.result.lowest_cw).max(verdict(report.result.lowest_ccw)),
@@ -249,7 +249,7 @@ mod tests {
         assert_eq!(weights, [Severity::Warning, Severity::Good, Severity::Warning, Severity::Note]);
     }
 
-    /// Manual 6.7: 18000h of 17 bits are 270°.
+    /// Manual 6.7: 18000h at 17 bits is 270°.
     #[test]
     fn a_stored_preset_value_is_shown_as_an_angle() {
         let value = PresetValue::new(0x18000, 2).unwrap();

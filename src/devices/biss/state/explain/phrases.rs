@@ -1,4 +1,4 @@
-//! Tests of the texts of the lower layers, in both languages.
+//! Tests of lower-layer messages in both languages.
 
 use std::time::Duration;
 

@@ -1,11 +1,11 @@
-//! Texts of the BiSS planning errors, and of another type of profile.
+//! Messages for BiSS planning errors and for profiles of another encoder type.
 
 use crate::app::Text;
 use crate::devices::biss::profile::{OtherType, PlanError};
 use crate::devices::biss::protocol::ProcedureKind;
 use crate::devices::biss::state::TEXTS;
 
-/// Returns the text for a profile for another type of encoder.
+/// Returns the message for a profile that belongs to another encoder type.
 pub fn other_type(types: &OtherType) -> Text {
     of_types(types, "biss_review.other_kind", "biss_review.other_width")
 }
@@ -17,7 +17,7 @@ fn of_types(types: &OtherType, kind: &'static str, width: &'static str) -> Text 
     }
 }
 
-/// Returns why something cannot be planned.
+/// Returns the reason why a change cannot be planned.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {

@@ -1,5 +1,5 @@
-//! Texts of writes: changes, operations of a plan, why there is no plan, what was written, why it ended early and in which
-//! state the encoder was left.
+//! Texts for writes: changes, operations of a plan, planning errors, results, reasons for an early end, and the state
+//! in which the encoder was left.
 
 use std::path::Path;
 
@@ -32,7 +32,7 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// Returns the text of an operation, each run of registers separately, with the usual names.
+/// Returns the description of an operation, with one line for each run of registers.
 pub fn op(op: &Op, layout: &Layout) -> OpWords {
     let bits = layout.singleturn_bits();
     match op {
@@ -70,7 +70,7 @@ pub fn op(op: &Op, layout: &Layout) -> OpWords {
     }
 }
 
-/// Registers that follow each other are one line.
+/// Groups consecutive registers into one line each.
 fn runs(registers: &[RegisterChange]) -> Vec<ChangeWords> {
     let words = |range: RegisterRange| {
         let own = registers.iter().filter(|own| range.contains(own.address));
@@ -80,7 +80,7 @@ fn runs(registers: &[RegisterChange]) -> Vec<ChangeWords> {
     RegisterRange::runs(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
 }
 
-/// Returns the text of a preset value as angle, step and turn; a turn has as many steps as these bits.
+/// Returns a preset value as angle, step and turn, for a singleturn position of the given width.
 pub fn preset(value: PresetValue, singleturn_bits: u8) -> Text {
     preset_words("biss_op.preset_value", value, singleturn_bits)
 }
@@ -94,21 +94,21 @@ fn preset_words(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Te
         .with("multiturn", value.multiturn())
 }
 
-/// Returns the warning that the write cycles of the flash are limited, if a plan comes near the end.
+/// Returns the warning about the limited write cycles of the flash, or `None` if a plan does not come near the limit.
 pub fn wear(prepared: &Prepared) -> Option<Text> {
     let cycles = prepared.wear()?;
     Some(TEXTS.text("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
 }
 
-/// Returns the text for a write that is done.
+/// Returns the message for a completed write.
 pub fn written(written: &Written) -> Text {
     // Only the encoder's status confirms a calibration.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// Returns the text of an interrupted write: how far it got, why, in which state the encoder was left, and where the backup
-/// is.
+/// Returns the messages for an interrupted write: progress, cause, the state in which the encoder was left, and the
+/// backup's location.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let done = &interrupted.done;
     let mut texts = vec![if interrupted.cause.is_cancelled() {
@@ -124,9 +124,9 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     });
     let what_next = match (interrupted.unclear(), kind) {
         (Some(register), _) => TEXTS.text("biss_write.unclear").with("register", register),
-        // The table may be lost without a write, and no backup contains it.
+        // The table may be lost even without a write, and no backup contains it.
         (None, ChangeKind::Calibration) => TEXTS.text("write.backup_calibration"),
-        // An operation that may have been carried out counts as a write cycle, if it costs one.
+        // An operation that may have been carried out counts as a write cycle if it costs one.
         _ if done.write_cycles == 0 && done.written == 0 => Text::new("write.untouched"),
         (None, ChangeKind::Restore) => Text::new("write.backup"),
         (None, ChangeKind::Bytes) => TEXTS.text("biss_write.bytes"),
@@ -143,7 +143,7 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     texts
 }
 
-/// Returns the severity of a sentence about an interrupted write.
+/// Returns the severity of a message about an interrupted write.
 pub fn weight(text: &Text) -> Severity {
     match text.id() {
         "biss_left.operation" => Severity::Good,
@@ -162,7 +162,7 @@ pub fn weight(text: &Text) -> Severity {
     }
 }
 
-/// Returns the state in which an encoder was left that could not be returned to operation.
+/// Returns the messages for an encoder that could not be returned to operation.
 fn left(standing: &LeftState) -> Vec<Text> {
     let mut texts = vec![match standing.mode.values() {
         [certain] => TEXTS.text("biss_left.mode").with_text("mode", mode(*certain)),
@@ -233,7 +233,7 @@ fn wiegand(status: WiegandStatus, code: u8) -> Text {
     }
 }
 
-/// Returns the text for a status that does not belong there.
+/// Returns the message for an unexpected status code.
 fn unknown(status: u8) -> Text {
     TEXTS.text("biss_failure.unknown").with("status", format!("0x{status:02X}"))
 }
@@ -259,7 +259,8 @@ mod tests {
         (words(English), words(German))
     }
 
-    /// Each action has its own words, also at a terminal; and nothing is reported as unchanged that may have changed.
+    /// Each kind of change has its own remedy, also in terminal output. Data that may have changed is never reported as
+    /// unchanged.
     #[test]
     fn the_remedy_for_an_interrupted_write_matches_its_kind() {
         let last = |interrupted: &Interrupted, kind| {
@@ -303,7 +304,7 @@ mod tests {
         Some(LeftState { mode, password: Possible::known(password), activity })
     }
 
-    /// Issue 22.5: the remedy comes after returning the encoder to operation.
+    /// Issue 22.5: the remedy applies only after the encoder has returned to operation.
     #[test]
     fn completing_a_write_is_advised_after_leading_back() {
         for kind in [ChangeKind::Restore, ChangeKind::Bytes, ChangeKind::Guided, ChangeKind::Filter] {
@@ -366,7 +367,7 @@ mod tests {
         assert!(idle[3].contains("Return the encoder to operation"), "{idle:?}");
     }
 
-    /// Manual 6.3 and 6.4, every code; what happened, and what to do.
+    /// Covers every code in manual 6.3 and 6.4, each with its cause and remedy.
     #[test]
     fn failures_name_cause_and_remedy() {
         let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::procedures::Opened;
 use crate::devices::hiperdrive::protocol::{InImage, Layout, OutImage};
 use crate::units::Moment;
 
-/// One end of a cyclic connection that was opened.
+/// One end of an open cyclic connection.
 #[derive(Clone, Debug)]
 pub struct Connection {
     to_target: u32,
@@ -20,10 +20,9 @@ pub struct Connection {
     sequence: u32,
     count: u16,
     arrivals: Arrivals,
-    /// Time of the last valid packet, or of the opening.
     last_received: Moment,
     awake: Moment,
-    /// Until the target gives us up.
+    /// Time without packets after which the target ends the connection.
     timeout: Duration,
     began: bool,
     figures: LinkFigures,
@@ -33,7 +32,7 @@ pub struct Connection {
 const LOST: u32 = 3;
 /// Time allowed for the first packet.
 const FIRST: Duration = Duration::from_secs(1);
-/// Length of the header before the data of a target that sends one: its description would tell (`U`).
+/// Length of the header that a target may send before the data; its description would specify it (`U`).
 const HEADER: usize = 4;
 
 impl Connection {
@@ -73,15 +72,15 @@ impl Connection {
         self.next
     }
 
-    /// Returns whether nothing has arrived for three intervals, for whatever reason: the positions of the drives are not
-    /// known.
+    /// Returns whether nothing has arrived for three intervals, for whatever reason, so that the positions of the
+    /// drives are unknown.
     pub fn is_quiet(&self, now: Moment) -> bool {
         self.began && now.since(self.last_received) > self.come_interval * LOST
     }
 
-    /// Returns how long nothing has arrived, if that is too long. While something moves, the limit is three intervals of
-    /// listening: a busy computer that could not listen cannot tell whether nothing arrived, and packets may still be
-    /// queued. At rest, and as an absolute limit, it is the time the target itself waits for a packet.
+    /// Returns how long nothing has arrived, if that is too long. While something moves, the limit is three intervals
+    /// of listening: a busy computer that could not listen cannot tell whether nothing arrived, and packets may still
+    /// be queued. At rest, and as an absolute limit, it is the time that the target itself waits for a packet.
     pub fn silent(&mut self, now: Moment, moves: bool) -> Option<Duration> {
         if now.since(self.next) > self.come_interval {
             self.awake = now;
@@ -93,7 +92,7 @@ impl Connection {
         (moves && self.began && listened > intervals || silence > most).then_some(silence)
     }
 
-    /// Handles a packet. Returns its data if it is valid and new.
+    /// Handles a packet; returns its data if the packet is valid and new.
     pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> Option<InImage> {
         let packet = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok();
         let packet = packet.filter(|packet| packet.connection == self.to_originator);
@@ -119,7 +118,7 @@ impl Connection {
         }
     }
 
-    /// Returns the packet that is due. A late call returns one packet; those that were missed are skipped.
+    /// Returns the packet that is due. A late call returns a single packet; missed ones are skipped.
     pub fn packet(&mut self, now: Moment, image: &OutImage) -> Vec<u8> {
         self.next = self.next + self.send_interval;
         if self.next <= now {

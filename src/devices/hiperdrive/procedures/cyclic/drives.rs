@@ -13,7 +13,7 @@ use crate::units::Moment;
 pub struct Drives {
     connection: Connection,
     controlled: Vec<ControlledDrive>,
-    /// If the connection has parameter words.
+    /// Parameter words, if the connection has them.
     words: Option<ParameterWords>,
     places: usize,
     lost: Option<CyclicLost>,
@@ -23,7 +23,7 @@ pub struct Drives {
 #[derive(Clone, Debug)]
 struct ControlledDrive {
     dead_man: DeadMan,
-    /// The data received since the last packet.
+    /// Data received since the last packet.
     received: Option<Actual>,
 }
 
@@ -36,7 +36,7 @@ struct Ending {
 
 /// Duration of the stop ladder, and the time for braking.
 const LADDER: Duration = Duration::from_millis(700);
-/// More than one, since a packet may be lost.
+/// Number of packets that switch the drives off; more than one, since a packet may be lost.
 const OFF: u32 = 3;
 
 impl Drives {
@@ -64,29 +64,29 @@ impl Drives {
         self.connection.figures()
     }
 
-    /// Sets the parameters that are read through the parameter words, if the connection has them.
+    /// Sets the parameters to read through the parameter words, if the connection has them.
     pub fn watch_parameters(&mut self, watched: &[ParameterNumber]) {
         if let Some(words) = &mut self.words {
             words.watch(watched);
         }
     }
 
-    /// Returns the latest readings of the watched parameters; `None` without parameter words.
+    /// Returns the latest readings of the watched parameters, or `None` without parameter words.
     pub fn parameters(&self) -> Option<&ParameterReadings> {
         self.words.as_ref().map(ParameterWords::readings)
     }
 
-    /// Returns why it has ended without being closed.
+    /// Returns why the connection has ended without being closed.
     pub const fn lost(&self) -> Option<&CyclicLost> {
         self.lost.as_ref()
     }
 
-    /// Returns whether nothing may begin any more.
+    /// Returns whether the connection is ending, so that nothing may begin.
     pub const fn is_ending(&self) -> bool {
         self.ending.is_some()
     }
 
-    /// Returns whether nothing more is to be sent: the connection is to be closed.
+    /// Returns whether nothing more is to be sent, so that the connection can be closed.
     pub fn is_over(&self) -> bool {
         let off = self.ending.is_some_and(|ending| ending.off >= OFF);
         off || matches!(self.lost, Some(CyclicLost::DoesNotStand(_) | CyclicLost::Port(_)))
@@ -100,7 +100,7 @@ impl Drives {
         }
     }
 
-    /// Notes that the connection was lost. The drives are told to stop, as they may still receive packets.
+    /// Records that the connection was lost. The drives are told to stop, since they may still receive packets.
     pub fn connection_lost(&mut self, now: Moment, why: CyclicLost) {
         if self.lost.is_none() && !self.is_over() {
             self.lost = Some(why);
@@ -124,7 +124,7 @@ impl Drives {
         self.connection.poll_at()
     }
 
-    /// Returns the packet that is due now, if any. All packets received until now must have been handed over before.
+    /// Returns the packet that is due now, if any. All packets received until now must have been passed on before.
     pub fn poll(&mut self, now: Moment, intent: &Intent, permit: impl Fn(DriveNumber) -> Permit) -> Option<Vec<u8>> {
         if now < self.poll_at() || self.is_over() {
             return None;

@@ -5,18 +5,17 @@ use std::time::Duration;
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::link::LinkError;
 
-/// Counts of a connection since it was opened.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LinkFigures {
     /// Interval between packets as agreed by the target, in both directions.
     pub interval: Duration,
     pub sent: u64,
     pub received: u64,
-    /// Packets that did not arrive before a later one.
+    /// Number of packets that did not arrive before a later one.
     pub missed: u64,
-    /// Packets overtaken by a newer one, or received twice.
+    /// Number of packets that were overtaken by a newer one, or received twice.
     pub stale: u64,
-    /// Packets that were none of this connection, or broken.
+    /// Number of packets that were malformed or belonged to another connection.
     pub malformed: u64,
     pub intervals: Histogram,
 }
@@ -32,12 +31,12 @@ pub struct Histogram {
 /// Why a cyclic connection ended without being closed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CyclicLost {
-    /// Nothing has come for three intervals.
+    /// Nothing has arrived for three intervals.
     #[error("nothing has come for {} ms", after.as_millis())]
     Silent { after: Duration },
     #[error(transparent)]
     Port(#[from] LinkError),
-    /// The drive does not stop, whatever is sent: the connection was closed so that the target stops it.
+    /// The drive does not stop, whatever is sent, so the connection was closed to make the target stop it.
     #[error("drive {} did not stop", .0.get())]
     DoesNotStand(DriveNumber),
     /// The session's own TCP connection is lost.
@@ -50,18 +49,18 @@ pub enum CyclicLost {
 /// Microseconds off, between the buckets.
 const EDGES: [i64; 14] = [-5000, -2000, -1000, -500, -200, -100, -50, 50, 100, 200, 500, 1000, 2000, 5000];
 
-/// Number of intervals with this deviation.
+/// Number of intervals with a given deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bucket {
-    /// Lower bound of the deviation in microseconds, negative for too short; `None` without a bound.
+    /// Lower bound of the deviation in microseconds, negative for short intervals; `None` if unbounded.
     pub from_us: Option<i64>,
-    /// Upper bound of the deviation in microseconds; `None` without a bound.
+    /// Upper bound of the deviation in microseconds; `None` if unbounded.
     pub below_us: Option<i64>,
     pub count: u64,
 }
 
 impl Histogram {
-    /// Counts an interval `took` against the nominal `wanted`.
+    /// Counts an interval of duration `took` instead of the nominal `wanted`.
     pub fn count(&mut self, wanted: Duration, took: Duration) {
         let nanoseconds = |duration: Duration| i64::try_from(duration.as_nanos()).unwrap_or(i64::MAX);
         let off = nanoseconds(took).saturating_sub(nanoseconds(wanted)) / 1000;
@@ -81,7 +80,7 @@ impl Histogram {
         buckets.map(|((from_us, below_us), count)| Bucket { from_us, below_us, count })
     }
 
-    /// Returns the minimum and maximum deviation in microseconds; `None` before the first interval.
+    /// Returns the minimum and maximum deviation in microseconds, or `None` before the first interval.
     pub fn range_us(&self) -> Option<(i64, i64)> {
         self.least.zip(self.greatest)
     }

@@ -9,14 +9,14 @@ use crate::units::Moment;
 
 /// Reads the watched parameters in turn.
 ///
-/// A request is repeated in every packet until its reply has arrived. Before the next request the words are cleared in both
-/// directions, so that a late reply is never taken for the reply to a later request of the same parameter.
+/// A request is repeated in every packet until its reply has arrived. Before the next request the words are cleared in
+/// both directions, so that a late reply is never mistaken for the reply to a later request of the same parameter.
 #[derive(Clone, Debug, Default)]
 pub struct ParameterWords {
     watched: Vec<ParameterNumber>,
     readings: ParameterReadings,
     phase: Phase,
-    /// Index of the parameter that is requested next.
+    /// Index of the parameter to request next.
     next: usize,
 }
 
@@ -30,7 +30,7 @@ pub struct ParameterReading {
     pub result: ParameterResult,
 }
 
-/// Result of a request in the parameter words.
+/// Result of a request through the parameter words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterResult {
     Number(i64),
@@ -41,14 +41,14 @@ pub enum ParameterResult {
 
 #[derive(Clone, Copy, Debug, Default)]
 enum Phase {
-    /// Nothing is requested, and the device has not shown this yet.
+    /// Nothing is requested, but the device has not confirmed this yet.
     #[default]
     Clear,
-    /// The same since that moment, with a parameter to read.
+    /// Nothing is requested since that moment, and a parameter waits to be read.
     Clearing {
         since: Moment,
     },
-    /// Nothing is requested, and the device shows this.
+    /// Nothing is requested, as the device has confirmed.
     Ready,
     Reading {
         number: ParameterNumber,
@@ -60,7 +60,7 @@ enum Phase {
 const LIMIT: Duration = Duration::from_secs(1);
 
 impl ParameterWords {
-    /// Sets the parameters that are read. The readings of others are dropped.
+    /// Sets the parameters to read. Readings of all others are dropped.
     pub fn watch(&mut self, watched: &[ParameterNumber]) {
         if self.watched != watched {
             self.watched = watched.to_vec();
@@ -122,7 +122,7 @@ fn read(number: ParameterNumber) -> Pkw {
     Pkw::request(Task::Read, number.get(), 0, 0)
 }
 
-/// Returns the result of an answer; `None` if it is not one of a number. The lower bytes contain a shorter number.
+/// Returns the result of an answer, or `None` if the answer is not a number. Shorter numbers are in the lower bytes.
 fn result(number: ParameterNumber, words: Pkw, answer: Answer) -> Option<ParameterResult> {
     if let Answer::Refused(why) = answer {
         return Some(ParameterResult::Refused(why));

@@ -5,21 +5,21 @@ use std::time::Duration;
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Percent, RunEnd, State};
 use crate::units::Moment;
 
-/// A motion request to a drive, and when it was last refreshed.
+/// A motion request to a drive with the time of its last refresh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Intent {
     pub drive: DriveNumber,
     pub request: MotionRequest,
-    /// Number of the user's act: each has its own, higher than those before.
+    /// Number of the user's act, higher than all previous ones.
     pub number: u64,
-    /// Time of the last refresh. After [`Intent::FRESH`] no motion continues.
+    /// Time of the last refresh. No motion continues after [`Intent::FRESH`].
     pub refreshed: Moment,
 }
 
 /// A motion request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionRequest {
-    /// No request: a motion stops, and the drive's state is held.
+    /// No request: a motion stops, and the state of the drive is held.
     Rest,
     Lead(Goal),
     Acknowledge,
@@ -28,7 +28,7 @@ pub enum MotionRequest {
         target: i32,
         effort: Effort,
     },
-    /// A number of scaled steps from the present position: a positioning job, which a stop ends.
+    /// A number of scaled steps from the present position, as a positioning job that a stop ends.
     Step {
         /// Signed number of steps.
         by: i32,
@@ -36,12 +36,13 @@ pub enum MotionRequest {
     },
     Pause,
     Resume,
-    /// Turns as long as the button is held, to the end of the range at most.
+    /// Turns while the button is held, at most to the end of the range.
     Jog {
         direction: Direction,
         /// Speed and torque; limited to [`Effort::JOG`] if `outward` is set.
         effort: Effort,
-        /// If set, it may lead further out from outside the limits: with a wrong reference that can be the only way back.
+        /// Whether the motion may lead further out from outside the limits, which with a wrong reference can be the
+        /// only way back.
         outward: bool,
     },
     Run {
@@ -55,13 +56,13 @@ pub enum MotionRequest {
 /// A state that a drive can be led to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Goal {
-    /// Not ready: 0000h.
+    /// Not ready, 0000h.
     Off,
-    /// Ready: 0400h.
+    /// Ready, 0400h.
     Ready,
-    /// Operational: 0401h.
+    /// Operational, 0401h.
     Operational,
-    /// Enabled, standing: 0409h.
+    /// Enabled and at rest, 0409h.
     Enabled,
 }
 
@@ -76,14 +77,14 @@ pub struct Effort {
 /// Permission of a drive to move: limits, locks and exceptions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Permit {
-    /// Parameters 158 and 160; `None` if they were not read.
+    /// Parameters 158 and 160, or `None` if they have not been read.
     pub limits: Option<(i32, i32)>,
     pub locks: Vec<Lock>,
-    /// If set, it may run past its limits.
+    /// Whether the drive may run past its limits.
     pub endless: bool,
-    /// If set, the parameters must be read again before a motion starts; a running one continues.
+    /// Whether the parameters must be read again before a motion starts; a running one continues.
     pub doubted: bool,
-    /// Steps of one degree as scaled, at least 1: the repeatability of a drive (manual, technical data).
+    /// Scaled steps per degree, at least 1: the repeatability of a drive (manual, technical data).
     pub degree: u32,
 }
 
@@ -92,7 +93,7 @@ pub struct Permit {
 pub enum Lock {
     /// The parameters were not read.
     Unread,
-    /// Parameter 186 is 255 or not a time: a drive could continue to move after communication is lost.
+    /// Parameter 186 is 255 or not a time: the drive could continue to move after a loss of communication.
     NoTimeout,
     /// The scaling has changed, and the limits with it; the user has not confirmed them yet.
     LimitsUnconfirmed,
@@ -131,11 +132,11 @@ pub enum MotionKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopLevel {
     Mode,
-    /// 0401h: operation is disabled.
+    /// Disable operation, 0401h.
     Operational,
     /// 0000h.
     Off,
-    /// The cyclic connection is to be closed, so that the drives' own watchdog stops them.
+    /// Close the cyclic connection, so that the watchdogs of the drives stop them.
     Close,
 }
 
@@ -152,19 +153,19 @@ pub enum Ended {
     Deaf,
     /// The cyclic connection was lost or closed.
     Lost,
-    /// The drive has a fault. Nothing moves until it is acknowledged.
+    /// The drive has a fault. Nothing moves until the fault is acknowledged.
     Fault,
-    /// It is no longer permitted to move.
+    /// The drive is no longer permitted to move.
     Locked(Lock),
-    /// It was refused, and nothing was sent for it.
+    /// The request was refused, and nothing was sent for it.
     Refused(Refusal),
-    /// The drive is in this state and did not follow a word on the way to the requested one.
+    /// The drive is in this state and has not followed a word on the way to the requested one.
     NoAnswer(State),
-    /// The drive did not begin the motion.
+    /// The drive has not begun the motion.
     NotStarted,
     /// The drive has left the state required for a motion.
     Left(State),
-    /// The drive stands still, but has not reached its target.
+    /// The drive is at rest, but has not reached its target.
     Short,
     Beyond {
         /// In scaled steps.
@@ -191,7 +192,7 @@ pub enum Refusal {
         /// Parameter 160.
         high: i32,
     },
-    /// The drive is outside its limits, and this would lead further out.
+    /// The drive is outside its limits, and the motion would lead further out.
     Outward {
         /// In scaled steps.
         position: i32,
@@ -200,7 +201,8 @@ pub enum Refusal {
         /// Parameter 160.
         high: i32,
     },
-    /// By status bit 15 the drive is outside its limits, though its position is inside: the direction back in is not known.
+    /// The drive is outside its limits according to status bit 15, although its position is inside: the direction back
+    /// in is unknown.
     Unclear {
         /// In scaled steps.
         position: i32,
@@ -219,12 +221,12 @@ pub enum Refusal {
     NothingToPause,
     /// No job is paused.
     NothingToResume,
-    /// No drive at this place.
+    /// The port has no drive.
     Absent,
 }
 
 impl Intent {
-    /// How long a refresh stays valid. It has to be repeated every 100 ms.
+    /// Validity of a refresh, which must be repeated every 100 ms.
     pub const FRESH: Duration = Duration::from_millis(250);
 
     /// Creates an intent that requests nothing.
@@ -232,14 +234,14 @@ impl Intent {
         Intent { drive, request: MotionRequest::Rest, number, refreshed: now }
     }
 
-    /// Returns whether it was not refreshed in time.
+    /// Returns whether the request was not refreshed in time.
     pub fn is_stale(&self, now: Moment) -> bool {
         now.since(self.refreshed) > Intent::FRESH
     }
 }
 
 impl MotionRequest {
-    /// Returns whether the act makes the drive move. A pause does not.
+    /// Returns whether the act makes the drive move; a pause does not.
     pub const fn moves(self) -> bool {
         matches!(
             self,
@@ -293,19 +295,19 @@ impl Goal {
 }
 
 impl Effort {
-    /// No speed and no torque: no motion starts.
+    /// Zero speed and torque, with which no motion starts.
     pub const NONE: Effort = Effort { speed: Percent::NONE, torque: Percent::NONE };
     /// Speed and torque of a new jog: 10 % and 25 %.
     pub const JOG: Effort = Effort { speed: percent(10), torque: percent(25) };
     /// Speed and torque of a new move: a quarter of the speed, which leaves time for STOP after a mistyped target, and
-    /// the torque that an axis may need.
+    /// the torque that an axis may require.
     pub const MOVE: Effort = Effort { speed: percent(25), torque: Percent::FULL };
 
     pub fn at_most(self, other: Effort) -> Self {
         Effort { speed: self.speed.min(other.speed), torque: self.torque.min(other.torque) }
     }
 
-    /// Returns whether speed or torque is 0 %: no motion would start.
+    /// Returns whether speed or torque is 0 %, so that no motion would start.
     pub const fn is_none(self) -> bool {
         self.speed.get() == 0 || self.torque.get() == 0
     }
@@ -319,7 +321,7 @@ const fn percent(percent: u8) -> Percent {
 }
 
 impl Default for Permit {
-    /// Returns the permit before a drive's parameters were read: no motion.
+    /// Returns the permit before the parameters of a drive have been read: no motion.
     fn default() -> Self {
         Permit { limits: None, locks: vec![Lock::Unread], endless: false, doubted: false, degree: 1 }
     }
@@ -331,7 +333,7 @@ impl Permit {
         Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, doubted: false, degree: 183 }
     }
 
-    /// Checks whether a motion may begin, or continue. `target` is its end, if it has one.
+    /// Checks whether a motion may begin or continue. `target` is its end, if it has one.
     ///
     /// # Errors
     /// [`Refusal`].

@@ -21,8 +21,8 @@ impl DeadMan {
         }
     }
 
-    /// Accepts a pause or its end, which continue the job, only as the very next request: a stop in between may have
-    /// been missed.
+    /// Accepts a pause or resume, which continue the job, only as the very next request, because a stop in between may
+    /// have been missed.
     fn follow(&mut self, intent: &Intent, permit: &Permit, now: Moment) {
         let mark = self.mark(now);
         let Some(act) = &mut self.act else { return };
@@ -86,7 +86,7 @@ impl DeadMan {
         }
     }
 
-    /// Returns how the act ends if the intent is no longer for it; `None` if it still is.
+    /// Returns how the act ends if the intent is no longer for it, or `None` if it still is.
     fn overtaken(&self, number: u64, request: MotionRequest, intent: &Intent, permit: &Permit) -> Option<Ended> {
         let rests = matches!(
             intent.request,

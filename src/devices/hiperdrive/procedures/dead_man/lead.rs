@@ -5,7 +5,7 @@ use super::{Act, DeadMan, Ended, Goal, Mark, MotionKind, Refusal, SETTLE, STEP, 
 use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, State, StatusBit, StatusWord};
 use crate::units::Moment;
 
-/// Sequence of words that leads a drive to a state.
+/// A sequence of words that leads a drive to a state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lead {
     goal: Goal,
@@ -59,7 +59,7 @@ impl Lead {
         self.goal
     }
 
-    /// Returns whether it only removes torque or leaves it off, so that it needs no refresh.
+    /// Returns whether the lead only removes torque or leaves it off, so that no refresh is required.
     pub(super) fn only_down(&self, state: State) -> bool {
         self.goal <= Goal::of(state) || self.goal == Goal::Off
     }
@@ -152,7 +152,7 @@ impl DeadMan {
         self.stage = Stage::Arm { since: self.mark(now), acknowledged };
     }
 
-    /// Holds the present state or a lower one after the leading was given up.
+    /// Holds the present state or a lower one after leading has been abandoned.
     pub(super) fn hold_state(&mut self, state: State) {
         let highest = if self.after_run { Goal::Ready } else { Goal::Enabled };
         self.level = match state {

@@ -10,11 +10,11 @@ use crate::units::Moment;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stage {
     Rest {
-        /// Since when the drive moves although it should rest.
+        /// Time since which the drive has been moving although it should rest.
         moves: Option<Moment>,
     },
     Lead(Lead),
-    /// It has the setpoints of a motion, and the word from which the motion can start.
+    /// The drive has the setpoints of a motion, and the word from which the motion can start.
     Arm {
         since: Mark,
         /// Status bit 12 as reported before.
@@ -27,7 +27,7 @@ pub(super) enum Stage {
     Go {
         since: Mark,
         acknowledged: bool,
-        /// Since when the drive stands still.
+        /// Time since which the drive has been at rest.
         standing_since: Option<Mark>,
     },
     Paused {
@@ -49,7 +49,7 @@ pub(super) struct Mark {
     pub(super) report: u64,
 }
 
-/// Number of reports after a mark of which the last one surely describes the time after it, if the time has passed too.
+/// Number of reports after a mark, the last of which certainly describes the time after it, once that time has passed.
 const REPORTS: u64 = 2;
 
 impl Mark {
@@ -141,7 +141,7 @@ impl DeadMan {
         }
     }
 
-    /// Returns whether the motion is one in speed mode.
+    /// Returns whether the motion is a run in speed mode.
     pub(super) fn runs(&self) -> bool {
         self.act.and_then(|act| act.motion).is_some_and(|motion| matches!(motion.kind, MotionKind::Run { .. }))
     }
@@ -155,8 +155,8 @@ impl DeadMan {
         }
     }
 
-    /// Climbs the ladder while the drive moves, and holds its state once it stands still. After a run that state is ready,
-    /// from which the next motion leads up again.
+    /// Reduces the control level while the drive does not stop, and holds its state once it is at rest. After a run
+    /// that state is ready, from which the next motion leads up again.
     fn raise_stop_level(&mut self, mark: Mark, actual: Actual) {
         let Stage::Stop { level, since, begun, word } = self.stage else { return };
         if level == StopLevel::Close {
@@ -171,7 +171,7 @@ impl DeadMan {
         }
     }
 
-    /// Watches a drive at rest: the level held follows it down, and a drive that moves is stopped.
+    /// Supervises a drive at rest: the held level follows it down, and a moving drive is stopped.
     fn watch(&mut self, now: Moment, actual: Actual, moves: Option<Moment>) {
         match actual.status.state() {
             State::Fault | State::Locked => self.level = self.level.min(Goal::Operational),

@@ -9,7 +9,7 @@ use crate::units::Moment;
 
 const DOCUMENT: &str = include_str!("../../../../../docs/motion.md");
 
-/// A drive and its dead-man, interval by interval.
+/// A drive and its dead-man, simulated interval by interval.
 struct Bench {
     man: DeadMan,
     now: Moment,
@@ -21,7 +21,8 @@ struct Bench {
     is_connected: bool,
 }
 
-/// Status words: ready; enabled and standing; enabled and moving, and standing, with the acknowledgement of a job or a run.
+/// Status words: ready; enabled and at rest; enabled and moving, and at rest, with the acknowledgement of a job or a
+/// run.
 const READY: u16 = 0x2A31;
 const ENABLED: u16 = 0x2A37;
 const MOVING: u16 = 0x1A37;
@@ -58,7 +59,7 @@ impl Bench {
         (0..count).for_each(|_| self.cycle());
     }
 
-    /// Creates a bench whose dead-man is in this phase of the table.
+    /// Creates a bench whose dead-man is in the given phase of the table.
     fn in_phase(name: &str) -> Self {
         let job = MotionRequest::Move { target: 5000, effort: Effort::JOG };
         let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
@@ -146,7 +147,7 @@ impl Bench {
     }
 }
 
-/// Returns the rows of the table with its head: trimmed cells.
+/// Returns the rows of the table including its head, as trimmed cells.
 fn table() -> Vec<Vec<&'static str>> {
     let lines = DOCUMENT.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
     let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>();

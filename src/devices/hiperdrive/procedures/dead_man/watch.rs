@@ -23,7 +23,7 @@ pub enum Side {
     Above,
 }
 
-/// How a drive is outside its limits.
+/// The way in which a drive is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     At(Side),
@@ -34,23 +34,23 @@ pub enum Outside {
 /// Supervision of a running motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
-    /// How it was outside the limits at the start; `None` once it has been inside.
+    /// The way in which the drive was outside its limits at the start, or `None` once it has been inside.
     outside: Option<Outside>,
-    /// The least distance so far: of a job to its target, of a run in its direction.
+    /// Minimum distance so far: of a job to its target, of a run in its direction.
     best: i64,
     /// Position of a waiting job after braking.
     waits_at: Option<i32>,
-    /// The user has enabled the way further out, from outside, for this press.
+    /// Whether the user has enabled the direction further out for this press.
     freed: bool,
-    /// A run started at the end of the range to which it leads: there may be no travel left.
+    /// Whether a run started at the end of the range to which it leads, so that there may be no travel left.
     pub(super) at_end: bool,
 }
 
-/// Degrees of accuracy: ±2.5° (manual, technical data; reference 5), as whole degrees.
+/// Accuracy in whole degrees: ±2.5° (manual, technical data; reference 5), rounded up.
 const ACCURACY: i64 = 3;
 
 impl Outside {
-    /// Returns whether this direction may lead further out.
+    /// Returns whether the direction may lead further out.
     pub fn is_outward(self, direction: Direction) -> bool {
         match self {
             Outside::At(side) => side.outward() == direction,
@@ -60,8 +60,8 @@ impl Outside {
 }
 
 impl Permit {
-    /// Returns how a drive is outside its limits: by its position, or else by status bit 15, at the one limit that is
-    /// within a degree then. `None` inside, and if no limits are known.
+    /// Returns how a drive is outside its limits: by its position, or else by status bit 15, at the limit that is
+    /// within a degree. `None` inside, and if no limits are known.
     pub fn outside(&self, actual: Actual) -> Option<Outside> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
@@ -82,7 +82,7 @@ fn side(position: i32, (low, high): (i32, i32)) -> Option<Side> {
 }
 
 impl Side {
-    /// Returns the steps beyond the limit of this side; negative inside.
+    /// Returns the number of steps beyond the limit on this side, negative inside.
     pub fn beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
         match self {
             Side::Above => i64::from(position) - i64::from(high),
@@ -90,8 +90,8 @@ impl Side {
         }
     }
 
-    /// Returns the direction that leads further out. Clockwise counts up (manual 7.2: the step of parameter 170, +4096, is
-    /// clockwise).
+    /// Returns the direction that leads further out. Positions increase clockwise (manual 7.2: the step of parameter
+    /// 170, +4096, is clockwise).
     pub const fn outward(self) -> Direction {
         match self {
             Side::Above => Direction::Clockwise,
@@ -101,14 +101,14 @@ impl Side {
 }
 
 impl Motion {
-    /// Returns the limits that apply to this motion: none for an endless run.
+    /// Returns the limits that apply to the motion, or `None` for an endless run.
     fn limits(&self, permit: &Permit) -> Option<(i32, i32)> {
         let endless = matches!(self.kind, MotionKind::Run { end: RunEnd::Endless, .. });
         permit.limits.filter(|_| !endless)
     }
 
-    /// Returns the steps to the target of a job. For a run, which has no target, returns a number that decreases as it
-    /// moves in its direction.
+    /// Returns the distance of a job to its target in steps. A run has no target; its value decreases as it moves in
+    /// its direction.
     fn distance(&self, actual: Actual) -> i64 {
         let position = i64::from(actual.position);
         match self.kind {
@@ -134,7 +134,7 @@ impl Watch {
         Watch { outside, best, waits_at: None, freed, at_end }
     }
 
-    /// Compares a report with the limits and the target. Returns how the motion ends, if it must.
+    /// Compares a report with the limits and the target; returns how the motion must end, if it must.
     pub(super) fn check_report(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
         let degree = i64::from(permit.degree);
         let distance = motion.distance(actual);
@@ -150,7 +150,7 @@ impl Watch {
         beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
     }
 
-    /// Detects that a waiting job moves on: by more than a degree from its position after braking.
+    /// Detects that a waiting job continues to move, by more than a degree from its position after braking.
     fn wait(&mut self, has_braked: bool, actual: Actual, permit: &Permit) -> Option<Ended> {
         if !has_braked {
             self.waits_at = None;
@@ -184,8 +184,8 @@ impl Watch {
 }
 
 impl Permit {
-    /// Returns whether a motion may begin at this position: outside the limits only back in, unless the way further out
-    /// was enabled for this press.
+    /// Checks whether a motion may begin at this position: outside the limits only back in, unless the direction
+    /// further out was enabled for this press.
     ///
     /// # Errors
     /// [`Refusal::Outward`], [`Refusal::Unclear`].

@@ -26,17 +26,18 @@ pub struct Opened {
     pub timeout: Duration,
     pub layout: Layout,
     pub port: u16,
-    /// Multicast group of its packets, if it uses one.
+    /// Multicast group of the target's packets, if used.
     pub group: Option<SocketAddrV4>,
     pub close: ForwardClose,
 }
 
 /// Vendor ID of this program: an unassigned number (reference 9).
 const VENDOR: u16 = 0x1234;
-/// Eight intervals: a host that is late once loses nothing. Long intervals use four, so that drives stop soon.
+/// Time-out multiplier of eight intervals: a host that is late once loses nothing. Long intervals use four, so that
+/// drives stop soon.
 const TIMEOUT: u8 = 1;
 const LONG_TIMEOUT: u8 = 0;
-/// Intervals from here on count as long.
+/// Interval from which connections count as long.
 const LONG: Duration = Duration::from_millis(35);
 /// Factor by which a device may extend the interval, up to the longest that may be requested.
 const SLOWER: u32 = 2;
@@ -85,7 +86,7 @@ impl Master<'_> {
         }
     }
 
-    /// Closes a cyclic connection. One that has already ended counts as closed. Cancellation is ignored.
+    /// Closes a cyclic connection; one that has already ended counts as closed. Cancellation is ignored.
     ///
     /// # Errors
     /// [`Error::Refused`]; errors of the exchange.
@@ -97,7 +98,8 @@ impl Master<'_> {
         }
     }
 
-    /// Closes a connection that may be open and cannot be used; the original error is the one reported.
+    /// Closes a connection that may be open and cannot be used, ignoring errors, because the original error is
+    /// reported.
     fn close_blindly(&mut self, close: &ForwardClose) {
         if let Err(why) = self.shielded(|master| master.forward_close(close)) {
             tracing::warn!("{why}");
@@ -176,7 +178,7 @@ fn is_of_connection(refusal: &Refusal) -> bool {
     refusal.status == GeneralStatus::CONNECTION
 }
 
-/// Returns whether a request of this layout and kind avoids the refused one.
+/// Returns whether a request with this layout and type avoids the refusal.
 fn answers(refusal: &Refusal, layout: Layout, kind: NetworkType) -> bool {
     let first = refusal.extended.first().filter(|_| is_of_connection(refusal));
     match first {

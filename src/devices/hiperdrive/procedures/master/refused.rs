@@ -14,7 +14,7 @@ use crate::devices::hiperdrive::protocol::{
 };
 
 impl Master<'_> {
-    /// Returns why a parameter was refused, as far as can be found out.
+    /// Determines why a parameter was refused, as far as possible.
     ///
     /// # Errors
     /// Errors of the exchange.
@@ -75,8 +75,8 @@ impl Master<'_> {
         }
     }
 
-    /// Returns the present range of a parameter: 160 is above 158, position and reference are between them (reference 4),
-    /// and no limit is farther from 0 than the drive's turns (5).
+    /// Returns the present range of a parameter: 160 is above 158, position and reference are between them (reference
+    /// 4), and no limit is farther from 0 than the turns of the drive (5).
     fn range_now(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
         let travel = match number.drive().filter(|_| row.reach.is_some()) {
             Some(drive) => self.travel(drive)?,

@@ -22,7 +22,7 @@ use crate::units::Moment;
 pub(super) struct Connections {
     pub(super) cyclic: Option<Cyclic>,
     explicit: Vec<Explicit>,
-    /// Number of connections so far: no number is used twice.
+    /// Number of connections so far; no number is used twice.
     opened: u32,
 }
 
@@ -37,7 +37,7 @@ struct Explicit {
     heard: Moment,
 }
 
-/// Why a connection is not opened: the first word after the status.
+/// Reason why a connection is not opened: the first extended status word.
 type Refusal = u16;
 
 const IN_USE: Refusal = 0x0100;
@@ -71,7 +71,7 @@ impl Connections {
         self.cyclic.is_some()
     }
 
-    /// Returns when something is to be sent next.
+    /// Returns when the next packet must be sent.
     pub(super) fn due(&self) -> Option<Moment> {
         self.cyclic.as_ref().map(Cyclic::due)
     }
@@ -84,7 +84,7 @@ impl Connections {
         self.explicit.retain(|explicit| now.since(explicit.heard) < explicit.timeout);
     }
 
-    /// Handles a message over an explicit connection: returns what its replies carry.
+    /// Handles a message over an explicit connection; returns the data for its reply.
     pub(super) fn message(&mut self, to_target_id: u32, session: u32, now: Moment) -> Option<u32> {
         let mut explicit = self.explicit.iter_mut();
         let found = explicit.find(|one| one.to_target_id == to_target_id && one.session == session)?;
@@ -99,7 +99,7 @@ impl Connections {
 }
 
 impl Plant {
-    /// Handles a request to the connection manager; returns its reply with the socket items to be sent beside it.
+    /// Handles a request to the connection manager; returns its reply with the socket items to send next to it.
     pub(super) fn manage(&mut self, from: (Originator, u32), request: &Request, items: &Items) -> (Reply, Vec<Item>) {
         let alone = |reply| (reply, Vec::new());
         if let Err(status) = object(&request.path) {
@@ -273,7 +273,8 @@ impl Plant {
     }
 }
 
-/// Returns the address for cyclic data: as the originator requested, else its address and the usual port.
+/// Returns the address for cyclic data as requested by the originator, or else the originator's address and the usual
+/// port.
 fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> SocketAddrV4 {
     match requested {
         Some(socket) if socket.address.is_unspecified() => SocketAddrV4::new(peer, socket.port),
@@ -282,7 +283,7 @@ fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> Socket
     }
 }
 
-/// Unwraps the request in an Unconnected_Send: time-out, length, request, padded to whole words; then a route, which is
+/// Unwraps the request in an Unconnected_Send: time-out, length, request padded to whole words, and a route, which is
 /// ignored.
 fn wrapped(data: &[u8]) -> Result<Request, GeneralStatus> {
     let [_, _, low, high, rest @ ..] = data else { return Err(GeneralStatus::TOO_SHORT) };

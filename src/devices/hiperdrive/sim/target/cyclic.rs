@@ -50,8 +50,8 @@ impl Cyclic {
 }
 
 impl Plant {
-    /// Sends the packets that are due, each with the state of the drives at its time. The connection of a lost master is
-    /// closed.
+    /// Sends the packets that are due, each with the state of the drives at its time. The connection of a lost master
+    /// is closed.
     pub(super) fn produce(&mut self) {
         while let Some(cyclic) = self.connections.cyclic.as_mut() {
             let at = cyclic.next.min(self.now);

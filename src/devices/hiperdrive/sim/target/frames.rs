@@ -12,7 +12,7 @@ use crate::buses::ethernet_ip::protocol::{
 const SERVICES: (u16, [u8; 20]) = (0x0100, *b"\x01\x00\x20\x01Communications\0\0");
 /// Attribute 8 of the identity object: operational.
 const OPERATIONAL: u8 = 3;
-/// A segment of the path that is not understood.
+/// Status for an unknown path segment.
 const PATH_SEGMENT: GeneralStatus = GeneralStatus::new(0x04);
 
 type Refusal = EncapsulationStatus;
@@ -44,7 +44,7 @@ impl Plant {
         })
     }
 
-    /// Handles a frame in a datagram: only list commands are answered. Returns whether it is one.
+    /// Handles a frame in a datagram, replying to list commands only; returns whether it is a frame.
     pub(super) fn answer_datagram(&mut self, from: SocketAddrV4, frame: &Frame) -> bool {
         let asked = matches!(frame.command, Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES);
         if asked && frame.options == 0 {
@@ -113,7 +113,7 @@ impl Plant {
         Ok(Body::Data { interface: 0, timeout_s: 0, items: Items(items) })
     }
 
-    /// Handles SendUnitData; `None` for an unknown connection.
+    /// Handles SendUnitData, or returns `None` for an unknown connection.
     fn connected(&mut self, from: Originator, frame: &Frame) -> Result<Option<Body>, Refusal> {
         let items = self.items(from, frame)?;
         let [Item::ConnectedAddress(connection), Item::ConnectedData(data), ..] = items.0.as_slice() else {
@@ -129,7 +129,7 @@ impl Plant {
         Ok(Some(Body::Data { interface: 0, timeout_s: 0, items }))
     }
 
-    /// Handles a CIP message; returns its reply with the socket items to be sent beside it.
+    /// Handles a CIP message; returns its reply with the socket items to send next to it.
     fn message(
         &mut self,
         from: (Originator, u32),

@@ -31,7 +31,7 @@ const NONE: InterfaceConfiguration = InterfaceConfiguration {
 const NETWORK: Ipv4Addr = Ipv4Addr::new(255, 255, 255, 0);
 /// The address that a virtual DHCP or BOOTP server assigns.
 const GIVEN: Ipv4Addr = Ipv4Addr::new(192, 168, 1, 200);
-/// Attribute 1: an address was obtained; attribute 2: BOOTP, DHCP, can be set.
+/// Attribute 1: an address was obtained; attribute 2: BOOTP, DHCP, settable.
 const CONFIGURED: u32 = 1;
 const CAPABILITY: u32 = 0x15;
 const ETHERNET_LINK: u16 = 0xF6;
@@ -40,7 +40,7 @@ const MEGABITS: u32 = 100;
 const LINK_UP: u32 = 0x03;
 
 impl Network {
-    /// Creates the settings as delivered: DHCP.
+    /// Creates the factory settings: DHCP.
     pub(super) fn new(switch: u8, serial_number: u16) -> Self {
         let [high, low] = serial_number.to_be_bytes();
         let mac = [0x02, 0x00, 0x00, 0x00, high, low];

@@ -12,11 +12,12 @@ const DEVICE_TYPE: u16 = 0x0C;
 /// Chosen (`U`).
 const PRODUCT_CODE: u16 = 1;
 const REVISION: Revision = Revision { major: 1, minor: 2 };
-/// Bits 7 to 4 of the status word: no cyclic connection, or a running one; bit 0: it has an owner.
+/// Bits 7 to 4 of the status word without a cyclic connection, and with a running one; bit 0: the connection has an
+/// owner.
 const NOT_CONNECTED: u16 = 0x0030;
 const CONNECTED: u16 = 0x0061;
 const ETHERNET_LINK: u16 = 0xF6;
-/// Class of the device parameters; that of drive n is n higher.
+/// CIP class of the device parameters; that of drive n is n higher.
 const PARAMETERS: u16 = 0x64;
 /// The attribute can only be set.
 const NOT_GETTABLE: GeneralStatus = GeneralStatus::new(0x2C);
@@ -107,7 +108,7 @@ impl Plant {
     }
 }
 
-/// Class and attribute of a path to the only instance of an object.
+/// Returns class and attribute of a path to the only instance of an object.
 pub(super) fn object(path: &Path) -> Result<(u16, Option<u16>), GeneralStatus> {
     let understood = |segment: &Segment| match segment {
         Segment::Logical { kind, .. } => *kind != LogicalKind::ConnectionPoint,
@@ -129,7 +130,7 @@ pub(super) const fn wrong(error: PacketError) -> GeneralStatus {
     }
 }
 
-/// Reads an object that is not set.
+/// Reads an object that cannot be set.
 fn read(request: &Request, attribute: Option<u16>, all: Vec<u8>, one: impl FnOnce(u16) -> Option<Vec<u8>>) -> Answer {
     let found = attribute.and_then(one);
     match request.service {

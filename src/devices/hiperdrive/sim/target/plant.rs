@@ -17,7 +17,7 @@ use crate::sim::Faults;
 use crate::sim::line::Queue;
 use crate::units::Moment;
 
-/// The device with all that is connected to it.
+/// The device with everything that is connected to it.
 #[derive(Debug)]
 pub(super) struct Plant {
     pub(super) station: Station,
@@ -44,7 +44,7 @@ pub(super) struct Originator {
     pub(super) address: Ipv4Addr,
 }
 
-/// Time between a frame and its reply.
+/// Delay between a frame and its reply.
 const REPLY: Duration = Duration::from_millis(1);
 
 impl Plant {
@@ -88,7 +88,8 @@ impl Plant {
         }
     }
 
-    /// Handles a frame received over TCP; returns its reply with the time it is sent, if there is one and it gets through.
+    /// Handles a frame received over TCP; returns its reply with the time of sending, if there is one and it gets
+    /// through.
     pub(super) fn take(&mut self, now: Moment, from: Originator, frame: &Frame) -> Option<(Moment, Vec<u8>)> {
         self.advance(now);
         self.figures.frames += 1;
@@ -137,7 +138,7 @@ impl Plant {
         self.datagrams = Queue::default();
     }
 
-    /// Notes that something has arrived; returns whether the target receives it.
+    /// Counts an arrival; returns whether the target receives it.
     pub(super) fn hears(&mut self) -> bool {
         let speaks = self.speaks();
         self.heard = self.heard.saturating_add(1);
@@ -153,8 +154,8 @@ impl Plant {
         self.faults.passage(&mut self.rng, 0).carried.is_some()
     }
 
-    /// Applies the faults to a packet. Ethernet delivers a packet whole or not at all: a fault of one byte on a serial line
-    /// affects all of them.
+    /// Applies the faults to a packet. Ethernet delivers a packet completely or not at all, so a fault of one byte on a
+    /// serial line affects all bytes.
     pub(super) fn carry(&mut self, mut bytes: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.passage(&mut self.rng, 0);
         let carried = passage.carried?;
@@ -168,7 +169,7 @@ impl Plant {
         Some(bytes)
     }
 
-    /// Sends a datagram at that moment, if it gets through.
+    /// Sends a datagram at the given moment, if it gets through.
     pub(super) fn send(&mut self, at: Moment, to: SocketAddrV4, bytes: Vec<u8>) {
         if let Some(bytes) = self.carry(bytes) {
             self.datagrams.insert(at + self.faults.delay(), (to, bytes));

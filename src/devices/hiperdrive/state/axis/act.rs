@@ -10,14 +10,14 @@ use crate::app::Language;
 pub enum DriveRequest {
     /// Write parameters, by the numbers of drive 1, through a plan that does not save.
     Try(Vec<(u16, i64)>),
-    /// Set the position at the present place of the drive, without saving it.
+    /// Set the position at the present location of the drive, without saving.
     SetPosition(i32),
     ConfirmLimits,
     Move(i32),
     Take,
     Give,
     Save,
-    /// Write the previous values back, without saving them.
+    /// Write the previous values back, without saving.
     Restore(Vec<(u16, i64)>),
     Acknowledge,
     /// Note that the supply was off, as stated by the user.
@@ -25,10 +25,10 @@ pub enum DriveRequest {
     PowerCycle,
 }
 
-/// A button, besides those that move while they are held.
+/// A button other than those that move a drive while held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {
-    /// The task of the step: request, write, save.
+    /// Execute the task of the step: request, write or save.
     Do,
     Confirm,
     /// Widen the limits to the travel of the drive.
@@ -45,15 +45,13 @@ pub enum Button {
 /// An action of the user in the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AxisAction {
-    /// Begin it, or begin it again.
     Begin,
     Edit(Box<Entries>),
     Press(Button),
-    /// Take the present position as the limit of the step.
+    /// Adopt the present position as the limit of the step.
     TakePlace,
     /// Go to the next step.
     Next,
-    /// Skip this step.
     Skip,
     /// Go to the previous step.
     Back,

@@ -13,24 +13,23 @@ pub struct DriveFacts {
     pub connected: bool,
     /// A job is running, or a review is open.
     pub busy: bool,
-    /// Its parameters may differ from those that were read.
+    /// Whether the parameters may differ from those that were read.
     pub stale: bool,
     pub is_virtual: bool,
     pub controlled: bool,
     pub moves: bool,
     /// The act of a held jog button, and its direction.
     pub held: Option<(u64, Direction)>,
-    /// The data received last.
     pub actual: Option<Actual>,
-    /// Time of that report, on the clock of the session; `None` if it is not known.
+    /// Time of the last report on the session's clock, if known.
     pub actual_at: Option<Moment>,
-    /// Its position. The first packets after taking control do not contain it.
+    /// Position, which the first packets after taking control do not contain.
     pub position: Option<i32>,
-    /// Parameters of the drive as they were read, by the numbers of drive 1.
+    /// Parameters of the drive as last read, by the numbers of drive 1.
     pub values: BTreeMap<u16, i64>,
-    /// The saved values known to differ from those written since, by the same numbers.
+    /// Saved values known to differ from those written since, by the numbers of drive 1.
     pub unsaved: BTreeMap<u16, i64>,
-    /// Number of times its position was set by this program.
+    /// Number of times this program has set the position.
     pub times_set: u32,
     /// Parameter 152.
     pub requested: Option<bool>,
@@ -41,11 +40,11 @@ pub struct DriveFacts {
     /// Parameters 158 and 160.
     pub limits: Option<(i32, i32)>,
     pub family: Option<Family>,
-    /// Why it may not move.
+    /// Reasons why the drive may not move.
     pub locks: Vec<Lock>,
-    /// The user's last act that has ended.
+    /// Last act of the user that has ended.
     pub ended: Option<(u64, Ended)>,
-    /// Its latest error since the acknowledgement, if it was read.
+    /// Latest error since the acknowledgement, if it was read.
     pub error: Option<ErrorCode>,
 }
 
@@ -54,7 +53,7 @@ impl DriveFacts {
         self.connected && !self.busy && !self.stale
     }
 
-    /// Returns whether the drive has failed, and does not move until that is acknowledged.
+    /// Returns whether the drive has failed and does not move until the fault is acknowledged.
     pub fn has_failed(&self) -> bool {
         self.actual.is_some_and(|actual| matches!(actual.status.state(), State::Fault | State::Locked))
     }

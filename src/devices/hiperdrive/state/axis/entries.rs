@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::{Family, Length, PositionScale, neares
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::ruler::{Measure, PositionRangeError, Ruler};
 
-/// The entered text, in millimetres.
+/// Typed values in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entries {
     /// Pitch of the spindle, per turn.
@@ -26,11 +26,11 @@ pub struct Preview {
     /// Parameters 154 and 156.
     pub scale: PositionScale,
     pub ruler: Ruler,
-    /// Limits for the set-up: the travel of the drive.
+    /// Lower limit for the set-up: the travel of the drive.
     pub lower: i32,
     /// As `lower`.
     pub upper: i32,
-    /// The present limits under the new scale, in millimetres, if their numbers were not changed.
+    /// Present limits under the new scale in millimetres, if their numbers do not change.
     pub unchanged: Option<(f64, f64)>,
 }
 
@@ -39,13 +39,13 @@ pub struct Preview {
 pub struct Reference {
     /// Position as entered.
     pub asked: i32,
-    /// Position as the drive takes it: a multiple of 64 steps.
+    /// Position as accepted by the drive: a multiple of 64 steps.
     pub becomes: i32,
 }
 
 impl Entries {
-    /// Creates the initial entries, with the known data of the spindle. No pitch is proposed: an unconfirmed one would
-    /// measure wrong.
+    /// Creates the initial entries with the known data of the spindle. No pitch is proposed, since an unconfirmed one
+    /// would yield wrong measurements.
     pub(super) fn new(ruler: Option<Ruler>) -> Self {
         let known = ruler.and_then(|own| Some((own.pitch?, own)));
         let pitch = known.map(|(pitch, _)| trimmed(pitch.nanometres as f64 / 1e6)).unwrap_or_default();
@@ -55,7 +55,7 @@ impl Entries {
         Entries { pitch, resolution, reference: "0".to_owned(), ..Entries::default() }
     }
 
-    /// Returns the entries with the decimal sign of the language, as in the numbers beside them.
+    /// Returns the entries with the decimal sign of a language.
     pub fn shown(&self, language: Language) -> Self {
         let shown = |text: &String| signed(text, language);
         Entries {
@@ -94,10 +94,10 @@ impl Entries {
         Ok(Preview { scale, ruler, lower, upper, unchanged })
     }
 
-    /// Returns the number that the present place of the axis would get.
+    /// Returns the number that the present location of the axis would get.
     ///
     /// # Errors
-    /// Why it is invalid, also if it is outside the limits.
+    /// Explains why the number is invalid, or outside the limits.
     pub fn reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<Reference, Text> {
         let asked = position("hd_axis.reference", &self.reference, ruler)?;
         let (low, high) = limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;

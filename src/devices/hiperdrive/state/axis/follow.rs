@@ -15,7 +15,7 @@ impl Axis {
         }
     }
 
-    /// Takes the present position of the axis as the limit of this step.
+    /// Adopts the present position of the axis as the limit of this step.
     pub(crate) fn take_limit(&mut self, seen: &DriveFacts) {
         if self.may_take_place(seen).is_err() {
             return;
@@ -29,14 +29,14 @@ impl Axis {
         }
     }
 
-    /// Goes to the next step if this one is done; `when` is the time as written in the report.
+    /// Goes to the next step if this one is complete; `when` is the time as written in the report.
     pub(crate) fn go_on(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() && self.may_go_on(seen).is_ok() {
             self.leave(seen, false, when);
         }
     }
 
-    /// Skips this step, if that is allowed.
+    /// Skips this step, if allowed.
     pub(crate) fn skip(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() && self.may_skip(seen) {
             self.leave(seen, true, when);
@@ -65,7 +65,7 @@ impl Axis {
         }
     }
 
-    /// Goes to the previous step, or to the one that must be repeated. Values that were written stay.
+    /// Goes to the previous step, or to the one that must be repeated. Written values are kept.
     pub(crate) fn back(&mut self, seen: &DriveFacts) {
         if self.over.is_some() || !self.may_go_back(seen) {
             return;
@@ -108,7 +108,7 @@ impl Axis {
         }
     }
 
-    /// Notes that a test move was begun by this act.
+    /// Records that a test move was started by the given act.
     pub(crate) fn went(&mut self, place: TestTarget, target: i32, act: u64) {
         if let Some(outcome) = self.outcomes.get_mut(place as usize) {
             *outcome = None;
@@ -141,7 +141,7 @@ impl Axis {
         }
     }
 
-    /// Taught limits are confirmed by the review of their plan.
+    /// Records that taught limits were confirmed by the review of their plan.
     fn agree(&mut self, values: &[(u16, i64)], whole: bool) {
         let value = |own: u16| {
             let (_, value) = values.iter().find(|(number, _)| *number == own)?;
@@ -157,7 +157,7 @@ impl Axis {
         }
     }
 
-    /// Records that a request was not written; `begun`: a part of it may have been.
+    /// Records that a request was not written; `begun` tells whether a part of it may have been.
     pub(crate) fn not_written(&mut self, begun: bool) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) if begun => {
@@ -187,12 +187,13 @@ impl Axis {
         self.power = self.power.map(Power::gone);
     }
 
-    /// Notes that all parameters were read; `switched`: the virtual supply was off since.
+    /// Records that all parameters were read; `switched` tells whether the virtual supply has been off since.
     pub(crate) fn surveyed(&mut self, seen: &DriveFacts, switched: bool) {
         self.power = self.power.map(|power| power.back(seen, switched));
     }
 
-    /// Takes the drive's present data: the travel, the end of a test move, and whether all results still hold.
+    /// Processes the present data of the drive: the travel, the end of a test move, and whether all results are still
+    /// valid.
     pub(crate) fn look(&mut self, seen: &DriveFacts) {
         if self.over.is_some() {
             return;
@@ -215,7 +216,7 @@ impl Axis {
         self.settle(seen);
     }
 
-    /// Discards results that the drive no longer has, and takes those that it has.
+    /// Discards results that no longer match the drive, and adopts those that do.
     fn settle(&mut self, seen: &DriveFacts) {
         if !seen.is_settled() || self.asked.is_some() {
             return;
@@ -236,7 +237,7 @@ impl Axis {
         }
     }
 
-    /// Undoes the results of this step and the later ones. Taught entries (`taught`) stay as entered.
+    /// Undoes the results of this step and the later ones; `taught` tells whether taught entries are discarded as well.
     fn undo_from(&mut self, step: AxisStep, taught: bool) {
         if step <= AxisStep::Confirm {
             self.confirmed = None;

@@ -18,7 +18,7 @@ impl Axis {
     /// Returns the request of a button.
     ///
     /// # Errors
-    /// Why it cannot be pressed now.
+    /// Explains why the button cannot be pressed now.
     pub fn ask(&self, button: Button, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
@@ -116,7 +116,7 @@ impl Axis {
         }
     }
 
-    /// Returns both limits as taught, and checks that the axis is between them.
+    /// Returns both taught limits, after checking that the axis is between them.
     fn taught(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
         let (low, high) = (self.entries.lower(ruler)?, self.entries.upper(ruler)?);
@@ -132,10 +132,10 @@ impl Axis {
         Ok((low, high))
     }
 
-    /// Returns why the axis must not be moved.
+    /// Checks whether the axis may be moved.
     ///
     /// # Errors
-    /// Why it is not possible.
+    /// Explains why it may not.
     pub fn may_move(&self, seen: &DriveFacts) -> Result<(), Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
@@ -160,10 +160,10 @@ impl Axis {
         }
     }
 
-    /// Checks whether the present place of the axis can become a limit.
+    /// Checks whether the present location of the axis can become a limit.
     ///
     /// # Errors
-    /// Why it is not possible.
+    /// Explains why it cannot.
     pub fn may_take_place(&self, seen: &DriveFacts) -> Result<(), Text> {
         if let Some(step) = self.fallen() {
             return Err(words::fallen(step));
@@ -177,11 +177,11 @@ impl Axis {
         seen.position.map(|_| ()).ok_or_else(|| TEXTS.text("hd_axis.no_position"))
     }
 
-    /// Checks whether a step that has been shown for this long can be left, forward or back: a second click belongs to the
-    /// step before.
+    /// Checks whether a step that has been shown for the given time can be left, forward or back, since a second click
+    /// belongs to the previous step.
     ///
     /// # Errors
-    /// The remaining time.
+    /// Returns the remaining time.
     pub fn may_leave(looked_at: Duration) -> Result<(), Duration> {
         match SETTLES.saturating_sub(looked_at) {
             Duration::ZERO => Ok(()),
@@ -199,10 +199,10 @@ impl Axis {
         self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.fallen().is_none()
     }
 
-    /// Checks whether the present step is done, so that the next one may come.
+    /// Checks whether the present step is complete, so that the next one may follow.
     ///
     /// # Errors
-    /// What is missing.
+    /// States what is missing.
     pub fn may_go_on(&self, seen: &DriveFacts) -> Result<(), Text> {
         let lacks = |holds: bool, id: &'static str| if holds { Ok(()) } else { Err(TEXTS.text(id)) };
         if self.asked.is_some() {
@@ -250,7 +250,7 @@ impl Axis {
         }
     }
 
-    /// Returns whether the user has confirmed the drive's present limits, with its present scale.
+    /// Returns whether the user has confirmed the present limits of the drive under its present scale.
     pub(super) fn is_confirmed(&self, seen: &DriveFacts) -> bool {
         let (Some(own), Some((low, high))) = (&self.confirmed, seen.limits) else { return false };
         let (agreed, begun) = (own.agreed, own.begun.unwrap_or(own.agreed));

@@ -15,10 +15,10 @@ pub struct Device {
 
 /// Columns of a page.
 const COLUMNS: usize = 78;
-/// Indentation of the lines of a step.
 const INDENT: &str = "   ";
 
-/// Returns the report of a finished run; `None` while it runs. Values written back since are reported as in `now`.
+/// Returns the report of a finished run, or `None` while it is running. Values written back since are reported as in
+/// `now`.
 pub fn report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language) -> Option<String> {
     let over = axis.over()?;
     let seen = &over.seen;
@@ -58,7 +58,7 @@ fn step_lines(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) {
     }
 }
 
-/// Returns what was written, whether it is saved, and what differs from the saved values now.
+/// Returns what was written, whether it is saved, and what now differs from the saved values.
 pub fn end_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     let mut lines = Vec::new();
     match (axis.changes().is_empty(), words::returned(axis, now)) {
@@ -89,7 +89,7 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// Writes a text, in as many lines as it takes.
+    /// Writes a text in as many lines as required.
     fn line(&mut self, indent: &str, text: &Text) {
         let mut line = String::new();
         for word in text.words(self.language).split_whitespace() {

@@ -13,35 +13,35 @@ use crate::units::Moment;
 
 /// Maximum speed of a shaft: the largest value of parameter 166.
 const FASTEST_RPM: f64 = 35.0;
-/// An axis that was not read for longer may have been moved meanwhile, and have come to rest.
+/// Time without a reading after which an axis may have moved and come to rest again.
 const UNREAD: Duration = Duration::from_secs(1);
 
-/// The last standstill of the axis.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Standstill {
     last: Option<StandstillReading>,
-    /// The connection was lost since: the clock of a session is valid for that session only.
+    /// Whether the connection was lost since: the clock of a session is only valid for that session.
     interrupted: bool,
 }
 
 /// Reading of an axis at a standstill.
 #[derive(Clone, Copy, Debug)]
 struct StandstillReading {
-    /// `None`: read with everything else, after a loss of the connection.
+    /// Time of the reading, or `None` if it was part of a complete reading after a loss of the connection.
     at: Option<Moment>,
     position: i32,
     scale: PositionScale,
     origin: Origin,
-    /// The user's last act that had ended.
+    /// Last act of the user that had ended.
     act: Option<u64>,
 }
 
 /// A change of position that no motion explains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PositionChange {
-    /// Farther than the shaft can turn in that time: the reference was set again.
+    /// A change farther than the shaft can turn in the elapsed time: the reference was set again.
     Jump,
-    /// Steps by which it changed while it was not read: it was moved, or its reference was set again.
+    /// Number of steps by which the position changed while it was not read: the axis was moved, or its reference was
+    /// set again.
     Unexplained(i64),
 }
 
@@ -51,13 +51,13 @@ impl Standstill {
         self.interrupted = true;
     }
 
-    /// Forgets the last standstill: the drive was off, and may have been turned by hand meanwhile. The check of the supply
+    /// Discards the last standstill, because the drive was off and may have been turned by hand. The power-cycle check
     /// compares the position itself.
     pub(super) fn forget(&mut self) {
         *self = Standstill::default();
     }
 
-    /// Takes a reading. Returns the change since the previous one if no motion explains it.
+    /// Processes a reading; returns the change since the previous one if no motion explains it.
     pub(super) fn note(&mut self, seen: &DriveFacts, origin: Origin) -> Option<PositionChange> {
         let (actual, position, scale, at) = (seen.actual?, seen.position?, seen.scale?, seen.actual_at);
         if at.is_none() && !self.interrupted {

@@ -5,8 +5,8 @@ use super::{AxisStep, DriveFacts};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
-/// The origin of positions: the position that was set last (198), how often one was set from here, and how often the
-/// position jumped at a standstill, which alone reveals a reference set again at the same number.
+/// Origin of positions: the position set last (198), how often one was set by this program, and how often the position
+/// jumped at standstill, which alone reveals a reference set again to the same number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Origin {
     set: Option<i64>,
@@ -20,18 +20,18 @@ pub(super) struct Preconditions {
     pub(super) requested: Option<bool>,
     pub(super) scale: Option<PositionScale>,
     pub(super) pitch: Option<Length>,
-    /// The limits of the drive are confirmed under this scale.
+    /// Whether the limits of the drive are confirmed under this scale.
     pub(super) confirmed: bool,
     pub(super) origin: Origin,
     pub(super) limits: Option<(i32, i32)>,
-    /// The lower limit as it is taught.
+    /// Taught lower limit.
     pub(super) lower: Option<i32>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StepOutcome {
     on: Preconditions,
-    /// It was left out.
+    /// Whether the step was skipped.
     skipped: bool,
 }
 
@@ -46,7 +46,7 @@ impl Origin {
 }
 
 impl StepOutcomes {
-    /// The first step that has no result; `None`: all of them have.
+    /// Returns the first step without a result, or `None` if all have one.
     pub(super) fn end(&self) -> Option<AxisStep> {
         AxisStep::ALL.get(self.0.len()).copied()
     }
@@ -60,7 +60,8 @@ impl StepOutcomes {
         self.0.get(step.index()).is_some_and(|made| made.skipped)
     }
 
-    /// A step has a result now. The same as before leaves those behind it; another one lets them fall: true.
+    /// Records the result of a step; returns whether it differs from the previous one, which voids the results after
+    /// it.
     pub(super) fn make(&mut self, step: AxisStep, on: Preconditions, skipped: bool) -> bool {
         let made = StepOutcome { on, skipped };
         let before = self.0.get(step.index()).copied();
@@ -74,7 +75,7 @@ impl StepOutcomes {
         before.is_some()
     }
 
-    /// Lets fall what does not rest on the facts of now any more: the first step of those.
+    /// Discards results that no longer match the present facts; returns the first of these steps.
     pub(super) fn fall(&mut self, now: &Preconditions) -> Option<AxisStep> {
         let holds = |(step, made): (&AxisStep, &StepOutcome)| is_unchanged(*step, &made.on, now);
         let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| holds(*own)).count();
@@ -84,7 +85,8 @@ impl StepOutcomes {
     }
 }
 
-/// Returns whether the drive's own facts of a step are unchanged. Those of earlier steps are checked there.
+/// Returns whether the facts of the drive on which a step depends are unchanged. Facts of earlier steps are checked
+/// there.
 fn is_unchanged(step: AxisStep, on: &Preconditions, now: &Preconditions) -> bool {
     match step {
         AxisStep::Request => now.requested == Some(true),

@@ -5,11 +5,11 @@ use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
 use crate::devices::hiperdrive::protocol::{Factory, PARAMETERS, PositionScale};
 
-/// Parameter that reveals a restart of the drive: it is never saved, so that only a restart restores its factory setting
-/// (manual, 182); it moves nothing.
+/// Parameter that reveals a restart of the drive: it is never saved, so only a restart restores its factory setting
+/// (manual, 182), and it moves nothing.
 pub(super) const MARK: u16 = HAND_DRIVE_WAIT;
 
-/// Degrees by which a drive may readjust its position by itself, at power-up and after a stop (manual, 8.3).
+/// Angle in degrees by which a drive may readjust its position at power-up and after a stop (manual, 8.3).
 pub(super) const READJUSTS: f64 = 5.0;
 
 /// The facts before the supply is switched off.
@@ -25,14 +25,14 @@ pub struct StateBeforePowerOff {
 /// The evidence that the supply was off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restart {
-    /// By reading: parameter 182 has its factory setting again.
+    /// Proven by a reading: parameter 182 has its factory setting again.
     Read,
     Switched,
-    /// By the user's statement; no reading proves it.
+    /// Stated by the user; no reading proves it.
     Said,
     /// Unproven: the connection was lost, which can have other causes.
     Unproven,
-    /// It was not off: parameter 182 still has the value that only a restart removes.
+    /// Disproved: parameter 182 still has the value that only a restart removes.
     Disproved,
 }
 
@@ -41,13 +41,13 @@ pub enum Restart {
 pub enum Power {
     /// The device still answers.
     On(StateBeforePowerOff),
-    /// It has stopped answering, or its parameters were not read since.
+    /// The drive has stopped replying, or its parameters have not been read since.
     Gone(StateBeforePowerOff),
     Back {
         /// State before.
         before: StateBeforePowerOff,
         kept: bool,
-        /// Steps between the positions before and after; `None` if one of them is not known.
+        /// Steps between the positions before and after, or `None` if one of them is unknown.
         moved: Option<i64>,
         /// Allowed deviation in steps.
         allowed: i64,
@@ -60,8 +60,8 @@ impl Power {
         Power::On(StateBeforePowerOff::default()).followed(seen)
     }
 
-    /// Takes the latest values while the supply is on. As long as the mark is present, the supply was not off since it was
-    /// set.
+    /// Adopts the latest values while the supply is on. As long as the mark is present, the supply has not been off
+    /// since it was set.
     pub(super) fn followed(self, seen: &DriveFacts) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: Restart::Unproven }
@@ -86,8 +86,8 @@ impl Power {
         }
     }
 
-    /// Notes that the parameters were read again. Unless something shows that the supply was off, any reading may be
-    /// the one after it.
+    /// Records that the parameters were read again. Unless something reveals that the supply was off, any reading may
+    /// be the one after the power cycle.
     pub(super) fn back(self, seen: &DriveFacts, switched: bool) -> Self {
         let mut before = match self {
             Power::Gone(before) | Power::Back { before, restart: Restart::Unproven | Restart::Disproved, .. } => before,
@@ -112,7 +112,7 @@ impl Power {
         }
     }
 
-    /// Takes the user's statement that the supply was off, if nothing proves or disproves it.
+    /// Adopts the statement of the user that the supply was off, if nothing proves or disproves it.
     pub(super) const fn confirmed_by_user(self) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: Restart::Unproven } => {
@@ -122,19 +122,19 @@ impl Power {
         }
     }
 
-    /// Returns whether the saved values are present, the axis is where it was, and the supply was off.
+    /// Returns whether the saved values are present, the axis has not moved, and the supply was off.
     pub(super) fn is_survived(self) -> bool {
         matches!(self, Power::Back { kept: true, moved: Some(moved), allowed, restart, .. }
             if moved.abs() <= allowed && matches!(restart, Restart::Read | Restart::Switched | Restart::Said))
     }
 }
 
-/// Returns whether [`MARK`] differs from its factory setting; `None` if it was not read.
+/// Returns whether [`MARK`] differs from its factory setting, or `None` if it was not read.
 pub(super) fn is_marked(seen: &DriveFacts) -> Option<bool> {
     Some(*seen.values.get(&MARK)? != from_the_factory()?)
 }
 
-/// Returns the value that marks a drive: the one next to the factory setting.
+/// Returns the value that marks a drive, next to the factory setting.
 pub(super) fn mark() -> Option<i64> {
     from_the_factory().map(|value| value + 1)
 }

@@ -19,19 +19,19 @@ pub struct Outcome {
     pub target: i32,
     pub position: i32,
     pub ended: Ended,
-    /// Allowed deviation from the target: 1° in steps (reference 5, repeatability).
+    /// Allowed deviation from the target in steps: 1° (reference 5, repeatability).
     pub allowed: i64,
 }
 
-/// Distance that an axis was moved by jogging, in steps. Only motion while a button is held counts.
+/// Distance in steps by which an axis was jogged. Only motion while a button is held counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Travel {
-    /// Farthest distance upward in one jog; 0 until it is significant.
+    /// Farthest upward distance of a single jog; 0 until it is significant.
     pub up: i64,
     pub down: i64,
-    /// Turning clockwise counts up; `None`: not observed yet.
+    /// Whether turning clockwise counts up, or `None` if not observed yet.
     pub clockwise_is_up: Option<bool>,
-    /// The act that moves it, and the position at its start.
+    /// The act that moves the axis, and the position at its start.
     from: Option<(u64, i32)>,
 }
 
@@ -61,7 +61,7 @@ impl Outcome {
 }
 
 impl Travel {
-    /// Takes the position of the drive. Less than a 64th of a turn is not significant.
+    /// Processes the position of the drive. Less than a 64th of a turn is not significant.
     pub(super) fn note(&mut self, seen: &DriveFacts) {
         let (Some((act, direction)), Some(position), Some(scale)) = (seen.held, seen.position, seen.scale) else {
             self.from = None;

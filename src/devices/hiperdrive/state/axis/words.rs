@@ -24,7 +24,7 @@ pub fn title(step: AxisStep) -> Text {
     })
 }
 
-/// Returns what the user has to do in a step.
+/// Returns the task of the user in a step.
 pub fn todo(step: AxisStep, seen: &DriveFacts) -> Text {
     TEXTS.text(match step {
         AxisStep::Request => "hd_axis.do_request",
@@ -155,7 +155,7 @@ pub fn fallen(step: AxisStep) -> Text {
     text.with_text("step", title(step)).with_text("why", why)
 }
 
-/// Returns the fault of the drive, with its code if it was read; `None` if it has none.
+/// Describes the fault of the drive with its code if known, or returns `None` without a fault.
 pub fn fault(seen: &DriveFacts) -> Option<Text> {
     if !seen.has_failed() {
         return None;
@@ -168,13 +168,13 @@ pub fn fault(seen: &DriveFacts) -> Option<Text> {
     Some(text.with_text("name", words.name).with_text("remedy", words.remedy))
 }
 
-/// Returns speed and torque of the pads and of the test, as sent.
+/// Describes speed and torque of the pads and of the test, as sent.
 pub fn effort(id: &'static str) -> Text {
     let Effort { speed, torque } = Effort::JOG;
     TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
 }
 
-/// Returns the outcome of a test move as text.
+/// Describes the outcome of a test move.
 pub fn outcome(outcome: &Outcome, seen: &DriveFacts) -> Text {
     let mm = |steps: i64| millimetres(seen.ruler(), steps);
     if outcome.ended == Ended::Arrived {
@@ -185,7 +185,7 @@ pub fn outcome(outcome: &Outcome, seen: &DriveFacts) -> Text {
     TEXTS.text("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
 }
 
-/// Returns the values known to differ from the saved ones; `None` if there are none.
+/// Lists the values known to differ from the saved ones, or returns `None` if there are none.
 pub fn differences(seen: &DriveFacts) -> Option<Text> {
     let difference = |own: super::differences::Difference| {
         let id = if own.number == REFERENCE { "hd_axis.differs_place" } else { "hd_axis.differs" };
@@ -195,7 +195,7 @@ pub fn differences(seen: &DriveFacts) -> Option<Text> {
     (!all.is_empty()).then(|| TEXTS.text("hd_axis.unsaved").with_list("differences", all))
 }
 
-/// Returns the outcome of writing back; `None` if nothing was.
+/// Describes the outcome of writing back, or returns `None` if nothing was written back.
 pub fn returned(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     if axis.returned.is_empty() {
         return None;
@@ -206,20 +206,19 @@ pub fn returned(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     Some(text.with("all", axis.returned.len()))
 }
 
-/// Returns a message if parameters were restored but the position was not; otherwise `None`.
+/// Returns a message if parameters were restored but the position was not.
 pub fn place_left(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let is_set = axis.changes().iter().any(|own| matches!(own, AxisChange::Position(_)));
     let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_place_other(seen));
     is_left.then(|| TEXTS.text("hd_axis.place_left"))
 }
 
-/// Returns a message if the position changed while it was not read; `None` if it did not since the reference.
+/// Returns a message if the position has changed since the reference while it was not read.
 pub fn unexplained(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let way = axis.unexplained?;
     Some(TEXTS.text("hd_axis.unexplained").with_text("way", millimetres(seen.ruler(), way)))
 }
 
-/// Returns the name of a target of the test.
 pub fn place(place: TestTarget) -> Text {
     TEXTS.text(match place {
         TestTarget::Middle => "hd_axis.middle",
@@ -228,7 +227,7 @@ pub fn place(place: TestTarget) -> Text {
     })
 }
 
-/// Returns all changes, if any; for a parameter that was written again, its present value.
+/// Lists all changes, if any; for a parameter that was written again, with its present value.
 pub fn changes(axis: &Axis) -> Text {
     let number = |own: &AxisChange| match own {
         AxisChange::Parameter(number, _) => *number,
@@ -240,7 +239,7 @@ pub fn changes(axis: &Axis) -> Text {
     TEXTS.text("hd_axis.was_written").with_list("changes", last.map(|(_, own)| change(own)))
 }
 
-/// Returns the change with the number that was written: the scale may have changed since.
+/// Describes a change with the number that was written, since the scale may have changed.
 fn change(own: &AxisChange) -> Text {
     let text = TEXTS.text("hd_axis.changed");
     match own {
@@ -260,7 +259,6 @@ pub fn millimetres(ruler: Option<Ruler>, steps: i64) -> Text {
     }
 }
 
-/// Returns why a pitch and a resolution are not a scale.
 pub fn scale(error: &ScaleError) -> Text {
     match error {
         ScaleError::TooFine { steps, .. } => TEXTS.text("hd_axis.too_fine").with("steps", steps),

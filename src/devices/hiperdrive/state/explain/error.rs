@@ -74,7 +74,7 @@ pub fn device(error: &Error) -> Text {
     }
 }
 
-/// Returns the text for a number that a parameter may not be, with those that it may.
+/// Explains that a number is outside the range of a parameter.
 pub fn out_of_range(error: &OutOfRange) -> Text {
     match error.range {
         Range::OneOf([]) => named("hd_said.a_text", error.number),
@@ -82,7 +82,7 @@ pub fn out_of_range(error: &OutOfRange) -> Text {
     }
 }
 
-/// Returns the text for a number with another length than its type.
+/// Explains that the length of a number differs from its type.
 pub fn wrong_length(error: &WrongLength) -> Text {
     named("hd_said.length", error.number).with("expected", error.expected).with("got", error.got)
 }
@@ -104,7 +104,7 @@ fn ranged(id: &'static str, error: &OutOfRange) -> Text {
     named(id, error.number).with("value", error.value).with_text("range", range(error.range))
 }
 
-/// Returns a text about a parameter, with its number and its name.
+/// Returns a text about a parameter with its number and name.
 pub(super) fn named(id: &'static str, number: ParameterNumber) -> Text {
     TEXTS.text(id).with("number", number).with_text("name", parameter(number))
 }
@@ -123,7 +123,6 @@ fn item_text(requested: RequestedItem) -> Text {
     }
 }
 
-/// Returns the text of the damage of a reply.
 pub fn damage(damage: &Damage) -> Text {
     match damage {
         Damage::Packet(why) => TEXTS.text("hd_damage.packet").with_text("why", status::packet(why)),

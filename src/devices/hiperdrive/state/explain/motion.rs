@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, Phase,
 use crate::devices::hiperdrive::protocol::{ParameterNumber, State};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// Returns why motion is locked, and what to do.
+/// Explains why motion is locked and what to do.
 pub fn lock(lock: Lock) -> Text {
     TEXTS.text(match lock {
         Lock::Unread => "hd_lock.unread",
@@ -21,7 +21,7 @@ pub fn lock(lock: Lock) -> Text {
     })
 }
 
-/// Returns why an act was refused, and what to do; `place` formats steps in the user's unit.
+/// Explains why an act was refused and what to do; `place` formats steps in the user's unit.
 pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
     match refusal {
         Refusal::Locked(own) => lock(own),
@@ -50,7 +50,7 @@ pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
     }
 }
 
-/// Returns how an act ended, and what to do if it did not end well.
+/// Describes how an act ended, and what to do if it did not end well.
 pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
     match ended {
         Ended::Done => TEXTS.text("hd_end.done"),
@@ -89,7 +89,7 @@ pub const fn weight(ended: Ended) -> Severity {
     }
 }
 
-/// Returns the text for a state that a drive can be led to.
+/// Describes a state to which a drive can be led.
 pub fn goal(goal: Goal) -> Text {
     state(match goal {
         Goal::Off => State::NotReady,
@@ -110,11 +110,11 @@ pub fn phase(phase: Phase) -> Text {
     }
 }
 
-/// Ids of the texts of [`lost`]: these notices end once control is taken again.
+/// Text ids of [`lost`]; these notices end once control is taken again.
 pub const LOST: [&str; 6] =
     ["hd_lost.silent", "hd_lost.port", "hd_lost.does_not_stand", "hd_lost.session", "hd_lost.failed", "hd_end.lost"];
 
-/// Returns why the cyclic connection was lost, and what to do.
+/// Explains why the cyclic connection was lost and what to do.
 pub fn lost(lost: Option<&CyclicLost>) -> Text {
     match lost {
         Some(CyclicLost::Silent { after }) => TEXTS.text("hd_lost.silent").with("milliseconds", after.as_millis()),
@@ -126,7 +126,7 @@ pub fn lost(lost: Option<&CyclicLost>) -> Text {
     }
 }
 
-/// Returns what is read through the parameter words of the cyclic connection.
+/// Describes what is read through the parameter words of the cyclic connection.
 pub fn parameter_words(view: &MotionSnapshot) -> Text {
     let Some(readings) = &view.parameters else { return TEXTS.text("hd_link.words_absent") };
     if readings.is_empty() {

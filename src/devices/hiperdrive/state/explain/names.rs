@@ -6,7 +6,6 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{NEWEST_ERROR, OLDEST
 use crate::devices::hiperdrive::protocol::{ControlBit, ErrorCode, ParameterNumber, State, StatusBit, Variant};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// Returns the text for a state of the drive.
 pub fn state(state: State) -> Text {
     TEXTS.text(match state {
         State::NotReady => "hd_state.not_ready",
@@ -19,7 +18,6 @@ pub fn state(state: State) -> Text {
     })
 }
 
-/// Returns the meaning of a set bit of the status word.
 pub fn status_bit(bit: StatusBit) -> Text {
     TEXTS.text(match bit {
         StatusBit::Ready => "hd_bit.ready",
@@ -41,7 +39,7 @@ pub fn status_bit(bit: StatusBit) -> Text {
     })
 }
 
-/// Returns the meaning of a set bit of the control word; bits 4 to 6 differ in speed mode.
+/// Returns the meaning of a control word bit when set; bits 4 to 6 differ in speed mode.
 pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
     TEXTS.text(match (bit, speed_mode) {
         (ControlBit::On, _) => "hd_bit.control_on",
@@ -64,11 +62,11 @@ pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
 pub struct ErrorWords {
     pub name: Text,
     pub cause: Text,
-    /// What to do before acknowledging it.
+    /// Remedy, to be applied before acknowledging the error.
     pub remedy: Text,
 }
 
-/// Returns the texts of an error of the buffer: name, cause, remedy.
+/// Returns the texts for an error of the buffer: name, cause and remedy.
 pub fn error(code: ErrorCode) -> ErrorWords {
     let (name, cause, remedy) = match code {
         ErrorCode::OVER_CURRENT => ("hd_error.over_current", "hd_cause.over_current", "hd_remedy.over_current"),
@@ -96,7 +94,7 @@ pub fn error(code: ErrorCode) -> ErrorWords {
     ErrorWords { name: TEXTS.text(name), cause: TEXTS.text(cause), remedy: TEXTS.text(remedy) }
 }
 
-/// Returns the name of a parameter, without its number and drive.
+/// Returns the name of a parameter without its number and drive.
 pub fn parameter(number: ParameterNumber) -> Text {
     match number.base() {
         base @ (24..=42) if base % 2 == 0 => TEXTS.text("hd_parameter.register").with("number", (base - 22) / 2),

@@ -24,7 +24,7 @@ pub(super) fn frame(status: EncapsulationStatus) -> Text {
     coded(format!("0x{:08X}", status.code()), name)
 }
 
-/// Returns the code and the name of a CIP status, and of the word that follows it.
+/// Returns code and name of a CIP status, and of its extended status.
 pub(super) fn refusal(refusal: &Refusal) -> Text {
     let status = general(refusal.status);
     let words: Vec<Text> = match (refusal.extended.as_slice(), refusal.row()) {
@@ -74,7 +74,7 @@ fn general(status: GeneralStatus) -> Text {
     coded(format!("0x{:02X}", status.code()), name)
 }
 
-/// Returns the text of a word that follows a connection failure.
+/// Describes the extended status of a connection failure.
 fn connection(code: u16) -> &'static str {
     match code {
         0x0100 => "hd_status_name.connection_0100",
@@ -146,7 +146,6 @@ fn structure(structure: Structure) -> Text {
     })
 }
 
-/// The name of a field of such a structure.
 fn field(field: PacketField) -> Text {
     TEXTS.text(match field {
         PacketField::Service => "hd_field.service",
@@ -157,7 +156,7 @@ fn field(field: PacketField) -> Text {
     })
 }
 
-/// Returns why a value does not fit the type of its parameter.
+/// Explains why a value does not match the type of its parameter.
 pub(super) fn value(error: &ValueError) -> Text {
     match *error {
         ValueError::Length { expected, got } => {

@@ -41,7 +41,6 @@ pub fn service(service: Service) -> Text {
     }
 }
 
-/// Returns an operation as text.
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Write { number, old, new } => {
@@ -72,12 +71,12 @@ fn network(settings: &NetworkSettings) -> Text {
         .with("gateway", interface.gateway)
 }
 
-/// Returns the name of a parameter with its number and its drive.
+/// Returns the name of a parameter with its number and drive.
 pub fn item(item: Item) -> Text {
     TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
 }
 
-/// Returns the text for a profile for another type of device or drive.
+/// Explains that a profile belongs to another type of device or drive.
 pub fn other_type(types: &OtherType) -> Text {
     of_types(types, "hd_review.other_kind", "hd_review.other_variant")
 }
@@ -154,14 +153,14 @@ pub fn warning(warning: &Warning) -> Text {
     }
 }
 
-/// Returns the text for a write that is done.
+/// Describes the result of a write.
 pub fn written(written: &Written) -> Text {
     // An action of the device is not read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// Returns the text of an interrupted write: how far it got and why, and where the backup is.
+/// Describes an interrupted write: its progress, its cause, and the location of the backup.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let (Interrupted { done, cause, .. }, unclear) = (interrupted, interrupted.unclear());
     let mut texts = vec![if cause.is_cancelled() {

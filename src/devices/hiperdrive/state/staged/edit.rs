@@ -6,14 +6,14 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, 
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
-/// Edit. Each is one step, however much it changes.
+/// An edit. Each is one step, however much it changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edit {
     Set(ParameterNumber, i64),
     /// Return a parameter to the value of the device or the profile.
     Revert(ParameterNumber),
     Leave(ParameterNumber),
-    /// Set both limits of a drive at once, if they cannot be set one after the other.
+    /// Set both limits of a drive at once, if they cannot be set one after another.
     Limits {
         drive: DriveNumber,
         /// In steps of the edited scale.
@@ -41,10 +41,10 @@ pub enum EditError {
     /// No values of the device were read.
     #[error("nothing has been read yet")]
     NothingRead,
-    /// The manual has no such parameter.
+    /// The manual has no parameter with this number.
     #[error("there is no parameter {0}")]
     Unknown(ParameterNumber),
-    /// The value of this parameter was not read.
+    /// The value of this parameter has not been read.
     #[error("parameter {0} has not been read")]
     NotRead(ParameterNumber),
     /// Read-only, or an action without a stored value.
@@ -52,7 +52,7 @@ pub enum EditError {
     NotAValue(ParameterNumber),
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// The upper limit has to be above the lower one.
+    /// The upper limit would not exceed the lower limit.
     #[error("the lower limit {lower} is not below the upper limit {upper}")]
     Crossed {
         /// As entered.

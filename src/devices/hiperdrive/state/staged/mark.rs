@@ -8,12 +8,12 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale, Travel};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
-/// Finding that the user should check. An edit may cause it: another scale moves limits.
+/// A finding that the user should check. An edit may cause it, since another scale moves limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mark {
-    /// A number that is not allowed, from a profile or an earlier edit.
+    /// A value from a profile or an earlier edit is not allowed.
     OutOfRange(OutOfRange),
-    /// The upper limit is not above the lower one.
+    /// The upper limit does not exceed the lower limit.
     Crossed {
         drive: DriveNumber,
         /// As edited.
@@ -30,14 +30,14 @@ pub enum Mark {
         /// As edited.
         upper: i64,
     },
-    /// The scale has changed and the limits have the same numbers: they mean other positions.
+    /// The scale has changed but the limits have the same numbers, which now denote other positions.
     LimitsMove { drive: DriveNumber, lower: (f64, f64), upper: (f64, f64) },
-    /// Parameter 186 is 255: the drive would continue after a lost connection, so it is not moved by this program.
+    /// Parameter 186 is 255: the drive would continue after a loss of the connection, so this program does not move it.
     NoTimeout { drive: DriveNumber },
 }
 
 impl Mark {
-    /// Returns the parameters that it concerns, by the numbers of their drive.
+    /// Returns the affected parameters.
     pub fn numbers(&self) -> Vec<ParameterNumber> {
         let of = |drive, numbers: &[u16]| {
             numbers.iter().filter_map(|own| ParameterNumber::of_drive(*own, drive)).collect::<Vec<_>>()
@@ -52,7 +52,7 @@ impl Mark {
 }
 
 impl Staged {
-    /// Returns all findings; `position` gives the position of a drive, in steps of its present scale.
+    /// Returns all findings; `position` returns the position of a drive in steps of its present scale.
     pub fn marks(&self, position: impl Fn(DriveNumber) -> Option<i64>) -> Vec<Mark> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let mut of_drives = Vec::new();

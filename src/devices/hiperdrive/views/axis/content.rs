@@ -13,7 +13,7 @@ use crate::ui::controls::{allowed_button, entry, paragraph, problem, row, text_e
 use crate::ui::widgets::HoldButton;
 use crate::ui::{Theme, icons};
 
-/// Width of a number, and height of the buttons that are held.
+/// Width of a numeric entry.
 const NUMBER: f32 = 112.0;
 const PAD: f32 = 64.0;
 /// Room for the button of a test move.
@@ -55,7 +55,7 @@ pub(super) fn content_ui(
     }
 }
 
-/// Draws the buttons of the step, in one line as far as there is room.
+/// Draws the buttons of the step, in one line if there is room.
 fn buttons(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if matches!(step, AxisStep::Lower | AxisStep::Upper) {
@@ -131,7 +131,7 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     }
 }
 
-/// Draws the two buttons that are held, slow and weak.
+/// Draws the two hold buttons for slow and weak jogging.
 fn pads(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     let caption = theme.words(&words::effort("hd_axis.jog_hold"));
@@ -185,7 +185,7 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries)
     }
 }
 
-/// Draws the limits that the user has to confirm.
+/// Draws the limits that the user must confirm.
 fn limits(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| words::millimetres(shown.seen.ruler(), steps.into());
     let range = |(low, high): (i32, i32)| {
@@ -240,7 +240,7 @@ fn test(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
     }
 }
 
-/// Draws the supply: of a virtual device it is switched here, of a real one by hand.
+/// Draws the supply, which is switched here for a virtual device, and by hand for a real one.
 fn power(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = theme.words(&words::button(AxisStep::PowerCycle));

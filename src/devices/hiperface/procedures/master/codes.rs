@@ -5,22 +5,22 @@ use super::Master;
 use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::protocol::{Answer, Reply, Request, StatusCode};
 
-/// Maximum number of codes in an encoder's queue, and one more to detect its end.
+/// Maximum number of codes in the queue of an encoder, plus one to detect its end.
 const MOST_CODES: usize = 5;
-/// Replies without a new code after which the queue is left as it is.
+/// Number of replies without a new code after which the queue is abandoned.
 const MOST_REPEATED: u32 = 5;
-/// Bytes of a reply to 50h: address, command, one to four codes, checksum.
+/// Length of a reply to 50h in bytes: address, command, one to four codes, checksum.
 const REPLY: std::ops::RangeInclusive<usize> = 4..=7;
 
-/// Reply to 50h: its codes, and whether more follow.
+/// Codes in a reply to 50h, and whether more follow.
 type Codes = (Vec<StatusCode>, bool);
 
 impl Master<'_> {
-    /// Reads the whole queue into the station: 50h until the error bit is cleared.
+    /// Reads the complete queue into the station: 50h until the error bit is cleared.
     ///
     /// # Errors
-    /// If every attempt failed, or the user cancelled. Codes received until then are in the station, and those possibly
-    /// lost are counted there.
+    /// Every attempt failed, or the user cancelled. Codes received so far are in the station, which also counts those
+    /// possibly lost.
     pub(in super::super) fn collect_codes(&mut self) -> Result<(), Error> {
         let (mut seen, mut repeated) = (Vec::new(), 0);
         while seen.len() < MOST_CODES && repeated < MOST_REPEATED {
@@ -37,7 +37,8 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Takes the next codes out of the queue; returns true if more follow. `seen`: the codes of each reply so far.
+    /// Takes the next codes out of the queue; returns whether more follow. `seen` contains the codes of each reply so
+    /// far.
     fn next_codes(&mut self, seen: &mut Vec<Vec<StatusCode>>) -> Result<bool, Error> {
         self.learn_echo()?;
         let mut tries = 0;
@@ -76,8 +77,8 @@ impl Master<'_> {
         }
     }
 
-    /// Takes a reply to 50h. One equal to an earlier one in the same queue may be a late duplicate: its codes are known,
-    /// and the reply to the present request may be missing.
+    /// Handles a reply to 50h. One that equals an earlier one in the same queue may be a late duplicate: its codes are
+    /// known, and the reply to the present request may be missing.
     fn meet_reply(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
         if seen.contains(&codes) {
             return;
@@ -107,8 +108,9 @@ impl Master<'_> {
         found
     }
 
-    /// Returns the reply to 50h at the start of the bytes, and the rest. The checksum also matches the first bytes of some
-    /// replies (01h and 11h from address 40h): one that ends with the bytes, or before the next reply, takes precedence.
+    /// Returns the reply to 50h at the start of the bytes, and the rest. The checksum also matches the first bytes of
+    /// some replies (01h and 11h from address 40h), so a reply that ends with the bytes, or before the next reply,
+    /// takes precedence.
     fn reply_at<'b>(&self, bytes: &'b [u8]) -> Option<(Codes, &'b [u8])> {
         let replies = REPLY.filter_map(|length| bytes.split_at_checked(length)).filter_map(|(frame, behind)| {
             let answer = Request::ReadStatus.parse_reply(self.station.address, frame).ok()?;

@@ -27,7 +27,6 @@ pub(in super::super) enum ExchangeFailure {
     Damage(Damage),
 }
 
-/// An answer and when it began.
 pub(in super::super) struct ReceivedAnswer {
     pub(in super::super) answer: Answer,
     pub(in super::super) sender: u8,
@@ -44,7 +43,7 @@ struct ReceivedBytes {
 }
 
 impl Master<'_> {
-    /// Makes one exchange. The outer error ends everything; the inner one may be retried.
+    /// Performs one exchange. The outer error is final; the inner one may be retried.
     pub(in super::super) fn attempt(
         &mut self,
         request: &Request,
@@ -88,12 +87,12 @@ impl Master<'_> {
         Ok(self.line.begin(&mut self.station.line, quiet)?)
     }
 
-    /// Sends a frame, and traces the part of it that may be shown.
+    /// Sends a frame, and traces the part that may be shown.
     pub(super) fn send(&mut self, frame: &SecretFrame, sent_at: Moment) -> Result<(), LinkError> {
         self.line.send(frame.bytes(), frame.masked(), sent_at)
     }
 
-    /// Returns tT, which must be greater than the time-out: one bit more.
+    /// Returns tT, which must exceed the time-out: one bit longer.
     fn dead_time(&self) -> Duration {
         self.station.timing().timeout + self.station.format.baud.time_of_bits(1)
     }
@@ -156,7 +155,7 @@ impl Master<'_> {
         Ok(trailing)
     }
 
-    /// Returns the reply received so far; `None` while it may still be the echo.
+    /// Returns the reply received so far, or `None` while it may still be the echo.
     fn without_echo<'l>(&self, line: &'l [u8], frame: &SecretFrame) -> Option<&'l [u8]> {
         self.station.line.echo.strip(line, frame.bytes())
     }

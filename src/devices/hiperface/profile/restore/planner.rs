@@ -25,8 +25,8 @@ pub(super) struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// Removes a field whose bytes are left alone from the targets, unless values of the mounting are written to it. One
-    /// that the encoder does not have is created without content if another one must be created after it.
+    /// Removes a field whose bytes are left unchanged from the targets, unless mounting values are written to it. A
+    /// field that the encoder lacks is created without content if another one must be created after it.
     pub(super) fn leave_unknown(&mut self) {
         let (profile, device, with_mounting) = (self.profile, self.device, self.with_mounting);
         let left = std::mem::take(&mut self.left);
@@ -58,7 +58,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Names the values of the mounting in fields that are left unchanged.
+    /// Lists the mounting values in fields that are left unchanged.
     fn name_mounting_left(&mut self) {
         let profile = self.profile;
         for target in &profile.fields {
@@ -75,7 +75,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Checks that fields to be created follow each other.
+    /// Checks that the numbers of fields to be created are consecutive.
     pub(super) fn check_order(&self) -> Result<(), PlanError> {
         let mut next = self.device.memory.fields;
         for field in self.wanted.iter().filter(|field| field.number >= self.device.memory.fields) {
@@ -130,8 +130,8 @@ impl Planner<'_> {
         self.wanted.iter().find(|field| field.number == number)
     }
 
-    /// Returns the target fields: those of the profile, and, if fields are created again, the encoder's own that the
-    /// profile does not have.
+    /// Returns the target fields: those of the profile and, if fields are created again, those of the encoder that the
+    /// profile lacks.
     pub(super) fn targets(&self, recreated: Option<u8>) -> Vec<FieldImage> {
         let mut targets = self.wanted.clone();
         if let Some(first) = recreated {
@@ -159,7 +159,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Plans a new field. Its content is not known, so all of it is written; then it is protected if necessary.
+    /// Plans a new field. Its content is unknown, so all of it is written; then it is protected if necessary.
     pub(super) fn create(&mut self, target: &FieldImage) {
         let writable = target.status.with_write_enable(true);
         let first = if target.bytes.is_some() { writable } else { target.status };
@@ -212,7 +212,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns the parts of a range that may be written: all, or all but the values of the mounting.
+    /// Returns the parts of a range that may be written: all, or all except mounting values.
     fn allowed(&mut self, field: u8, range: Range<usize>) -> Vec<Range<usize>> {
         if !self.is_other {
             return vec![range];
@@ -270,7 +270,7 @@ impl Planner<'_> {
     }
 }
 
-/// Adds a place to the last run, or begins a new one.
+/// Adds an index to the last run, or begins a new one.
 fn extend(runs: &mut Vec<Range<usize>>, at: usize) {
     match runs.last_mut() {
         Some(run) if run.end == at => run.end += 1,

@@ -4,8 +4,8 @@ use super::DeviceState;
 use crate::devices::hiperface::profile::{FieldImage, HiperfacePlan, HiperfaceProfile, Op};
 use crate::devices::hiperface::protocol::FreeMemory;
 
-/// Returns the fields to delete, because the write of this before-image created them: those that are unchanged since, from
-/// the last one on. Also returns the numbers of the others.
+/// Returns the fields to delete, because the write of this backup created them: those unchanged since, from the last
+/// one on; also returns the numbers of the others.
 pub(super) fn undo_created(profile: &HiperfaceProfile, device: &DeviceState) -> (Vec<FieldImage>, Vec<u8>) {
     let (mut undone, mut left) = (Vec::new(), Vec::new());
     for now in device.fields.iter().rev() {

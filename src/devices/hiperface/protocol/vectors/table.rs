@@ -4,13 +4,13 @@
 use super::bytes;
 use crate::devices::hiperface::protocol::*;
 
-/// A request with the replies known for it.
+/// A request with its known replies.
 pub(super) struct Vector {
     pub(super) address: u8,
     pub(super) request: Request,
-    /// Its bytes on the line.
+    /// Bytes on the line.
     pub(super) bytes: &'static str,
-    /// Bytes of a reply, and its meaning.
+    /// Bytes and meaning of each reply.
     pub(super) replies: Vec<(&'static str, Answer)>,
 }
 
@@ -96,7 +96,7 @@ fn type_label(encoder_type: u8) -> Reply {
     Reply::TypeLabel(TypeLabel { settings, encoder_type, eeprom_units: 0x80, options: 0x01 })
 }
 
-/// Returns every request of the reference with its replies.
+/// Returns all requests of the reference with their replies.
 #[rustfmt::skip]
 pub(super) fn vectors() -> Vec<Vector> {
     let serial = SerialLabel {

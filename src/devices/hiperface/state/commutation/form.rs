@@ -7,7 +7,7 @@ use crate::app::number::{MOST_PERIODS, whole, within};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
-/// Entries of the assistant. An empty number of periods means that of the encoder's type.
+/// Entries of the assistant. An empty number of periods selects that of the encoder type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form {
     /// The user has confirmed that the controller is disabled.
@@ -21,7 +21,7 @@ pub struct Form {
     /// Longest time with current in seconds, as typed.
     pub time_s: String,
     pub vector: Vector,
-    /// Its angle in electrical degrees, as entered, if it is another one.
+    /// Typed angle of a custom vector in electrical degrees.
     pub vector_deg: String,
     /// Pole pairs of the motor, as typed.
     pub pole_pairs: String,
@@ -30,7 +30,7 @@ pub struct Form {
     /// The position falls while the electrical angle rises.
     pub reversed: bool,
     pub source: Source,
-    /// The position in periods, as entered, if it is measured externally.
+    /// Typed position in periods, if measured externally.
     pub phase: String,
     /// Allowed difference of both sides in electrical degrees, as entered.
     pub limit_deg: String,
@@ -39,11 +39,11 @@ pub struct Form {
     /// Fine positions in periods, as typed, in the order of [`Slot::ALL`].
     pub typed: [String; 3],
     pub storage: Storage,
-    /// The data field for it; `None` for the proposed one.
+    /// Data field for the offset, or `None` for the proposed one.
     pub field: Option<u8>,
-    /// Its first byte there, as entered; empty for the proposed one.
+    /// Typed index of the first byte; empty for the proposed one.
     pub address: String,
-    /// The period that the position is to have by method 2, as typed.
+    /// Typed period of the position for method 2.
     pub period: String,
 }
 
@@ -57,14 +57,14 @@ pub enum Slot {
     Second,
 }
 
-/// Vector that is energised while the position is read, by its wiring.
+/// The vector that is energised while the position is read, by its wiring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vector {
     /// Current into U, returning from V and W: 0°.
     UAgainstBoth,
-    /// Into U, returning from V: −30°.
+    /// Current into U, returning from V: −30°.
     UAgainstV,
-    /// Into U, returning from W: 30°.
+    /// Current into U, returning from W: 30°.
     UAgainstW,
     Other,
 }
@@ -72,7 +72,7 @@ pub enum Vector {
 /// The source of the position within a period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The encoder's analogue channels, if it has them, else the absolute position.
+    /// The analogue channels of the encoder if available, or else the absolute position.
     Signals,
     Typed,
     /// The absolute position alone, 1/32 period.
@@ -137,16 +137,16 @@ impl Default for Form {
 }
 
 impl Form {
-    /// Returns the current and time, in amperes and seconds.
+    /// Returns current and time in amperes and seconds.
     ///
     /// # Errors
-    /// What is missing.
+    /// States what is missing.
     pub fn limits(&self) -> Result<(f64, f64), Text> {
         let (current, time) = self.each_limit();
         Ok((current?, time?))
     }
 
-    /// Returns what is wrong with the entered current and time; an empty entry is not wrong yet.
+    /// Returns the problems of the entered current and time; an empty entry is not a problem yet.
     pub fn limit_problems(&self) -> (Option<Text>, Option<Text>) {
         let typed = |text: &str| !text.trim().is_empty();
         let (current, time) = self.each_limit();
@@ -158,10 +158,10 @@ impl Form {
         (current, within(TEXTS.text("commutation.time"), &self.time_s, 0.1, 600.0))
     }
 
-    /// Checks that everything required before the motor is energised is confirmed and recorded.
+    /// Checks that everything required before energising the motor has been confirmed and recorded.
     ///
     /// # Errors
-    /// What is missing.
+    /// States what is missing.
     pub fn prepared(&self) -> Result<(), Text> {
         let ticks = [
             (self.disabled, "commutation.disabled"),
@@ -189,10 +189,11 @@ impl Form {
         }
     }
 
-    /// Returns the lead of the second vector in electrical turns: below ½, or the shaft may take the other way round.
+    /// Returns the lead of the second vector in electrical turns, which must be below ½, or the shaft may turn the
+    /// other way.
     ///
     /// # Errors
-    /// Why the entry is invalid.
+    /// Explains why the entry is invalid.
     pub fn second_turns(&self) -> Result<f64, Text> {
         Ok(within(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
     }
@@ -219,10 +220,10 @@ impl Form {
         within(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
     }
 
-    /// Returns the signal periods per revolution: as entered, or else of the encoder's type.
+    /// Returns the signal periods per revolution as entered, or else of the encoder type.
     ///
     /// # Errors
-    /// Why the entry is invalid.
+    /// Explains why the entry is invalid.
     pub fn periods(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
         match (self.periods.trim().is_empty(), geometry) {
             (_, Some(Geometry::Linear { .. })) => Err(TEXTS.text("commutation.linear")),
@@ -231,17 +232,17 @@ impl Form {
         }
     }
 
-    /// The number of periods that is typed is not that of the encoder's type, as text.
+    /// Returns a warning if the entered number of periods differs from that of the encoder type.
     pub fn other_periods(&self, geometry: Option<Geometry>) -> Option<Text> {
         let Some(Geometry::Rotary { periods: own, .. }) = geometry else { return None };
         let typed = self.periods(geometry).ok().filter(|typed| *typed != own.max(1))?;
         Some(TEXTS.text("commutation.other_periods").with("own", own).with("typed", typed))
     }
 
-    /// Returns all numbers that the offset needs.
+    /// Returns all numbers required for the offset.
     ///
     /// # Errors
-    /// Why the first invalid one is invalid.
+    /// Explains why the first invalid entry is invalid.
     pub fn inputs(&self, geometry: Option<Geometry>) -> Result<Inputs, Text> {
         let pole_pairs = whole(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MOST_POLE_PAIRS)?;
         let periods = self.periods(geometry)?;

@@ -8,23 +8,23 @@ use crate::devices::hiperface::profile::{CommutationRecord, FieldImage};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::{Staged, TEXTS, rules};
 
-/// Bytes that count as empty: erased, or never written.
+/// Byte values considered empty: erased, or never written.
 const FILLERS: [u8; 2] = [0x00, 0xFF];
 
-/// A place for an offset.
+/// A location for an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OffsetLocation {
     pub field: u8,
-    /// Its first byte there.
+    /// Index of the first byte.
     pub address: usize,
 }
 
 impl Commutation {
-    /// Returns the selected or entered location; otherwise the proposed one: a stored record of the same kind, or else the
+    /// Returns the selected or entered location, or else the proposed one: a stored record of the same kind, or the
     /// last writable field with enough space.
     ///
     /// # Errors
-    /// Why there is none: no field has enough space, or the entry is not an address.
+    /// Explains why there is none: no field has enough space, or the entry is not an address.
     pub fn place(&self, staged: &Staged) -> Result<OffsetLocation, Text> {
         let no_room = || TEXTS.text("commutation.no_room").with("bytes", CommutationRecord::BYTES);
         let form = &self.form;
@@ -42,7 +42,8 @@ impl Commutation {
         Ok(OffsetLocation { field, address })
     }
 
-    /// Returns a warning about the content that the offset would replace; `None` if it is empty, or an offset.
+    /// Returns a warning about the content that the offset would replace, or `None` if the location is empty or
+    /// contains an offset.
     pub fn replaced(&self, geometry: Option<Geometry>, staged: &Staged) -> Option<Text> {
         let (field, address, bytes) = self.bytes(geometry, staged).ok()?;
         let places = address..address + bytes.len();
@@ -60,8 +61,8 @@ impl Commutation {
     }
 }
 
-/// Returns the first block of a field that satisfies `holds`. For a bare number too: zeros among other numbers may be
-/// numbers.
+/// Returns the first block of a field that satisfies `holds`, even for a bare number, since zeros among other numbers
+/// may be numbers.
 fn first(field: &FieldImage, holds: impl Fn(&[u8]) -> bool) -> Option<OffsetLocation> {
     let block = field.bytes.as_deref()?.chunks_exact(CommutationRecord::BYTES).position(holds)?;
     Some(OffsetLocation { field: field.number, address: block * CommutationRecord::BYTES })
@@ -71,12 +72,12 @@ fn is_filler(bytes: &[u8]) -> bool {
     FILLERS.iter().any(|filler| bytes.iter().all(|byte| byte == filler))
 }
 
-/// Returns whether a complete record is already there: a new one replaces it.
+/// Returns whether the location already contains a complete record, which a new one replaces.
 fn is_kept(storage: Storage, bytes: &[u8]) -> bool {
     storage == Storage::Record && matches!(CommutationRecord::parse(bytes), Some(Ok(_)))
 }
 
-/// Returns the bytes as the text that they may be.
+/// Returns the bytes as ASCII characters.
 fn ascii(bytes: &[u8]) -> String {
     let shown = |byte: &u8| if byte.is_ascii_graphic() || *byte == b' ' { char::from(*byte) } else { '·' };
     bytes.iter().map(shown).collect()

@@ -11,9 +11,9 @@ use crate::devices::hiperface::profile::{CommutationRecord, Damaged};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::{Allowed, Staged, TEXTS};
 
-/// Method 2 is refused if its step is at least this: the torque may have the wrong sign (U).
+/// Step size in degrees from which method 2 is refused, because the torque may have the wrong sign (U).
 const UNUSABLE_DEG: f64 = 90.0;
-/// A warning is given from here on: the torque falls to cos 30° and below (U).
+/// Step size in degrees from which a warning is given, because the torque falls to cos 30° and below (U).
 const WEAK_DEG: f64 = 30.0;
 
 /// The offset between encoder and motor.
@@ -21,13 +21,13 @@ const WEAK_DEG: f64 = 30.0;
 pub struct Offset {
     /// Rest position of the shaft, in periods within a revolution.
     pub fine_periods: f64,
-    /// The same in degrees.
+    /// Shaft angle in degrees.
     pub shaft_deg: f64,
-    /// Difference of both sides in electrical degrees; `None` with one side only.
+    /// Difference between both sides in electrical degrees, or `None` with one side only.
     pub apart_deg: Option<f64>,
-    /// The offset: electrical angle = pole pairs × shaft − offset.
+    /// Offset: electrical angle = pole pairs × shaft − offset.
     pub angle: ElectricalAngle,
-    /// Smallest step that the readings resolve, in electrical degrees; `None` if not known.
+    /// Resolution of the readings in electrical degrees, if known.
     pub resolution_deg: Option<f64>,
 }
 
@@ -35,7 +35,7 @@ pub struct Offset {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     pub value: u32,
-    /// If set, absolute position and phase do not agree now: exactly this value makes them agree.
+    /// Whether exactly this value must be set because absolute position and phase do not agree now.
     pub exact: bool,
     /// Remaining offset in electrical degrees, −180 to 180.
     pub remaining_deg: f64,
@@ -47,10 +47,10 @@ pub struct Setting {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stored {
     pub field: u8,
-    /// Its first byte there.
+    /// Index of the first byte.
     pub address: usize,
     pub record: Result<CommutationRecord, Damaged>,
-    /// Set for an edit that is not written yet.
+    /// Whether the location contains an edit that has not been written yet.
     pub edited: bool,
 }
 
@@ -58,7 +58,7 @@ impl Commutation {
     /// Returns the offset.
     ///
     /// # Errors
-    /// What is missing, or why the readings cannot be used.
+    /// States what is missing, or why the readings cannot be used.
     pub fn offset(&self, geometry: Option<Geometry>) -> Result<Offset, Text> {
         let inputs = self.form.inputs(geometry)?;
         let (one, other) = (self.reading(Slot::OneSide), self.reading(Slot::OtherSide));
@@ -91,17 +91,17 @@ impl Commutation {
         })
     }
 
-    /// Returns the result of the second vector with its verdict; `None` until it is read.
+    /// Returns the result of the second vector with its verdict, or `None` until it has been read.
     ///
     /// # Errors
-    /// What is missing.
+    /// States what is missing.
     pub fn second(&self, geometry: Option<Geometry>) -> Option<Result<(Verdict, Text), Text>> {
         let reading = self.reading(Slot::Second)?;
         Some(self.judge_second(reading.fine_periods, geometry))
     }
 
     fn judge_second(&self, fine_periods: f64, geometry: Option<Geometry>) -> Result<(Verdict, Text), Text> {
-        /// Share of the expected movement below which the shaft counts as not moved.
+        /// Fraction of the expected movement below which the shaft counts as not moved.
         const STILL: f64 = 0.1;
         /// Allowed ratio of the movement to the expected one.
         const FITS: std::ops::RangeInclusive<f64> = 0.8..=1.25;
@@ -132,10 +132,10 @@ impl Commutation {
         matches!(self.second(geometry), Some(Ok((Verdict::Ok, _))))
     }
 
-    /// Method 1: returns data field, first byte, and the bytes to be stored there.
+    /// Method 1: returns data field, index of the first byte, and the bytes to store.
     ///
     /// # Errors
-    /// What is missing.
+    /// States what is missing.
     pub fn bytes(&self, geometry: Option<Geometry>, staged: &Staged) -> Result<(u8, usize, Vec<u8>), Text> {
         let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         // A failed check prevents storing, a missing one does not.
@@ -160,10 +160,10 @@ impl Commutation {
         Ok((field, address, bytes))
     }
 
-    /// Method 2: returns the position to be set where the shaft rests now.
+    /// Method 2: returns the position to set where the shaft rests now.
     ///
     /// # Errors
-    /// What is missing, or why the method cannot be used.
+    /// States what is missing, or why the method cannot be used.
     pub fn setting(&self, geometry: Option<Geometry>) -> Result<Setting, Text> {
         let (inputs, _) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
@@ -208,7 +208,7 @@ pub fn stored(staged: &Staged) -> Vec<Stored> {
     found
 }
 
-/// Checks that the position may be read: everything before it is done.
+/// Checks that the position may be read because everything before is complete.
 pub fn may_read(commutation: &Commutation, ready: bool) -> Allowed {
     commutation.form.prepared()?;
     if commutation.form.source == Source::Typed {
@@ -217,7 +217,7 @@ pub fn may_read(commutation: &Commutation, ready: bool) -> Allowed {
     if ready { Ok(()) } else { Err(TEXTS.text("commutation.not_ready")) }
 }
 
-/// Returns the distance between two positions in periods, the shorter way within a revolution.
+/// Returns the distance between two positions in periods, along the shorter way within a revolution.
 fn apart(from: f64, to: f64, periods: u32) -> f64 {
     let turn = f64::from(periods);
     let forward = (to - from).rem_euclid(turn);

@@ -6,7 +6,7 @@ use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
 impl Commutation {
-    /// Returns the lines of the report, for an encoder of that name.
+    /// Returns the lines of the report for an encoder with the given name.
     pub fn report(&self, name: &str, geometry: Option<Geometry>) -> Vec<Text> {
         let form = &self.form;
         let mut lines = vec![TEXTS.text("commutation.report_title").with("name", name)];
@@ -52,7 +52,7 @@ impl Commutation {
     }
 }
 
-/// Returns how a position was obtained, as text.
+/// Describes how a position was obtained.
 pub fn kind_words(reading: &RestReading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {

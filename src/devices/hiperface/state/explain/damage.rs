@@ -6,7 +6,6 @@ use crate::devices::hiperface::procedures::Damage;
 use crate::devices::hiperface::protocol::{FrameError, ReplyError};
 use crate::devices::hiperface::state::TEXTS;
 
-/// Returns the text of the damage of a reply.
 pub fn damage(damage: &Damage) -> Text {
     match damage {
         Damage::Reply(error) => reply(error),

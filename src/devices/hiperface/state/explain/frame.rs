@@ -10,7 +10,6 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::devices::hiperface::state::TEXTS;
 
-/// Returns the text of a fact about a frame.
 pub fn frame(fact: &FrameFact) -> Text {
     match fact {
         FrameFact::Heading { address, command } => heading(*address, *command),

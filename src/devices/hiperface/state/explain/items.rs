@@ -19,7 +19,7 @@ pub fn item(item: &Item) -> Text {
     }
 }
 
-/// Returns the text of a data field or a part of it.
+/// Describes a data field or a part of one.
 pub fn field_range(range: &FieldRange) -> Text {
     let id = match range {
         FieldRange { count: Some(_), .. } => "hf_item.range",
@@ -30,7 +30,6 @@ pub fn field_range(range: &FieldRange) -> Text {
     text.with("count", range.count.unwrap_or_default())
 }
 
-/// Returns the name of an item of a write.
 pub fn plan_item(own: &PlanItem) -> Text {
     match own {
         PlanItem::Item(own) => item(own),

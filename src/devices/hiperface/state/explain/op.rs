@@ -9,7 +9,7 @@ use crate::devices::hiperface::profile::Op;
 use crate::devices::hiperface::protocol::DataFieldStatus;
 use crate::devices::hiperface::state::TEXTS;
 
-/// Returns the text of an operation. An access code is not shown.
+/// Describes an operation without revealing access codes.
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Define { field, from, to } => define(*field, *from, *to),

@@ -8,7 +8,7 @@ use crate::devices::hiperface::state::TEXTS;
 use crate::store::StoreError;
 use crate::worker::OpenError;
 
-/// Returns the text for a table of encoder types that cannot be read or used.
+/// Explains why a table of encoder types cannot be read or used.
 pub fn store(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<BrokenTypes>() {
@@ -19,7 +19,7 @@ pub fn store(error: &StoreError) -> Text {
     }
 }
 
-/// Returns the text for a link that cannot be opened.
+/// Explains why a link cannot be opened.
 pub fn open(error: &OpenError) -> Text {
     match error {
         OpenError::Store(error) => store(error),

@@ -4,7 +4,6 @@ use crate::app::Text;
 use crate::devices::hiperface::protocol::{DataFieldStatus, Geometry, LineSettings, Position, StatusCode};
 use crate::devices::hiperface::state::TEXTS;
 
-/// Texts of the status codes.
 const STATUS: [(u8, &str); 27] = [
     (0x00, "status.code_00"),
     (0x01, "status.code_01"),
@@ -40,12 +39,12 @@ pub fn status(code: StatusCode) -> Text {
     TEXTS.text(id)
 }
 
-/// Returns a status code with its number: "0Fh wrong access code".
+/// Returns a status code with its number, such as "0Fh wrong access code".
 pub fn status_with_number(code: StatusCode) -> Text {
     TEXTS.text("status.named").with("number", format!("{:02X}h", code.byte())).with_text("text", status(code))
 }
 
-/// Returns the text of the status byte of a data field: "48 bytes, write protected, code 2, code required".
+/// Describes the status byte of a data field, such as "48 bytes, write protected, code 2, code required".
 pub fn field_status(status: DataFieldStatus) -> Text {
     if !status.exists() {
         return TEXTS.text("field.not_defined");
@@ -66,7 +65,7 @@ pub fn field_code_required(status: DataFieldStatus) -> Text {
     TEXTS.text(if status.code_required() { "field.code_required" } else { "field.code_not_required" })
 }
 
-/// Returns the text of periods and turns, or the length of a period.
+/// Describes periods and turns, or the length of a period.
 pub fn geometry(geometry: Geometry) -> Text {
     match geometry {
         Geometry::Rotary { periods, turns: 1 } => TEXTS.text("geometry.singleturn").with("periods", periods),
@@ -93,12 +92,12 @@ pub fn position(position: Position) -> Text {
     }
 }
 
-/// Returns the text of a position word whose meaning is not known.
+/// Describes a position word with an unknown meaning.
 pub fn raw_position(raw: u32) -> Text {
     TEXTS.text("position.steps").with("steps", raw)
 }
 
-/// Returns the text of the settings byte of the interface: "9600 8E1, time-out 44 bits, standard".
+/// Describes the settings byte of the interface, such as "9600 8E1, time-out 44 bits, standard".
 pub fn line_settings(settings: LineSettings) -> Text {
     let text = TEXTS
         .text("line.settings")
