@@ -7,12 +7,12 @@ use std::time::Duration;
 
 use crate::parameter::Words;
 
-/// A point in time, counted from the start of the clock that gave it. Moments of different clocks do not compare.
+/// Point in time, counted from the start of a clock. Moments from different clocks cannot be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Moment(Duration);
 
 impl Moment {
-    /// The start of the clock.
+    /// Start of the clock.
     pub const START: Moment = Moment(Duration::ZERO);
 
     /// Creates the moment `elapsed` after the start of the clock.
@@ -20,12 +20,12 @@ impl Moment {
         Moment(elapsed)
     }
 
-    /// Returns the time since the start of the clock.
+    /// Returns the time elapsed since the start of the clock.
     pub const fn since_start(self) -> Duration {
         self.0
     }
 
-    /// Returns the time since `earlier`; zero if `earlier` is later.
+    /// Returns the time elapsed since `earlier`, or zero if `earlier` is later.
     pub fn since(self, earlier: Moment) -> Duration {
         self.0.saturating_sub(earlier.0)
     }
@@ -45,26 +45,26 @@ impl Sub<Duration> for Moment {
     }
 }
 
-/// A serial line's speed in bit/s, never zero.
+/// Serial line speed in bit/s, never zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Baud(u32);
 
 impl Baud {
-    /// Creates a speed in bit/s; `None` for zero.
+    /// Creates a speed from bit/s, or returns `None` for zero.
     pub const fn new(bits_per_second: u32) -> Option<Self> {
         if bits_per_second == 0 { None } else { Some(Baud(bits_per_second)) }
     }
 
     /// 9600 bit/s, the factory setting of HIPERFACE encoders.
     pub const B9600: Baud = Baud(9_600);
-    /// 115 200 bits a second.
+    /// 115 200 bit/s.
     pub const B115200: Baud = Baud(115_200);
 
     pub const fn bits_per_second(self) -> u32 {
         self.0
     }
 
-    /// Returns the time of `bits` bits on the line.
+    /// Returns the time that `bits` bits take on the line.
     pub fn time_of_bits(self, bits: u64) -> Duration {
         Duration::from_nanos(bits.saturating_mul(1_000_000_000) / u64::from(self.0))
     }
@@ -76,25 +76,24 @@ impl fmt::Display for Baud {
     }
 }
 
-/// The parity bit of a serial character.
+/// Parity of a serial character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Parity {
-    /// No parity bit.
     None,
-    /// The number of ones, parity bit included, is even.
+    /// The number of ones, including the parity bit, is even.
     Even,
-    /// The number of ones, parity bit included, is odd.
+    /// The number of ones, including the parity bit, is odd.
     Odd,
 }
 
 impl Parity {
-    /// Every parity, the most usual first.
+    /// All parities, most common first.
     pub const ALL: [Parity; 3] = [Parity::Even, Parity::None, Parity::Odd];
 
-    /// The words used in link URLs and JSON.
+    /// Names used in link URLs and JSON.
     pub const WORDS: Words<Parity> = Words(&[("none", Parity::None), ("even", Parity::Even), ("odd", Parity::Odd)]);
 
-    /// Returns the word used in link URLs and JSON.
+    /// Returns the name used in link URLs and JSON.
     pub const fn word(self) -> &'static str {
         match self {
             Parity::None => "none",
@@ -103,7 +102,7 @@ impl Parity {
         }
     }
 
-    /// Returns the letter between data bits and stop bits in `8E1`.
+    /// Returns the letter between the data bits and stop bits, as in `8E1`.
     pub const fn letter(self) -> char {
         match self {
             Parity::None => 'N',
@@ -119,11 +118,10 @@ impl fmt::Display for Parity {
     }
 }
 
-/// The format of a character on a serial line, on which both ends must agree. One start bit, eight data bits, one stop bit.
+/// Character format of a serial line, on which both ends must agree: one start bit, eight data bits and one stop bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CharacterFormat {
     pub baud: Baud,
-    /// Parity bit.
     pub parity: Parity,
 }
 
@@ -143,10 +141,10 @@ impl fmt::Display for CharacterFormat {
     }
 }
 
-/// The supply of an encoder, in millivolts.
+/// Supply voltage of an encoder, in millivolts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SupplyVoltage {
-    /// The least that it works with.
+    /// Minimum voltage at which the encoder works.
     pub least: u16,
     pub given: u16,
     pub greatest: u16,

@@ -101,7 +101,7 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
     }
 }
 
-/// Draws the sessions, as a menu behind the name of the selected one.
+/// Draws the session menu, which opens from the name of the selected session.
 fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let shown = studio.selected_device().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
     let most = if ui.ctx().content_rect().width() < 1200.0 { 21 } else { 28 };
@@ -154,7 +154,7 @@ fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Actio
     name(menu.response, true, &theme.say("shell.sessions"));
 }
 
-/// Returns a name shortened for the header. A device keeps its serial number, which distinguishes two of a kind.
+/// Returns a name shortened for the header. A device keeps its serial number, which distinguishes devices of one kind.
 fn shortened(name: &str, most: usize) -> String {
     let cut = |text: &str, most: usize| match text.chars().count() {
         count if count <= most => text.to_owned(),
@@ -199,7 +199,7 @@ fn status(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text>) 
     ui.label(RichText::new(theme.words(&text)).color(colour));
 }
 
-/// A profile of a newer schema, which is neither saved nor written.
+/// Whether the profile has a newer schema and can therefore be neither saved nor written.
 fn is_read_only(device: &AnyDevice) -> bool {
     matches!(device.source(), Source::File { document, .. } if document.is_newer())
 }
@@ -214,8 +214,8 @@ fn link(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     }
 }
 
-/// Draws STOP, which ends everything that runs and every motion, in all sessions. While a drive moves it is twice as wide;
-/// while one is moved by this window it takes effect on pressing, not on release, and ends only motion.
+/// Draws the STOP button, which ends every running job and every motion in all sessions. The button doubles in width
+/// while a drive moves; while this window moves a drive, it acts on press rather than release and ends only motion.
 fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     // Motion by another master cannot be stopped from here: that is no reason to let a job continue.
     let (moves, by_hand) = (studio.moves(), studio.moves_by_hand());
@@ -248,7 +248,7 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     }
 }
 
-/// Draws STOP in its usual place above anything that covers the window, while a drive moves.
+/// Draws the STOP button in its usual position, above anything that covers the window, while a drive moves.
 pub(super) fn stop_over_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     if !studio.moves() || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
         return;

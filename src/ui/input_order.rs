@@ -4,13 +4,13 @@
 
 use egui::{Event, Key};
 
-/// Events that are held back.
+/// Events held back for a later frame.
 #[derive(Debug, Default)]
 pub(super) struct HeldInput(Vec<Event>);
 
 impl HeldInput {
-    /// Leaves the events of this frame in `events`: until the first that may move the keyboard focus, if something typed
-    /// follows it. With `at_once` nothing is held back. Returns whether the next frame is due at once.
+    /// Reduces `events` to those of the current frame, which end at the first event that may move the keyboard focus if
+    /// typing follows. Nothing is held back with `at_once`. Returns whether the next frame is due immediately.
     pub(super) fn divide(&mut self, events: &mut Vec<Event>, at_once: bool) -> bool {
         self.0.append(events);
         let after_first = self.0.iter().position(may_move_focus).map_or(self.0.len(), |at| at + 1);

@@ -8,10 +8,10 @@ use super::stop_debounce;
 use super::widgets::{has_hold_button_keyboard, is_hold_button_held};
 use crate::app::{FreshKeys, PressKey};
 
-/// The known state of the keys that press buttons, in the whole window.
+/// Window-wide state of the keys that press buttons.
 pub(super) struct Keys {
     fresh: FreshKeys,
-    /// A consent was requested in the last frame.
+    /// Whether consent was requested in the previous frame.
     asked: bool,
 }
 
@@ -20,8 +20,9 @@ impl Keys {
         Keys { fresh: FreshKeys::UP, asked: false }
     }
 
-    /// Removes the events of this frame that no widget may see. Returns whether all motion must stop. `moves`: something is
-    /// moved by this window; `asks`: a consent is requested, which only a key that was seen up since can give.
+    /// Removes the events that no widget may see from the current frame and returns whether all motion must stop.
+    /// `moves`: this window is moving something; `asks`: consent is requested, which only a key seen released since
+    /// then can give.
     pub(super) fn take(&mut self, ctx: &Context, moves: bool, asks: bool) -> bool {
         if asks && !std::mem::replace(&mut self.asked, asks) {
             self.fresh.forget();
@@ -78,7 +79,7 @@ impl Keys {
     }
 }
 
-/// Returns the key if it presses buttons.
+/// Returns the corresponding press key, or `None` if the key does not press buttons.
 pub(super) const fn press_key(key: Key) -> Option<PressKey> {
     match key {
         Key::Space => Some(PressKey::Space),

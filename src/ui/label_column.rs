@@ -4,17 +4,17 @@ use egui::{Id, RichText, Ui, vec2};
 
 use super::Theme;
 
-/// Width of the column of labels, unless a label of the card needs more.
+/// Width of the label column, unless a label of the card needs more.
 const LABELS: f32 = 132.0;
-/// Largest shares of the width that a column of labels takes without need, and for long labels.
+/// Largest shares of the width for the label column: by default, and for long labels.
 const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
 
-/// The column of labels of the card that is being drawn.
+/// Label column of the card being drawn.
 #[derive(Clone, Copy, Default)]
 struct LabelColumn {
     /// Width of the longest label in earlier frames.
     longest: f32,
-    /// Width of the longest label until now.
+    /// Width of the longest label drawn so far in the current frame.
     drawn: f32,
 }
 
@@ -32,7 +32,7 @@ impl LabelColumn {
     }
 }
 
-/// Draws the content of the card with this heading: its labels have a column that is wide enough for the longest of them.
+/// Draws the content of the card with the given heading, with a label column wide enough for the longest label.
 pub(crate) fn with_label_column<R>(ui: &mut Ui, heading: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     let (outer, id) = (LabelColumn::of(ui), ui.scope_id().with((LabelColumn::id(), heading)));
     let longest = ui.data(|data| data.get_temp(id)).unwrap_or_default();
@@ -49,14 +49,13 @@ pub(crate) fn with_label_column<R>(ui: &mut Ui, heading: &str, content: impl FnO
     result
 }
 
-/// Returns the width of the column of labels.
 pub(crate) fn label_width(ui: &Ui) -> f32 {
     let (usual, most) = LABEL_SHARES;
     let room = ui.available_width().max(0.0);
     LABELS.min(room * usual).max(LabelColumn::of(ui).longest.min(room * most))
 }
 
-/// Draws a label and a value that can be selected, on one line.
+/// Draws a label and a selectable value on one line.
 pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) {
     ui.scope(|ui| {
         // Values are only read: they are closer together than controls.

@@ -9,7 +9,7 @@ use super::views::shown_in;
 use super::{Theme, Views, icons};
 use crate::app::{Action, Studio};
 
-/// Draws the tabs, with the pages of the open one.
+/// Draws the tabs and the pages of the open tab.
 pub(super) fn navigation_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -38,7 +38,7 @@ pub(super) fn navigation_ui(
     }
 }
 
-/// Draws the pages of the open tab, if it shows anything.
+/// Draws the pages of the open tab, if the tab has any content.
 fn open_pages(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     let tab = studio.settings.tab;
     let pages = views.tabs.pages(tab);
@@ -56,8 +56,8 @@ fn open_pages(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     }
 }
 
-/// Draws the entries of a tab's pages; returns the index of the one that was pressed. Unwritten edits mark the page named
-/// by `edited`.
+/// Draws the page entries of a tab and returns the index of the clicked entry. Unwritten edits mark the page named by
+/// `edited`.
 fn pages_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -79,7 +79,7 @@ fn pages_ui(
     pressed
 }
 
-/// Draws an entry of the navigation, as wide as it.
+/// Draws a navigation entry across the full width.
 fn entry(ui: &mut Ui, is_shown: bool, text: egui::RichText, word: &str) -> egui::Response {
     let size = egui::vec2(ui.available_width(), 32.0);
     let button = egui::Button::selectable(is_shown, (text, egui::Atom::grow())).frame_when_inactive(false);

@@ -6,10 +6,10 @@ use super::Theme;
 
 /// Width below which a page has smaller margins.
 const NARROW: f32 = 720.0;
-/// Room above a page, and below it at most.
+/// Space above a page, and maximum space below.
 const ABOVE: i8 = 16;
 
-/// Returns the room at the sides of a page.
+/// Returns the side margin of a page.
 pub(crate) fn sides(ui: &Ui, theme: &Theme) -> i8 {
     let narrow = ui.available_width() < NARROW;
     (if narrow { theme.space.groups } else { theme.space.around }) as i8
@@ -20,8 +20,8 @@ pub(crate) fn around(ui: &Ui, theme: &Theme) -> Margin {
     Margin { left: sides, right: sides, top: ABOVE, bottom: sides.min(ABOVE) }
 }
 
-/// Draws a page that scrolls as a whole; `id` distinguishes it from the others. The scroll bar is in the margin: nothing moves
-/// when it appears.
+/// Draws a page that scrolls as a whole; `id` distinguishes the page from others. The scroll bar lies in the margin, so
+/// nothing shifts when the bar appears.
 pub fn scrolling(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
     let frame = Frame::NONE.inner_margin(around(ui, theme));
     ui.scope(|ui| {
@@ -33,9 +33,9 @@ pub fn scrolling(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl Fn
     });
 }
 
-/// Draws widgets whose ids do not depend on the widgets drawn before them; `name` is unique in `ui`. Otherwise each of them
-/// gets another id when something appears or disappears above: it loses the keyboard focus, and a click between press and
-/// release.
+/// Draws widgets whose ids do not depend on the widgets drawn before them; `name` must be unique in `ui`. Otherwise a
+/// widget appearing or disappearing above would change their ids, which loses the keyboard focus and any click between
+/// press and release.
 pub(super) fn apart<R>(ui: &mut Ui, name: impl AsIdSalt, content: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.scope_id().with(name);
     ui.scope_builder(UiBuilder::new().scope_id(id), content).inner

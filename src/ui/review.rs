@@ -12,7 +12,7 @@ use super::{Theme, icons};
 use crate::app::review::{ChangeWords, ExecutionMode, OpWords, Question, ReviewSheet, Stage, Toggle};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
-/// Draws the dialog, if there is a write.
+/// Draws the review dialog, if a write is under review.
 pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     let Some(sheet) = device.sheet() else { return };
     let width = (ctx.content_rect().width() - 64.0).min(760.0);
@@ -147,7 +147,7 @@ fn buttons(
     });
 }
 
-/// Draws the operations; during a write, with the number of completed ones. Values are never truncated.
+/// Draws the operations and, during a write, the number of completed ones. Values are never truncated.
 fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OpWords], f32), done: Option<usize>) {
     let palette = theme.palette;
     theme.sunken().show(ui, |ui| {
@@ -190,7 +190,7 @@ fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OpWords], f32), done
     ui.add_space(theme.space.between);
 }
 
-/// Draws old and new value on one line, if they fit beside their item.
+/// Draws the old and new value on one line, if they fit beside the item.
 fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeWords, ink: Rgb) -> Option<Arc<Galley>> {
     let mut job = LayoutJob::default();
     let font = FontId::monospace(theme.sizes.body);
@@ -209,7 +209,7 @@ fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeWords, ink: Rgb) -> 
     (galley.rows.len() == 1 && beside + galley.size().x <= ui.available_width()).then_some(galley)
 }
 
-/// Draws a change: the item, its old and its new value.
+/// Draws a change: the item, its old value and its new value.
 fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeWords, heads: [&'static str; 2], ink: Rgb) {
     if let Some(part) = &change.part {
         ui.horizontal(|ui| {
@@ -230,13 +230,13 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeWords, heads: [&'static 
     }
 }
 
-/// Minimum and maximum height of the operations, and the height of everything else in the dialog and around it.
+/// Minimum and maximum height of the operation list, and the height of everything else in and around the dialog.
 const LEAST: f32 = 200.0;
 const MOST: f32 = 440.0;
 const REST: f32 = 400.0;
 /// Width of the icon before an item, including the gap.
 const ICON: f32 = 24.0;
-/// Width of the column that labels old and new.
+/// Width of the column for the "old" and "new" labels.
 const HEADS: f32 = 56.0;
 
 fn remarks(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
@@ -253,7 +253,7 @@ fn remarks(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     }
 }
 
-/// Draws in red which values have to be set up again, above the operations.
+/// Draws a red notice above the operations that lists the values to be set up again.
 fn redo(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let Some(text) = &sheet.redo else { return };
     let colour = theme.palette.bad;
@@ -270,7 +270,7 @@ fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
     });
 }
 
-/// Draws a question with its two answers, after its subject.
+/// Draws a question with its two answers, below the subject.
 fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Question, actions: &mut Vec<Action>) {
     remark(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.title));
     ui.horizontal(|ui| {
@@ -283,7 +283,7 @@ fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Questi
     });
 }
 
-/// Draws the permits, and the choice to write to a worn device.
+/// Draws the permits and the option to write to a worn device.
 fn options(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewSheet, actions: &mut Vec<Action>) {
     if !sheet.toggles.is_empty() {
         ui.add_space(theme.space.inside);

@@ -8,10 +8,10 @@ use crate::app::{Environment, Kinds, Studio, ThemeData, Wake, explain};
 use crate::cli::Window as Start;
 use crate::store::{LogFile, Store};
 
-/// Opens the window with these kinds of devices and their tabs, and returns when it is closed.
+/// Opens the window with the given device kinds and tabs, and returns when the window is closed.
 ///
 /// # Errors
-/// Why there is no window, in one line.
+/// Returns a one-line reason if the window could not be opened.
 pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
     let began = Instant::now();
     if !has_display() {
@@ -62,10 +62,10 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
     result
 }
 
-/// The window as eframe runs it.
+/// Window as run by eframe.
 pub(crate) struct StudioApp {
     window: Window,
-    /// Start of the program, until its first frame has been shown.
+    /// Start time of the program, until the first frame has been shown.
     began: Option<Instant>,
 }
 

@@ -4,13 +4,13 @@ use egui::{Context, Event, Id, Key, Response, Ui};
 
 use crate::app::StopPresses;
 
-/// Returns whether a press at this time, by the clock of the frames, applies to a motion that runs or has just ended.
+/// Returns whether a press at the given frame time applies to a motion that is running or has just ended.
 pub(crate) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
     let now = ctx.input(|input| input.time);
     with(ctx, |presses| presses.means_motion(moves, pressed, now))
 }
 
-/// Returns whether a press stopped something so shortly before that another press means the same.
+/// Returns whether an earlier press stopped something so recently that another press must mean the same.
 pub(super) fn has_just_stopped(ctx: &Context, pressed: f64) -> bool {
     with(ctx, |presses| presses.has_just_stopped(pressed))
 }
@@ -20,7 +20,7 @@ fn with<T>(ctx: &Context, act: impl FnOnce(&mut StopPresses) -> T) -> T {
     ctx.data_mut(|data| act(data.get_temp_mut_or_default(id)))
 }
 
-/// Returns whether the pointer goes down on a button that stops, in this frame.
+/// Returns whether the pointer is pressed on a stop button in this frame.
 pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
     let is_press = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
     if is_press {
@@ -30,7 +30,7 @@ pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
     is_press
 }
 
-/// Returns when the press that counts in this frame, on a button that stops, began.
+/// Returns when the press that counts in this frame on a stop button began.
 pub(crate) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
     let (now, released) = ui.input(|input| (input.time, input.pointer.any_released()));
     with(ui.ctx(), |presses| presses.pressed_at(goes_down || released, now))

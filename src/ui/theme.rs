@@ -12,7 +12,7 @@ impl From<Rgb> for Color32 {
     }
 }
 
-/// The appearance and the language.
+/// Appearance and language of the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Theme {
     pub palette: &'static Palette,
@@ -35,22 +35,23 @@ impl Theme {
         }
     }
 
-    /// Returns the text of that name in the window's language.
+    /// Returns the named text in the window's language.
     pub fn say(&self, id: &'static str) -> String {
         Text::new(id).words(self.language)
     }
 
-    /// Returns a text with its arguments in the window's language.
+    /// Returns a text, with its arguments filled in, in the window's language.
     pub fn words(&self, text: &Text) -> String {
         text.words(self.language)
     }
 
-    /// Returns a number with the language's decimal sign.
+    /// Formats a number with the language's decimal sign.
     pub fn number(&self, value: f64, decimals: usize) -> String {
         crate::app::decimal(value, decimals, self.language)
     }
 
-    /// Returns a number with its own number of has, of twelve digits: the rest is what a calculation leaves over.
+    /// Formats a number with as many decimals as needed, up to twelve significant digits; anything beyond is rounding
+    /// noise.
     pub fn plain(&self, value: f64) -> String {
         const DIGITS: i32 = 12;
         let before = if value == 0.0 { 1 } else { (value.abs().log10().floor() as i32).saturating_add(1) };
@@ -59,7 +60,7 @@ impl Theme {
         self.number(value, decimals)
     }
 
-    /// Returns a number as received, in hexadecimal digits, with its width.
+    /// Formats a number as received, in hexadecimal digits, with its width.
     pub fn word(&self, word: Word) -> String {
         self.words(&Text::new("live.word").with("hex", word).with("count", word.bits))
     }
@@ -68,7 +69,7 @@ impl Theme {
         RichText::new(words).color(self.palette.muted)
     }
 
-    /// Returns a caption: small, for use beside and below widgets.
+    /// Returns a caption: small text for use beside and below widgets.
     pub fn caption(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).size(self.sizes.caption).color(self.palette.muted)
     }
@@ -83,12 +84,12 @@ impl Theme {
         RichText::new(words).font(self.strong(self.sizes.section))
     }
 
-    /// Returns text for bytes, registers, and every number that changes.
+    /// Returns monospaced text for bytes, registers and changing numbers.
     pub fn mono(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(FontId::monospace(self.sizes.body))
     }
 
-    /// Returns text for the main value of a card.
+    /// Returns text for a card's main value.
     pub fn value(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(FontId::monospace(self.sizes.value))
     }
@@ -97,7 +98,7 @@ impl Theme {
         FontId::new(size, FontFamily::Name(STRONG.into()))
     }
 
-    /// Returns the frame of a card: raised, with a border, without a shadow.
+    /// Returns the frame of a card: raised, with a border but no shadow.
     pub fn card(&self) -> egui::Frame {
         egui::Frame::NONE
             .fill(self.palette.raised.into())
@@ -106,7 +107,7 @@ impl Theme {
             .inner_margin(Margin::same(12))
     }
 
-    /// Returns the frame of read-only content: plots, bytes, trace.
+    /// Returns the frame of read-only content such as plots, bytes and the trace.
     pub fn sunken(&self) -> egui::Frame {
         egui::Frame::NONE.fill(self.palette.sunken.into()).corner_radius(self.radius).inner_margin(Margin::same(8))
     }
@@ -197,7 +198,7 @@ const FONTS: [(&str, &[u8]); 4] = [
     ("icons", include_bytes!("../../assets/fonts/Icons.ttf")),
 ];
 
-/// Installs the built-in fonts: one for text in two weights, one for bytes and numbers, one of icons.
+/// Installs the built-in fonts: a text font in two weights, a font for bytes and numbers, and an icon font.
 pub fn install_fonts(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::empty();
     for (name, bytes) in FONTS {

@@ -8,7 +8,7 @@ use super::panels::TraceView;
 use super::plot;
 use crate::app::{AnyDevice, SessionId, Studio, Tab};
 
-/// The memory of the views.
+/// View state kept between frames.
 pub struct Views {
     pub(super) tabs: TabViews,
     sessions: BTreeMap<SessionId, Box<dyn SessionView>>,
@@ -17,16 +17,16 @@ pub struct Views {
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
     pub(super) help: bool,
-    /// The command palette, while it is open.
+    /// Command palette, if open.
     pub(super) palette: Option<PaletteUiState>,
     pub(super) trace: TraceView,
     pub(super) plot: plot::PlotUiState,
-    /// Microseconds from one reading of the position to the next.
+    /// Polling interval of the position in microseconds.
     pub(super) rate: u64,
 }
 
 impl Views {
-    /// Begins the memory of a window with these tabs.
+    /// Creates the view state of a window with the given tabs.
     pub(super) fn new(tabs: TabViews) -> Self {
         Views {
             tabs,
@@ -43,19 +43,19 @@ impl Views {
         }
     }
 
-    /// Returns the view of a session; `None` if no tab shows this kind of device.
+    /// Returns the view of a session, or `None` if no tab shows the device's kind.
     pub(super) fn session(&mut self, device: &AnyDevice) -> Option<&mut dyn SessionView> {
         let view = self.tabs.device(device.tab())?;
         Some(self.sessions.entry(device.id()).or_insert_with(|| view.session()).as_mut())
     }
 
-    /// Returns the view of a tab without devices; `None` for a tab of devices.
+    /// Returns the view of a tab without devices, or `None` for a device tab.
     pub(super) fn tool(&mut self, tab: Tab) -> Option<&mut dyn ToolPages> {
         let (_, tool) = self.tools.iter_mut().find(|(own, _)| *own == tab)?;
         Some(tool.as_mut())
     }
 
-    /// Returns the open page of the open tab; for a tab of devices without one, the first page.
+    /// Returns the open page of the open tab; for a device tab without an open device, its first page.
     pub(super) fn page(&mut self, studio: &Studio) -> Option<PageInfo> {
         let tab = studio.settings.tab;
         let page = match (self.tool(tab), shown_in(studio, tab)) {
@@ -66,13 +66,13 @@ impl Views {
         self.tabs.pages(tab).get(page).copied()
     }
 
-    /// Forgets the sessions that were closed.
+    /// Drops the state of closed sessions.
     pub(super) fn forget_closed(&mut self, studio: &Studio) {
         self.sessions.retain(|id, _| studio.device(*id).is_some());
     }
 }
 
-/// Returns the device that a tab shows, if it is the open tab.
+/// Returns the device shown by a tab, if that tab is open.
 pub(super) fn shown_in(studio: &Studio, tab: Tab) -> Option<&AnyDevice> {
     studio.selected_device().filter(|device| device.tab() == tab)
 }

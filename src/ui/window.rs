@@ -22,11 +22,11 @@ pub struct Window {
     docks: Docks,
     keys: Keys,
     held_input: HeldInput,
-    /// The request to close the window was already handled in this frame.
+    /// Whether the request to close the window has already been handled in the current frame.
     close_heard: bool,
     look: &'static ThemeData,
     dressed: Option<crate::app::ColorScheme>,
-    /// The notice that is shown, and since when, on the window's clock.
+    /// Displayed notice, and since when it has been shown on the window's clock.
     notice_since: Option<(jiff::Zoned, f64)>,
 }
 
@@ -51,8 +51,8 @@ impl Window {
         &self.studio
     }
 
-    /// Divides the input of a frame so that text reaches the entry that was clicked before it. While drives are under control
-    /// nothing is held back.
+    /// Splits the input of a frame so that text reaches the entry that was clicked before. Nothing is held back while
+    /// drives are under control.
     pub fn order_input(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
         let at_once = !input.focused || self.studio.is_in_control();
         if self.held_input.divide(&mut input.events, at_once) {
@@ -60,7 +60,7 @@ impl Window {
         }
     }
 
-    /// Draws everything and carries out the actions.
+    /// Draws the whole window and carries out the resulting actions.
     pub fn draw(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         self.studio.poll();
@@ -153,8 +153,8 @@ impl Window {
         dialogs::question_ui(ctx, theme, &self.studio, actions);
     }
 
-    /// Draws the line at the bottom, with the notice where one stands. Notices that need an action stay until they are
-    /// dismissed, the others disappear by themselves.
+    /// Draws the status line at the bottom, with the current notice, if any. Notices that need an action stay until
+    /// dismissed; the others disappear by themselves.
     fn status_line(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         status_line::status_line_ui(ui, theme, &self.studio, &mut self.views, actions);
         let Some(notice) = self.studio.services.log.standing() else {
@@ -174,7 +174,8 @@ impl Window {
         }
     }
 
-    /// Runs even if nothing is drawn: a minimised window must still be closed. It keeps nothing moving.
+    /// Handles closing even if nothing is drawn, since a minimised window must still be closed. This never keeps a
+    /// motion going.
     pub fn logic(&mut self, ctx: &egui::Context) {
         self.hear_close(ctx);
         // Drawing must know about it in this frame.
@@ -197,7 +198,7 @@ impl Window {
         ctx.request_repaint_after(Duration::from_millis(30));
     }
 
-    /// Handles the request to close the window: motion stops first, then questions may be asked.
+    /// Handles the request to close the window: motion is stopped first, then any questions are asked.
     fn hear_close(&mut self, ctx: &egui::Context) {
         let (asked, minimised) = ctx.input(|input| {
             let viewport = input.raw.viewport();
@@ -214,7 +215,7 @@ impl Window {
         }
     }
 
-    /// Handles the keyboard, and files that are dropped on the window.
+    /// Handles the keyboard, and files dropped on the window.
     fn take_input(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
         if !std::mem::take(&mut self.close_heard) {
             self.hear_close(ctx);
@@ -256,7 +257,7 @@ impl Window {
         }
     }
 
-    /// Carries out a command that was chosen by its key or in the command palette.
+    /// Carries out a command chosen by its key or in the command palette.
     fn carry_out(&mut self, effect: Effect, actions: &mut Vec<Action>) {
         let Window { studio, views, docks, .. } = self;
         match effect {
@@ -286,7 +287,7 @@ impl Window {
         }
     }
 
-    /// Returns whether a dialog covers the window and has the keyboard.
+    /// Returns whether a dialog covers the window and has the keyboard focus.
     fn is_covered(&self) -> bool {
         let dialog = self.views.file.is_some()
             || self.views.about
@@ -300,8 +301,8 @@ impl Window {
         asks || self.studio.selected_device().is_some_and(AnyDevice::is_reviewing)
     }
 
-    /// Handles Esc: it first stops what runs, then closes what is open. The focus of the keyboard or the pointer comes
-    /// before both: a half-typed byte, an open menu, a field being dragged.
+    /// Handles Esc, which first stops what is running and then closes what is open. Anything that holds the keyboard or
+    /// pointer takes precedence: a half-typed byte, an open menu, a field being dragged.
     fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
         // Pressed while this window moves a drive, it applies to the motion, whatever else is open or dragged.
         let moves = self.studio.moves_by_hand();
@@ -365,7 +366,7 @@ fn moving_edge(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     }
 }
 
-/// Draws a moving bar along the top edge during a write.
+/// Draws an animated bar along the top edge during a write.
 fn writing_bar(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     if !studio.devices().iter().any(|device| device.is_writing()) {
         return;

@@ -30,7 +30,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
     apart(ui, "page", |ui| session.page_ui(ui, theme, (studio, device), actions));
 }
 
-/// Draws the ways to open a device if none is open.
+/// Draws the options for opening a device, shown while none is open.
 fn nothing(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
     if empty(ui, theme, &theme.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &theme.say("shell.connect"), true))) {
         actions.push(Action::Connect(connect::ConnectAction::Open));

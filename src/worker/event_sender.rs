@@ -7,11 +7,11 @@ use crossbeam_channel::{Sender, TrySendError};
 
 use super::{Device, Event};
 
-/// Largest number of events that wait to be read; progress counts once.
+/// Maximum number of unread events; progress counts once.
 pub(super) const CAPACITY: usize = 64;
 
-/// A queue of outgoing events. Events that do not fit into the channel wait here: no more than those of one job, because
-/// the next job does not start while the channel is full.
+/// Queue of outgoing events. Events that do not fit into the channel wait in the queue, which never holds more than one
+/// job's events, because the next job does not start while the channel is full.
 pub(super) struct EventSender<D: Device> {
     sender: Sender<Event<D>>,
     wake: Arc<dyn Fn() + Send + Sync>,

@@ -3,7 +3,7 @@
 use super::{Device, EndedEarly, JobReport, SessionContext, Watched};
 use crate::link::LinkError;
 
-/// The device, which is never asked.
+/// Placeholder device that is never queried.
 #[derive(Debug)]
 pub(super) struct TestDevice;
 

@@ -8,35 +8,35 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use crate::link::Cancel;
 
-/// Longer intervals are this one.
+/// Maximum interval; longer intervals are shortened to it.
 const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// The live requests of a session. Clones share them.
+/// Live requests of a session. Clones share the requests.
 #[derive(Clone)]
 pub(super) struct Live {
     requests: Arc<Mutex<PollRequests>>,
     sampling: Cancel,
-    /// Wakes the thread; a full channel means that it is about to wake.
+    /// Wakes the thread; a full channel means that the thread is about to wake.
     changed: Sender<()>,
 }
 
 struct PollRequests {
-    /// The end of the running job, or of the last.
+    /// Cancellation token of the running job, or of the last one.
     job: Cancel,
     interval: Option<Duration>,
-    /// Counter of polling requests, so that a failure ends only the request that it belongs to.
+    /// Number of the polling request, so that a failure ends only the request it belongs to.
     number: u64,
 }
 
 impl Live {
-    /// Creates an empty list; the thread receives changes.
+    /// Creates an empty request list, and the receiver on which the thread is told of changes.
     pub(super) fn new() -> (Self, Receiver<()>) {
         let (changed, changes) = bounded(1);
         let requests = Arc::new(Mutex::new(PollRequests { job: Cancel::default(), interval: None, number: 0 }));
         (Live { requests, sampling: Cancel::default(), changed }, changes)
     }
 
-    /// Directs a stop to this job from now on.
+    /// Directs later stops to the given job.
     pub(super) fn next_job(&self, cancel: Cancel) {
         self.lock().job = cancel;
     }
@@ -65,12 +65,12 @@ impl Live {
         self.lock().interval
     }
 
-    /// Returns the number of the polling request in force.
+    /// Returns the number of the current polling request.
     pub(super) fn number(&self) -> u64 {
         self.lock().number
     }
 
-    /// Ends polling from the side of the thread after a sample of that request failed.
+    /// Ends polling from the thread after a sample of the given request has failed.
     pub(super) fn poll_failed(&self, number: u64) {
         let mut requests = self.lock();
         if requests.number == number {
@@ -79,7 +79,7 @@ impl Live {
     }
 
     /// Interrupts a running sample. Make the request first: the thread resets the token and then reads the requests, so
-    /// that none is missed.
+    /// that no request is missed.
     pub(super) fn interrupt_sample(&self) {
         self.sampling.request();
     }
@@ -102,7 +102,7 @@ impl Live {
     }
 }
 
-/// The values watched between samples while polling. Clones share them.
+/// Values watched between samples while polling. Clones share the values.
 pub(super) struct Watches<W> {
     list: Arc<Mutex<List<W>>>,
     live: Live,
@@ -116,17 +116,17 @@ struct List<W> {
 struct Entry<W> {
     value: W,
     interval: Duration,
-    /// Whether the device does not have it: it is not requested again while it stays in the list.
+    /// Whether the device lacks the value, which is then not requested again while it stays in the list.
     refused: bool,
 }
 
 impl<W: Clone + PartialEq> Watches<W> {
-    /// Creates an empty watch; the thread is notified of changes through `live`.
+    /// Creates an empty watch list; the thread is notified of changes through `live`.
     pub(super) fn new(live: Live) -> Self {
         Watches { list: Arc::new(Mutex::new(List { entries: Vec::new(), number: 0 })), live }
     }
 
-    /// Sets the values to watch, each once: the first of several equal ones counts.
+    /// Sets the values to watch, each once; the first of several equal values counts.
     pub(super) fn set_entries(&self, watched: Vec<(W, Duration)>) {
         let mut list = self.lock();
         let mut entries: Vec<Entry<W>> = Vec::with_capacity(watched.len());
@@ -152,12 +152,12 @@ impl<W: Clone + PartialEq> Watches<W> {
         changed.then(|| list.asked_for())
     }
 
-    /// Returns the watched values and their intervals, without those that the device refused.
+    /// Returns the watched values and their intervals, except those that the device refused.
     pub(super) fn asked_for(&self) -> Vec<(W, Duration)> {
         self.lock().asked_for()
     }
 
-    /// Records that the device does not have this value.
+    /// Records that the device lacks the given value.
     pub(super) fn refuse(&self, what: &W) {
         let mut list = self.lock();
         list.number += 1;

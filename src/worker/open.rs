@@ -40,8 +40,8 @@ pub enum OpenError {
     Store(#[from] StoreError),
 }
 
-/// Returns the allowed delay of a reply beyond the protocol's worst case, by kind of connection: USB adapters deliver in
-/// packets, device servers over a network, and even a thread has to be woken up.
+/// Returns the allowed reply delay beyond the protocol's worst case for a kind of connection: USB adapters deliver in
+/// packets, device servers reply over a network, and even a thread has to be woken up.
 pub(crate) const fn margin(scheme: Scheme) -> Duration {
     match scheme {
         Scheme::Serial => Duration::from_millis(50),
@@ -103,11 +103,11 @@ pub fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result
     }
 }
 
-/// Returns the settings of the virtual device in a link: its parameters except those of the `line`, and none if the link
-/// leads to a real one.
+/// Returns the settings of a link's virtual device: the link parameters except those of the `line`, or none for a real
+/// device.
 ///
 /// # Errors
-/// [`UrlError::Unknown`], for a parameter that the line to a real one does not have.
+/// [`UrlError::Unknown`], for a parameter that the line to a real device does not have.
 pub(crate) fn simulated(url: &LinkUrl, line: &[&str], device: &[&str]) -> Result<Vec<(String, String)>, UrlError> {
     if url.scheme != Scheme::Sim {
         check_parameters(&url.query, url.scheme, line)?;

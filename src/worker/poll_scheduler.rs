@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-/// The request that is due.
+/// Request that is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Due<W> {
     /// The sample of the device.
@@ -12,11 +12,11 @@ pub(super) enum Due<W> {
     Watch(W),
 }
 
-/// The schedule of the requests, with the pace of each.
+/// Schedule of the requests, each with its own pace.
 pub(super) struct PollScheduler<W> {
     sample: Pace,
     watches: Vec<Watch<W>>,
-    /// Whether no value was watched since the last sample, so that one may be.
+    /// Whether the last request was a sample, so that a watched value may come next.
     sample_was_last: bool,
 }
 
@@ -33,7 +33,7 @@ impl<W> Default for PollScheduler<W> {
 }
 
 impl<W: Clone + PartialEq> PollScheduler<W> {
-    /// Sets the values to watch; those already watched keep their pace.
+    /// Sets the values to watch; values already watched keep their pace.
     pub(super) fn watch(&mut self, watched: Vec<(W, Duration)>) {
         let mut before = std::mem::take(&mut self.watches);
         for (what, interval) in watched {
@@ -42,8 +42,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         }
     }
 
-    /// Returns the next request and its time: the earliest one, and the sample if several are due. Watching pauses while
-    /// sampling is off; a new request is due at once.
+    /// Returns the next request and its time: the earliest request, or the sample if several are due. Watching pauses
+    /// while sampling is off; a new request is due at once.
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, Due<W>)> {
         let sample = self.sample.due(polling, now);
         let mut next: Option<(Instant, Due<W>)> = None;
@@ -60,7 +60,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         next.filter(|(due, _)| *due < sample).or(Some((sample, Due::Sample)))
     }
 
-    /// Records that the request was made and its reply came at `now`.
+    /// Records that the request was made and its reply arrived at `now`.
     pub(super) fn taken(&mut self, due: &Due<W>, now: Instant) {
         self.sample_was_last = *due == Due::Sample;
         match due {
@@ -74,7 +74,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     }
 }
 
-/// The times of a request: at equal distances from start to start, and never several at once after a late one.
+/// Timing of a request: equal intervals from start to start, and never several requests at once after a late one.
 #[derive(Default)]
 struct Pace {
     interval: Option<Duration>,
@@ -82,7 +82,7 @@ struct Pace {
 }
 
 impl Pace {
-    /// Returns the next time for the current request; a new request is due now.
+    /// Returns the next time for the current request; a new request is due at once.
     fn due(&mut self, interval: Option<Duration>, now: Instant) -> Option<Instant> {
         if interval != self.interval {
             self.interval = interval;

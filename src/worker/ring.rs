@@ -11,7 +11,7 @@ pub struct Ring<T>(Arc<Mutex<State<T>>>);
 struct State<T> {
     items: VecDeque<T>,
     capacity: usize,
-    /// Sizes that they may have together, and that they have.
+    /// Maximum total size of the entries, as measured by `size_of`.
     most: usize,
     size: usize,
     size_of: fn(&T) -> usize,

@@ -67,7 +67,7 @@ impl<D: Device> Session<D> {
         self.device.check()
     }
 
-    /// Returns how often an idle worker checks the device and its wire.
+    /// Returns the interval at which an idle worker checks the device and its wire.
     pub(super) fn idle_interval(&self) -> Duration {
         self.device.idle_interval()
     }
@@ -124,7 +124,7 @@ impl<D: Device> Session<D> {
         self.device.watch(&mut self.context, what)
     }
 
-    /// Returns a message of the device since the last call that no event carries.
+    /// Returns a device message received since the last call that no event carries.
     pub(super) fn take_remark(&mut self) -> Option<D::DeviceMessage> {
         self.device.take_remark()
     }

@@ -16,17 +16,17 @@ use crate::link::Cancel;
 /// Interval between attempts to send to a full channel.
 const RETRY: Duration = Duration::from_millis(5);
 
-/// A job on its way to the thread.
+/// Job on its way to the thread.
 pub(super) struct Order<D: Device> {
     pub(super) id: JobId,
     pub(super) job: D::Job,
     pub(super) cancel: Cancel,
 }
 
-/// A type without values: its channel is used only to signal the end of the thread by closing.
+/// Type without values: its channel only signals the end of the thread by closing.
 pub(super) enum Never {}
 
-/// The parts that a session's thread works with.
+/// Parts that a session's thread works with.
 pub(super) struct Bench<D: Device> {
     pub(super) session: Session<D>,
     pub(super) orders: Receiver<Order<D>>,
@@ -38,10 +38,10 @@ pub(super) struct Bench<D: Device> {
     pub(super) busy: Arc<AtomicBool>,
 }
 
-/// Starts the thread; `alive` is dropped last, when the connection is free.
+/// Starts the thread; `alive` is dropped last, once the connection is free.
 ///
 /// # Errors
-/// Returns an error if the system has no free thread.
+/// Returns an error if the system cannot start another thread.
 pub(super) fn start<D: Device>(bench: Bench<D>, alive: Sender<Never>) -> std::io::Result<()> {
     std::thread::Builder::new().name("session".to_owned()).spawn(move || {
         let _alive = alive;
@@ -51,7 +51,7 @@ pub(super) fn start<D: Device>(bench: Bench<D>, alive: Sender<Never>) -> std::io
     Ok(())
 }
 
-/// The job slot of a thread: free after the thread has ended for any reason.
+/// Job slot of a thread, freed when the thread ends for any reason.
 struct Slot(Arc<AtomicBool>);
 
 impl Drop for Slot {
@@ -128,8 +128,8 @@ impl<D: Device> Bench<D> {
         self.events.send(end);
     }
 
-    /// Takes a sample or watched value that is due. Returns false if a job or another request interrupted it; it is then
-    /// still due.
+    /// Takes a due sample or watched value. Returns false if a job or another request interrupted it, in which case it
+    /// is still due.
     fn take(&mut self, due: &Due<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling().clone());
         let request = self.live.number();
@@ -165,7 +165,8 @@ impl<D: Device> Bench<D> {
         }
     }
 
-    /// Waits for a job, a changed request or the time. A job stays in its channel: the loop takes it.
+    /// Waits until a job arrives, a request changes or `patience` has passed. A job stays in its channel for the loop
+    /// to take.
     fn wait(&self, patience: Duration) {
         let mut ready = Select::new();
         ready.recv(&self.orders);

@@ -184,7 +184,7 @@ fn the_check_prints_a_verdict_per_line() {
             "status       good",
             "identity     attention  unknown type; GB0450179",
             "position     good       918833",
-            "data fields  attention  0: 32 bytes, writable, code 0, code required, the access code 0 is not known",
+            "data fields  attention  0: 32 bytes, writable, code 0, code required, access code 0 is unknown",
         ]
     );
 }

@@ -156,7 +156,7 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     screen.act(Action::Review(id, ReviewAction::Close));
     // As numbers they are 164 times further.
     screen.act(Action::Command(id, DeviceCommand::Undo));
-    screen.press(Role::RadioButton, "Limits: keep their numbers");
+    screen.press(Role::RadioButton, "Limits: keep their values");
     screen.click("hd_scale.set");
     let own = screen.studio().hiperdrive().unwrap();
     assert_eq!(own.staged.wanted().unwrap().limits(own.drive()), Some((-33_488_896, 33_488_896)));

@@ -111,7 +111,7 @@ fn a_pasted_table_is_previewed_before_it_is_accepted() {
     let text = "name;start;stop\nfeed;100;200\nglue;300;350\nglue;700;750\n";
     screen.paste(&format!("{text}late;3600;10\n"));
     assert!(screen.shows("Program 1: glue has 2 pulses, which use cams 1, 2."));
-    assert!(screen.shows("Line 5, column 2: The start at 3600 is outside the measuring range, which is 0 to 3599."));
+    assert!(screen.shows("Line 5, column 2: The start 3600 is outside the measuring range 0 to 3599."));
     assert_eq!(screen.cam(0), before);
     screen.check_language();
     screen.act(Action::SetLanguage(Language::German));

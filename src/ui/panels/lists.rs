@@ -8,11 +8,11 @@ use crate::ui::controls::{empty, severity};
 use crate::ui::{Theme, icons};
 
 const ROW: f32 = 22.0;
-/// Maximum number of notices drawn; the log file has them all.
+/// Maximum number of notices drawn; the log file contains all of them.
 const SHOWN: usize = 200;
 const TIME: &str = "%H:%M:%S";
 
-/// Draws the list of jobs, the newest first.
+/// Draws the job list, newest first.
 pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let jobs: Vec<_> = studio.services.jobs().rev().collect();
     if jobs.is_empty() {
@@ -61,7 +61,7 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
         });
 }
 
-/// Draws the log, the newest first.
+/// Draws the log, newest first.
 pub(in crate::ui) fn log_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let palette = theme.palette;
     if studio.services.log.notices().len() == 0 {

@@ -10,22 +10,22 @@ use crate::ui::controls::{choice, empty, enabled_button, icon_button, label_widt
 use crate::ui::page::apart;
 use crate::ui::{Theme, Views, icons, plot};
 
-/// Intervals of reading the position in microseconds; back to back first.
+/// Polling intervals in microseconds; the first polls back to back.
 const RATES: [(u64, &str); 4] =
     [(0, "live.fastest"), (50_000, "live.every_50"), (200_000, "live.every_200"), (1_000_000, "live.every_1000")];
-/// Intervals if an adapter streams.
+/// Sample intervals of a streaming adapter, in microseconds.
 const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5k"), (1_000, "live.stream_1k")];
-/// Polling rate if no readable one is chosen.
+/// Polling interval in microseconds if no readable rate is chosen.
 const USUAL: u64 = 50_000;
 
-/// Height in points below which the numbers beside the position are on one line.
+/// Panel height in points below which the numbers beside the position share one line.
 pub(crate) const LOW: f32 = 460.0;
 
 /// Least width of the choice of the rate, and width of the panel from which the first button has a word.
 const RATE: f32 = 64.0;
 const ONE_ROW: f32 = 280.0;
 
-/// Seconds after which an unchanged position is marked.
+/// Time in seconds after which an unchanged position is marked.
 const NOTICED: f32 = 0.4;
 
 pub(in crate::ui) fn live_ui(
@@ -53,7 +53,7 @@ pub(in crate::ui) fn live_ui(
     }
 }
 
-/// Draws why the values pause. Its place is reserved: what is below stays where it is.
+/// Draws the reason why the values are paused. The space is always reserved, so that the content below does not move.
 fn pause_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, paused: bool) {
     let size = egui::vec2(ui.available_width().max(0.0), theme.sizes.caption + theme.space.inside);
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -65,7 +65,8 @@ fn pause_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, paused: bool) {
     });
 }
 
-/// Returns whether a job prevents reading the position. A very short one does not count: the number would only flicker.
+/// Returns whether a job prevents reading the position. Very short jobs do not count, because the number would only
+/// flicker.
 fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     let waits = device.is_polling() && device.is_busy();
     let id = egui::Id::unique(device.id()).with("job_pause");
@@ -91,7 +92,7 @@ pub(in crate::ui) fn plot_ui(
     }
 }
 
-/// Draws a word about the position beside it, truncated at the edge of the panel: it must not make the panel wider than the
+/// Draws a short remark beside the position, truncated at the edge of the panel so that the panel never outgrows the
 /// window.
 pub(crate) fn mark(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
     ui.add(egui::Label::new(RichText::new(theme.say(word)).color(ink)).truncate());

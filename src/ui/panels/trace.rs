@@ -12,10 +12,10 @@ use crate::ui::{Theme, Views, icons};
 const ROW: f32 = 18.0;
 const TIME: &str = "%H:%M:%S%.3f";
 
-/// The scroll position of the list of frames.
+/// Scroll position of the frame list.
 #[derive(Default)]
 pub(in crate::ui) struct TraceView {
-    /// Whose frames they are, and how many had gone when it was drawn last.
+    /// Session of the displayed frames, and the number of frames already dropped when the list was last drawn.
     of: Option<(SessionId, u64)>,
     offset: f32,
     is_behind: bool,

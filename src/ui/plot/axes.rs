@@ -4,7 +4,7 @@ use crate::analysis::Time;
 use crate::app::recorder::SAMPLE;
 use crate::app::{Language, decimal};
 
-/// Returns a step that is 1, 2 or 5 times a power of ten, so that `span` has at most this many of it.
+/// Returns a step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` parts.
 pub(super) fn step(span: f64, most: f64) -> f64 {
     let least = span / most.max(1.0);
     if !least.is_finite() || least <= 0.0 {
@@ -15,7 +15,7 @@ pub(super) fn step(span: f64, most: f64) -> f64 {
     step.unwrap_or(10.0 * power)
 }
 
-/// Decimals that a label needs at such steps.
+/// Returns the number of decimals that a label needs for the given step.
 pub(super) fn decimals(step: f64) -> usize {
     // Steps such as 1e-300 do not occur in measurements.
     (-step.log10() - 1e-9).ceil().clamp(0.0, 12.0) as usize
@@ -23,7 +23,7 @@ pub(super) fn decimals(step: f64) -> usize {
 
 /// Returns the multiples of `step` from `low` to `high`.
 pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
-    /// More than fit into any picture; a step of zero would loop forever.
+    /// Upper limit, more than any picture can show; a step of zero would otherwise loop forever.
     const MOST: i64 = 200;
     let (first, last) = ((low / step).ceil(), (high / step).floor());
     let count = if (last - first).is_finite() { ((last - first) as i64 + 1).clamp(0, MOST) } else { 0 };
@@ -31,14 +31,14 @@ pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64>
     (0..count).map(move |at| (first + at as f64) * step + 0.0)
 }
 
-/// Returns a value as a label of an axis with such steps.
+/// Returns a value as an axis label for the given step.
 pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
     let decimals = decimals(step);
     if value.abs() >= 1e9 { format!("{value:.2e}") } else { decimal(value, decimals, language) }
 }
 
-/// Returns a range that contains `low` to `high`, and ends at round steps so that it does not change with every sample; it
-/// is at least `least` long.
+/// Returns a range, at least `least` long, that contains `low` to `high` and ends at round steps, so that it does not
+/// change with every sample.
 pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     let (low, high) = if high - low < least {
         let middle = f64::midpoint(low, high);
@@ -60,13 +60,13 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
 #[derive(Debug, PartialEq)]
 pub(super) struct TimeTicks {
     pub(super) ticks: Vec<(Time, String)>,
-    /// The reference point of the labels, if they do not count from the beginning.
+    /// Reference point of the labels, or `None` if they count from the beginning.
     pub(super) base: Option<String>,
 }
 
 const SECOND: i64 = 1_000_000_000;
 
-/// Returns ticks from `from` to `to`, at most this many.
+/// Returns at most `most` ticks between `from` and `to`.
 pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) -> TimeTicks {
     let span = to.nanoseconds_since(from).max(1);
     let step = time_step(span, most.max(1));
@@ -90,7 +90,7 @@ pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) 
     TimeTicks { ticks, base: coarse.map(|base| clock(base, 1, language)) }
 }
 
-/// Ticks at numbers of samples instead.
+/// Returns ticks at sample numbers instead of times.
 pub(super) fn sample_ticks(from: Time, to: Time, most: usize, language: Language) -> TimeTicks {
     let number = |time: Time| time.nanoseconds() as f64 / SAMPLE as f64;
     let step = step(number(to) - number(from), most as f64).max(1.0);
@@ -125,7 +125,7 @@ fn time_step(span: i64, most: usize) -> i64 {
     found.unwrap_or(2400 * HOUR * SECOND)
 }
 
-/// Returns a time as a label of an axis with such steps: in its unit below a second, else as a clock.
+/// Returns a time as an axis label for the given step: in a unit below one second, otherwise as a clock.
 fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
     if nanoseconds == 0 {
         return "0".to_owned();
@@ -161,7 +161,7 @@ fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
     format!("{} {unit}", decimal(nanoseconds as f64 / per, decimals, language))
 }
 
-/// Returns whole seconds as a clock; with tenths if the step is finer.
+/// Returns whole seconds as a clock, with tenths for a finer step.
 fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     let sign = if nanoseconds < 0 { "-" } else { "" };
     let tenths = nanoseconds.unsigned_abs() / 100_000_000;
@@ -176,7 +176,7 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     }
 }
 
-/// Returns a point in time as exactly as a picture of that many nanoseconds shows it.
+/// Returns a point in time with the precision of a picture that spans `span` nanoseconds.
 pub(super) fn instant(time: Time, span: i64, language: Language) -> String {
     let nanoseconds = time.nanoseconds();
     let digits = [(SECOND, 3), (SECOND / 1_000, 6), (0, 9)].into_iter().find(|(least, _)| span >= *least);
@@ -191,12 +191,12 @@ pub(super) fn instant(time: Time, span: i64, language: Language) -> String {
     }
 }
 
-/// Returns the number of the sample at that place.
+/// Returns the sample number at the given time.
 pub(super) fn sample_number(time: Time) -> String {
     time.nanoseconds().div_euclid(SAMPLE).to_string()
 }
 
-/// Returns a duration as text, with about four digits.
+/// Returns a formatted duration with about four digits.
 pub(super) fn duration(nanoseconds: i64, language: Language) -> String {
     let sign = if nanoseconds < 0 { "-" } else { "" };
     let length = nanoseconds.unsigned_abs() as f64;
@@ -210,7 +210,7 @@ pub(super) fn duration(nanoseconds: i64, language: Language) -> String {
     format!("{sign}{} {unit}", decimal(length / per, 3, language))
 }
 
-/// Returns a duration with three digits, for little space.
+/// Returns a duration with three digits, for tight spaces.
 pub(super) fn about(nanoseconds: i64, language: Language) -> String {
     let length = nanoseconds.unsigned_abs() as f64;
     if length >= 60e9 {

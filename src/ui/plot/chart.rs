@@ -9,7 +9,7 @@ use super::{Context, axes};
 use crate::app::recorder::{Cursor, Series, TriggerState};
 use crate::ui::Theme;
 
-/// Height of a lane in points below which there is no room for names in it.
+/// Lane height in points below which names do not fit.
 const LOW: f32 = 40.0;
 
 pub(super) fn colour(theme: &Theme, line: &Series) -> Color32 {
@@ -76,12 +76,13 @@ fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &F
     }
 }
 
-/// Least distance of a label from the edge of its lane, and half the height of a label.
+/// Minimum distance of a label from the edge of its lane, and half the height of a label.
 const EDGE: f32 = 2.0;
 const HALF: f32 = 5.5;
 
-/// Returns the ticks that have a label, with the heights of the labels: those beside their line, since between two lanes there
-/// is space for half a label. In a low lane that has fewer than two of them, the outermost ticks, with their labels inside.
+/// Returns the labelled ticks with the heights of their labels. A label normally sits beside its tick line, since the
+/// space between two lanes holds half a label; a low lane with fewer than two such ticks labels its outermost ticks on
+/// the inside.
 fn labelled(ticks: &[(f64, f32)], top: f32, bottom: f32) -> Vec<(f64, f32)> {
     let inside: Vec<(f64, f32)> =
         ticks.iter().copied().filter(|(_, y)| (top + EDGE..=bottom - EDGE).contains(y)).collect();
@@ -125,7 +126,7 @@ fn lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane,
     clipped.extend(shapes);
 }
 
-/// Paints the name and unit of each line of a lane, in its colour.
+/// Paints the name and unit of each line of a lane, in the line's colour.
 fn names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
     let theme = context.theme;
     if lane.rect.height() < LOW {
@@ -168,7 +169,7 @@ fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &Fon
     }
 }
 
-/// Draws the raw sample nearest to a time, as a dot.
+/// Draws a dot at the raw sample nearest to a time.
 fn dot(
     painter: &Painter,
     context: &Context<'_>,
@@ -212,7 +213,7 @@ fn under_pointer(painter: &Painter, context: &Context<'_>, layout: &Layout, plac
     }
 }
 
-/// Paints the level of the trigger, and the place of the event.
+/// Paints the trigger level and the position of the trigger event.
 fn trigger(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
     let Some((trigger, state)) = context.recorder.trigger() else { return };
     let palette = context.theme.palette;

@@ -10,26 +10,26 @@ use super::trace::{TimeAxis, ValueAxis};
 use crate::analysis::history::{Grid, GridCut, Picture};
 use crate::app::recorder::{LineId, Recorder, Series, Stamp};
 
-/// Between two lanes, in points.
+/// Gap between two lanes, in points.
 const BETWEEN: f32 = 6.0;
-/// Minimum and maximum width of the value labels at the left, in points.
+/// Minimum and maximum width of the value labels on the left, in points.
 const LEAST: f32 = 44.0;
 const MOST: f32 = 110.0;
-/// Room for the labels of the time at the foot, in points.
+/// Height of the time labels at the bottom, in points.
 const FOOT: f32 = 18.0;
-/// Least distance of two ticks in points, and of those in a low lane.
+/// Minimum distance between two ticks in points: normally, and in a low lane.
 const APART: f32 = 28.0;
 const CLOSE: f32 = 13.0;
 /// Width of a character of an axis label in points: the font is monospaced.
 const LETTER: f32 = 6.7;
 
-/// A part of the plot with an axis of values.
+/// Part of the plot with its own value axis.
 pub(super) struct Lane {
     pub(super) rect: Rect,
     pub(super) lines: Vec<LineId>,
     pub(super) range: (f64, f64),
     pub(super) step: f64,
-    /// No samples are visible in it.
+    /// Whether the lane shows no samples.
     pub(super) empty: bool,
 }
 
@@ -45,16 +45,15 @@ pub(super) struct Layout {
     pub(super) chart: Rect,
 }
 
-/// Reduced samples, kept from picture to picture.
+/// Reduced samples, cached between pictures.
 #[derive(Default)]
 pub(super) struct Reduced {
     pictures: Vec<(LineId, Picture)>,
     made: Vec<(LineId, PictureInputs)>,
-    /// Width of the value labels.
     gutter: f32,
 }
 
-/// Inputs of a picture: if they are unchanged, so is the picture.
+/// Inputs of a picture, which is redrawn only if they change.
 #[derive(Clone, PartialEq)]
 struct PictureInputs {
     samples: Option<Stamp>,
@@ -112,7 +111,6 @@ impl Reduced {
     }
 }
 
-/// Lays out the displayed lines in `rect`.
 pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, reduced: &mut Reduced) -> Layout {
     // The width of the labels is known only with the values, which depend on the width: the width of the previous frame is
     // tried first, so that a picture that changes little is made once.
@@ -146,7 +144,6 @@ fn letters(lanes: &[Lane]) -> usize {
     lanes.iter().filter(|lane| !lane.empty).map(longest).max().unwrap_or(0)
 }
 
-/// Returns the lines of each lane.
 fn groups(recorder: &Recorder) -> Vec<Vec<&Series>> {
     let shown: Vec<&Series> = recorder.visible_series().collect();
     if recorder.has_one_axis() { vec![shown] } else { shown.into_iter().map(|line| vec![line]).collect() }
@@ -166,14 +163,14 @@ fn lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced: &Reduce
     groups.iter().enumerate().map(lane).collect()
 }
 
-/// Returns the step between two ticks of a lane; a low lane has closer ticks, so that a range can be read from at least two.
+/// Returns the step between two ticks of a lane; ticks are closer in a low lane, so that at least two are visible.
 fn value_step((low, high): (f64, f64), height: f32) -> f64 {
     let of_distance = |distance: f32| axes::step(high - low, f64::from((height / distance).max(2.0)));
     let step = of_distance(APART);
     if axes::ticks(low, high, step).count() < 2 { of_distance(CLOSE) } else { step }
 }
 
-/// Returns the range of values of a lane: as chosen by the user, or fitted; `None` if there are none.
+/// Returns the value range of a lane, either chosen by the user or fitted, or `None` if the lane has no values.
 fn range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> Option<(f64, f64)> {
     if let Some(range) = lines.iter().find_map(|line| line.range) {
         return Some(range);

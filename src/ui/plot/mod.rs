@@ -21,7 +21,7 @@ use super::controls::empty;
 use crate::app::recorder::{self, Recorder};
 use crate::app::{Action, RecorderOwner};
 
-/// The state of a plot between frames.
+/// State of a plot between frames.
 #[derive(Default)]
 pub struct PlotUiState {
     owner: Option<RecorderOwner>,
@@ -29,22 +29,22 @@ pub struct PlotUiState {
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
     shot: snapshot::Screenshot,
-    /// It fills the page; `None`: it cannot.
+    /// Whether the plot fills the page, or `None` if it cannot.
     large: Option<bool>,
 }
 
 impl PlotUiState {
-    /// Creates the state of a plot in a side panel, which can take the place of the page.
+    /// Creates the state of a plot in a side panel that can expand to the whole page.
     pub(in crate::ui) fn in_panel() -> Self {
         PlotUiState { large: Some(false), ..PlotUiState::default() }
     }
 
-    /// Returns whether the plot takes the place of the page.
+    /// Returns whether the plot fills the page.
     pub(in crate::ui) fn is_large(&self) -> bool {
         self.large == Some(true)
     }
 
-    /// Moves the plot back into its panel; returns false if it was there.
+    /// Moves the plot back into its panel; returns false if the plot was already there.
     pub(in crate::ui) fn make_small(&mut self) -> bool {
         let was = self.is_large();
         self.large = self.large.map(|_| false);
@@ -52,7 +52,7 @@ impl PlotUiState {
     }
 }
 
-/// Recorder of the plot, and the list for its actions.
+/// Recorder of the plot, with the list that collects its actions.
 pub(super) struct Context<'a> {
     theme: &'a Theme,
     recorder: &'a Recorder,
@@ -66,7 +66,7 @@ impl Context<'_> {
     }
 }
 
-/// Draws a recorder with its toolbar in the available space. `invitation` tells how to fill it.
+/// Draws a recorder with its toolbar in the available space. `invitation` explains how to fill the recorder.
 pub fn plot_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -7,12 +7,12 @@ use super::lanes::Layout;
 use crate::analysis::Time;
 use crate::app::recorder::{Cursor, RecorderAction};
 
-/// Distance in points within which the pointer is on a cursor.
+/// Distance in points within which the pointer hits a cursor.
 const NEAR: f32 = 6.0;
-/// A box that is smaller, in points, was a click.
+/// Box size in points below which a drag counts as a click.
 const CLICK: f32 = 5.0;
 
-/// The object of a drag.
+/// Object being dragged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Drag {
     Cursor(Cursor),
@@ -20,7 +20,7 @@ pub(super) enum Drag {
         from: Pos2,
         to: Pos2,
     },
-    /// The picture, with the time that was under the pointer.
+    /// The picture itself, with the time that was under the pointer.
     Picture {
         under: Time,
         window: (Time, Time),
@@ -95,7 +95,8 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
     }
 }
 
-/// A wide box chooses a time, a high one values, one that is both chooses both.
+/// Zooms into the chosen box: a wide box selects a time span, a tall box a value range, and a box that is both selects
+/// both.
 fn look_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     let chosen = chosen.intersect(layout.chart);
     if chosen.width() >= CLICK {
@@ -161,7 +162,7 @@ fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout
     }
 }
 
-/// Moves the picture by a share of its length.
+/// Shifts the visible time span by a share of its length.
 fn shift(context: &mut Context<'_>, share: f64) {
     let (from, to) = context.recorder.window();
     let by = (context.recorder.span() as f64 * share) as i64;

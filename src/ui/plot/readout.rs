@@ -48,10 +48,10 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
     }
 }
 
-/// Width in points from which the numbers of all lines are below each other.
+/// Width in points from which the numbers of all lines are stacked.
 const WIDE: f32 = 640.0;
 
-/// Draws a row per line, a column per number.
+/// Draws a table with one row per line and one column per number.
 fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let right = |ui: &mut Ui, words: RichText| {
@@ -88,7 +88,7 @@ fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
     });
 }
 
-/// Draws a column per line, a row per number, where there is little width.
+/// Draws a table with one column per line and one row per number, for narrow panels.
 fn columns(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let lines: Vec<(&Series, Option<Measured>)> =
@@ -144,7 +144,7 @@ fn now(context: &Context<'_>, line: &Series, hovered: Option<Time>) -> String {
     sample.map_or_else(|| "–".to_owned(), |sample| value(context.theme, line, &sample))
 }
 
-/// Draws the readings of the cursors on a line: names and values.
+/// Returns the names and values of a line's cursor readings.
 fn figures(theme: &Theme, line: &Series, measured: &Measured) -> Vec<(String, String)> {
     let decimals = line.decimals();
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| theme.number(value, decimals));
@@ -166,7 +166,7 @@ fn figures(theme: &Theme, line: &Series, measured: &Measured) -> Vec<(String, St
     figures
 }
 
-/// Draws why there are no samples, and how many were invalid.
+/// Draws why there are no samples, and the number of invalid samples.
 fn remarks(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measured>) {
     let caption = |words: String, colour: crate::app::Rgb| RichText::new(words).size(theme.sizes.caption).color(colour);
     if let Some(remark) = &line.remark {

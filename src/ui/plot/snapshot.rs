@@ -11,29 +11,29 @@ use crate::app::{Action, Picture};
 pub(super) enum Screenshot {
     #[default]
     None,
-    /// It is requested as soon as the plot is visible; number of frames waited.
+    /// The picture is requested as soon as the plot is visible; holds the number of frames waited.
     Wanted(usize),
-    /// The pixels of the window were requested; place of the plot in the previous frame.
+    /// The window's pixels have been requested; holds the plot's position in the previous frame.
     Asked(Arc<OnceLock<Arc<ColorImage>>>, Rect),
 }
 
-/// Frames in which the plot has to come into sight.
+/// Maximum number of frames for the plot to scroll into view.
 const FRAMES: usize = 60;
 
 impl Screenshot {
-    /// Requests a picture: not of this frame, in which the menu with the request is open.
+    /// Requests a picture, though not of the current frame, in which the menu is still open.
     pub(super) fn request(&mut self, ctx: &Context) {
         *self = Screenshot::Wanted(0);
         ctx.request_repaint();
     }
 
-    /// Returns whether the next frame may be the one that is kept.
+    /// Returns whether a picture is pending, so that the next frame may be captured.
     pub(super) fn is_wanted(&self) -> bool {
         !matches!(self, Screenshot::None)
     }
 
-    /// Handles the plot drawn at `plot`: requests the pixels when the whole of it is visible, and takes its part of them
-    /// when they have arrived.
+    /// Handles the plot drawn at `plot`: requests the window's pixels once the whole plot is visible, and cuts out the
+    /// plot when the pixels have arrived.
     pub(super) fn take(&mut self, ui: &Ui, plot: Rect, actions: &mut Vec<Action>) {
         match self {
             Screenshot::None => {}

@@ -8,7 +8,7 @@ use crate::app::recorder::{Cursor, RecorderAction, TriggerState};
 use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, options};
 use crate::ui::icons;
 
-/// Seconds that can be chosen.
+/// Selectable spans in seconds.
 const SPANS: [(i64, &str); 10] = [
     (1, "recorder.span_1"),
     (5, "recorder.span_5"),
@@ -69,7 +69,7 @@ fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &st
     response.on_hover_text(&word).on_disabled_hover_text(&word).clicked()
 }
 
-/// Draws the choice of the span: a preset, or the result of zooming.
+/// Draws the span selector, which shows a preset or the result of zooming.
 fn span(ui: &mut Ui, context: &mut Context<'_>) {
     const SECOND: i64 = 1_000_000_000;
     if context.recorder.counts() {
@@ -106,7 +106,7 @@ fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form
     actions.into_iter().for_each(|action| context.act(action));
 }
 
-/// Draws the menu of the lines and their units.
+/// Draws the menu of lines and units.
 fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let mut actions = Vec::new();
@@ -159,7 +159,7 @@ fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Scre
     context.actions.extend(chosen);
 }
 
-/// Draws what is in progress: a waiting trigger, a table that is being written.
+/// Draws the operation in progress: a waiting trigger, or a table being written.
 fn state(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     if let Some((_, state)) = recorder.trigger() {

@@ -7,11 +7,11 @@ use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use crate::analysis::Time;
 use crate::analysis::history::{Flags, Picture};
 
-/// Thickness of a line in points.
+/// Line thickness in points.
 const WIDTH: f32 = 1.5;
-/// Number of points of a line up to which it is drawn smoothly.
+/// Maximum number of points for which a line is drawn smoothly.
 const SMOOTH: usize = 1500;
-/// Least distance of samples, in points, from which each gets a dot.
+/// Minimum sample spacing in points at which each sample gets a dot.
 const DOTS: f32 = 8.0;
 
 /// Conversion from time to screen coordinates.
@@ -19,7 +19,7 @@ const DOTS: f32 = 8.0;
 pub(super) struct TimeAxis {
     pub(super) from: Time,
     pub(super) left: f32,
-    /// Points a nanosecond.
+    /// Points per nanosecond.
     pub(super) scale: f64,
     /// Width of a pixel in points.
     pub(super) pixel: f32,
@@ -30,7 +30,7 @@ impl TimeAxis {
         self.left + (time.nanoseconds_since(self.from) as f64 * self.scale) as f32
     }
 
-    /// Returns the left edge of the pixel column of a time. Samples may be anywhere within a column; the column does
+    /// Returns the left edge of the pixel column for a time. Samples may lie anywhere within a column; the column does
     /// not move with them.
     fn column(&self, time: Time) -> f32 {
         self.left + ((self.x(time) - self.left) / self.pixel).floor() * self.pixel
@@ -46,7 +46,7 @@ impl TimeAxis {
 pub(super) struct ValueAxis {
     pub(super) low: f64,
     pub(super) bottom: f32,
-    /// Points a unit, not zero.
+    /// Points per unit, never zero.
     pub(super) scale: f64,
 }
 
@@ -68,14 +68,14 @@ impl ValueAxis {
     }
 }
 
-/// The appearance of a line.
+/// Appearance of a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pen {
     pub(super) colour: Color32,
-    /// From the samples' own unit to the displayed one.
+    /// Factor from the samples' own unit to the displayed unit.
     pub(super) factor: f64,
     pub(super) marks: bool,
-    /// Colours of invalid samples, and of those with a warning.
+    /// Colours of invalid samples and of samples with a warning.
     pub(super) bad: Color32,
     pub(super) warning: Color32,
 }
@@ -99,7 +99,8 @@ pub(super) fn shapes(
     }
 }
 
-/// Draws one upright bar per pixel column, from the minimum to the maximum, extended to the end of the previous column.
+/// Draws one vertical bar per pixel column, from the minimum to the maximum, extended to the end of the previous
+/// column.
 fn dense(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen: &Pen, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     mesh.reserve_vertices(picture.pixels.len() * 4);
@@ -179,7 +180,7 @@ fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen
     }
 }
 
-/// Draws a straight piece as two triangles.
+/// Draws a line segment as two triangles.
 fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
     let along = (to - from).normalized() * (WIDTH / 2.0);
     let (across, first) = (along.rot90(), mesh.vertices.len() as u32);
@@ -194,7 +195,7 @@ fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
     mesh.add_triangle(first + 2, first + 1, first + 3);
 }
 
-/// Returns the part of a straight piece inside a rectangle (Liang and Barsky).
+/// Returns the part of a line segment inside a rectangle (Liang–Barsky clipping).
 fn clip(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
     if rect.contains(from) && rect.contains(to) {
         return Some((from, to));
@@ -220,7 +221,7 @@ fn clip(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
     (enters <= leaves).then(|| (from + along * enters, from + along * leaves))
 }
 
-/// Draws ticks at the bottom of the lane for bad samples and warnings, at any zoom.
+/// Draws ticks at the bottom of the lane for invalid samples and warnings, at any zoom.
 fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &Pen, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     for pixel in &picture.pixels {

@@ -7,11 +7,11 @@ use crate::ui::Theme;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BitCell<'a> {
     pub(crate) ink: Color32,
-    /// The bit; `None`: not known.
+    /// Value of the bit, or `None` if unknown.
     pub(crate) bit: Option<bool>,
-    /// The text in place of an unknown bit.
+    /// Text shown in place of an unknown bit.
     pub(crate) blank: &'a str,
-    /// It reports an error: filled with its colour.
+    /// Whether the bit reports an error and is filled with its colour.
     pub(crate) alarm: bool,
 }
 

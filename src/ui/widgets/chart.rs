@@ -14,7 +14,7 @@ use egui_plot::{AxisHints, Bar, BarChart, GridMark, HoverPosition, Line, LineSty
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
-/// A chart to be drawn.
+/// Chart to be drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Chart<'a> {
     /// Series, the main one first.
@@ -25,15 +25,15 @@ pub struct Chart<'a> {
     pub height: f32,
     pub x_unit: &'a str,
     pub y_unit: &'a str,
-    /// Ends of the horizontal axis; `None`: fitted.
+    /// Limits of the horizontal axis, or `None` to fit them.
     pub x_range: Option<(f64, f64)>,
-    /// Distance of the ticks of the horizontal axis; `None`: fitted.
+    /// Tick spacing of the horizontal axis, or `None` to fit it.
     pub x_step: Option<f64>,
-    /// The lowest value that the vertical axis always includes.
+    /// Lowest value always included in the vertical axis.
     pub y_floor: Option<f64>,
-    /// Labels at points: peaks.
+    /// Labels at points, such as peaks.
     pub marks: &'a [(f64, f64, String)],
-    /// Bars instead of lines; their places are whole numbers.
+    /// Whether to draw bars instead of lines; bar positions are whole numbers.
     pub bars: bool,
 }
 
@@ -46,10 +46,10 @@ pub struct Trace {
     pub dashed: bool,
 }
 
-/// Share of the width used by bars.
+/// Share of the width covered by bars.
 const BARS: f64 = 0.7;
 
-/// Draws it, with a legend above if there are several series.
+/// Draws a chart, with a legend above if there are several series.
 pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
     legend(ui, theme, chart.traces);
     let own = *theme;
@@ -110,7 +110,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
     });
 }
 
-/// Draws a line in its colour beside each name.
+/// Draws a coloured line beside each series name.
 fn legend(ui: &mut Ui, theme: &Theme, traces: &[Trace]) {
     if traces.len() < 2 {
         return;
@@ -156,7 +156,7 @@ fn bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
     }
 }
 
-/// Returns the side of a point on which its label fits.
+/// Returns the side of a point where its label fits.
 fn label_side(traces: &[Trace], x: f64) -> Align2 {
     let ends = traces.iter().flat_map(|trace| trace.points.first().into_iter().chain(trace.points.last()));
     let (least, most) = ends.fold((x, x), |(least, most), (end, _)| (least.min(*end), most.max(*end)));
@@ -167,12 +167,12 @@ fn label_side(traces: &[Trace], x: f64) -> Align2 {
     }
 }
 
-/// Returns an axis with labels at all ticks, down to this distance in points.
+/// Returns an axis that labels every tick down to the given spacing in points.
 fn axis(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'static> {
     hints.formatter(move |mark, _| tick(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }
 
-/// Returns a step of 1, 2 or 5 times a power of ten, of which about five fit.
+/// Returns a step of 1, 2 or 5 times a power of ten that divides the range into about five parts.
 fn round_step((least, most): (f64, f64)) -> f64 {
     let rough = ((most - least).abs() / 5.0).clamp(1e-12, 1e12);
     let power = 10_f64.powf(rough.log10().floor());
@@ -180,7 +180,7 @@ fn round_step((least, most): (f64, f64)) -> f64 {
     times * power
 }
 
-/// Returns ticks at this step, as many as can be distinguished.
+/// Returns the ticks of a range at the given step, limited to as many as can be distinguished.
 fn steps((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
     const MOST: usize = 64;
     let first = (least / step).ceil();
@@ -188,7 +188,7 @@ fn steps((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
     (0..MOST).map(value).take_while(|value| *value <= most).map(|value| GridMark { value, step_size: step }).collect()
 }
 
-/// Returns the label of a tick with the decimals of its step.
+/// Returns a tick label with as many decimals as the step needs.
 fn tick(theme: &Theme, mark: GridMark) -> String {
     let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 9.0) as usize;
     theme.number(mark.value, decimals)

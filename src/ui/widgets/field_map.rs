@@ -25,33 +25,33 @@ use strip::Strip;
 #[derive(Clone, Debug, Default)]
 pub struct MapField {
     pub number: u8,
-    /// Number of its blocks; without any, one is drawn.
+    /// Number of blocks in the field; an empty field is drawn as one block.
     pub blocks: usize,
     pub label: String,
-    /// Shown below the number; of its parts, separated by ` · `, as many as fit.
+    /// Caption below the number; of its parts, separated by ` · `, as many are shown as fit.
     pub caption: String,
-    /// Index of the colour, one of eight.
+    /// Colour index, one of eight.
     pub colour: usize,
     pub locked: bool,
-    /// Its access code is not known.
+    /// Whether the field's access code is unknown.
     pub unreadable: bool,
-    /// It has edits that are not written.
+    /// Whether the field has unwritten edits.
     pub edited: bool,
     pub tooltip: String,
 }
 
-/// The whole memory.
+/// Map of the whole memory.
 #[derive(Clone, Debug, Default)]
 pub struct FieldMap<'a> {
-    /// Fields in their order in the memory.
+    /// Fields in memory order.
     pub fields: &'a [MapField],
-    /// Blocks after the last field that belong to none.
+    /// Free blocks after the last field.
     pub free_blocks: usize,
     pub free_label: &'a str,
     pub free_tooltip: &'a str,
     pub selected: Option<u8>,
     pub block_bytes: usize,
-    /// Sizes in blocks that the last field may be dragged to; `None`: no handle.
+    /// Sizes in blocks that the last field may be dragged to, or `None` to hide the handle.
     pub resize: Option<RangeInclusive<usize>>,
 }
 
@@ -60,13 +60,13 @@ pub struct FieldMap<'a> {
 pub enum MapEvent {
     Select(u8),
     SelectFree,
-    /// Another size of the last field, different from the present one.
+    /// Resizes the last field to a size that differs from the current one.
     ResizeLast {
         blocks: usize,
     },
 }
 
-/// Draws the map and returns the user's action. One map per `Ui`: another needs its own id (`push_id`).
+/// Draws the map and returns the user's action. Each `Ui` holds one map; another needs its own id (`push_id`).
 pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEvent> {
     let sizes: Vec<usize> = map.fields.iter().map(|field| field.blocks.max(1)).collect();
     let taken: usize = sizes.iter().sum();
@@ -102,8 +102,8 @@ pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEv
     handle(ui, theme, &strip, base, map, taken.saturating_sub(last), last).or(event)
 }
 
-/// Handles the arrows between the parts before they are announced: the focus moves in their order, not to the nearest
-/// widget.
+/// Handles arrow keys between the parts before they are announced, so that the focus moves in memory order rather than
+/// to the nearest widget.
 fn walk(ui: &Ui, ids: &[Id], has_free: bool) {
     let ids = if has_free { ids } else { ids.split_last().map_or(ids, |(_, fields)| fields) };
     let focused = ui.memory(egui::Memory::focused);
@@ -138,7 +138,7 @@ struct Part {
     state: paint::State,
 }
 
-/// Announces a field or the free space: one button, even over several lines.
+/// Announces a field or the free space as a single button, even across several lines.
 fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>, tooltip: &str) -> Part {
     let widest = strip::widest(runs);
     let mut part = Part { clicked: false, state: paint::State::default() };

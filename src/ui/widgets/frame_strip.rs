@@ -22,32 +22,32 @@ use crate::ui::{Theme, controls};
 
 use place::{Placed, SpaceNeeded, place};
 
-/// A field of a frame.
+/// Field of a frame.
 #[derive(Clone, Debug, Default)]
 pub struct StripField {
-    /// Name, shown below its bits.
+    /// Field name, shown below the bits.
     pub name: String,
     pub value: String,
     /// Number of bits, at least 1.
     pub bits: usize,
-    /// Index of the colour, one of eight; `None`: it only encloses the others.
+    /// Colour index, one of eight, or `None` if the field only encloses other fields.
     pub colour: Option<usize>,
-    /// It reports something: a fault, a warning, or that all is well.
+    /// Verdict reported by the field: a fault, a warning, or that all is well; `None` if it reports nothing.
     pub lit: Option<Verdict>,
     pub tooltip: String,
 }
 
-/// A whole frame.
+/// Complete frame to be drawn.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameStrip<'a> {
     pub label: &'a str,
-    /// Its fields, in the order of transmission.
+    /// Fields in transmission order.
     pub fields: &'a [StripField],
-    /// Their bits in the same order; missing or `None` ones are not known.
+    /// Bits in transmission order; missing or `None` bits are unknown.
     pub bits: &'a [Option<bool>],
 }
 
-/// Height of a cell, of the bar below it, and of the two lines of words.
+/// Height of a cell, of the bar below it, and of the two text lines.
 const CELL: f32 = 24.0;
 const BAR: f32 = 2.0;
 const NAME: f32 = 15.0;
@@ -107,7 +107,7 @@ impl StripField {
     }
 }
 
-/// The two lines below a field.
+/// Text lines below a field: its name and its value.
 struct Words {
     name: Arc<Galley>,
     value: Arc<Galley>,
@@ -138,7 +138,7 @@ impl Words {
     }
 }
 
-/// Draws the bits of a piece, and the bar below them that holds them together.
+/// Draws the bits of a piece and the bar below that joins them.
 fn cells(
     painter: &Painter,
     theme: &Theme,

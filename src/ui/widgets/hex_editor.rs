@@ -31,22 +31,22 @@ pub use addresses::HexAddresses;
 use grid::Grid;
 pub use view::HexView;
 
-/// The bytes to show.
+/// Bytes to be shown by the editor.
 #[derive(Clone, Copy, Debug)]
 pub struct HexModel<'a> {
-    /// As read from the device; bytes beyond its end count as changed.
+    /// Bytes read from the device; bytes beyond the end count as changed.
     pub device: &'a [u8],
-    /// The displayed bytes, with the edits.
+    /// Displayed bytes, including the edits.
     pub wanted: &'a [u8],
     pub marks: &'a [HexMark<'a>],
-    /// Why the bytes cannot be edited; `None` if they can.
+    /// Reason why the bytes cannot be edited, or `None` if they can.
     pub read_only: Option<&'a Text>,
-    /// Most lines shown at once.
+    /// Maximum number of lines shown at once.
     pub lines: usize,
     pub addresses: HexAddresses,
 }
 
-/// Range with a meaning: it has a bracket, and its tooltip shows the meaning.
+/// Byte range with a meaning, marked by a bracket and explained in the tooltip.
 #[derive(Clone, Debug)]
 pub struct HexMark<'a> {
     pub range: Range<usize>,
@@ -56,28 +56,28 @@ pub struct HexMark<'a> {
 /// A request of the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HexEdit {
-    /// Other bytes from an address on; they fit.
+    /// Writes bytes from an address on; the range always fits.
     Put {
         /// Address of the first byte.
         address: usize,
-        /// At least one.
+        /// New bytes, at least one.
         bytes: Vec<u8>,
     },
-    /// The last step undone.
+    /// Undoes the last step.
     Undo,
-    /// The last undone step done again.
+    /// Redoes the last undone step.
     Redo,
-    /// Restore the device's bytes; at least one of them is changed.
+    /// Restores the device's bytes; at least one byte differs from them.
     Revert { range: Range<usize> },
 }
 
 impl<'a> HexModel<'a> {
-    /// Creates bytes that can be edited, without marks.
+    /// Creates a model of editable bytes without marks.
     pub fn new(device: &'a [u8], wanted: &'a [u8]) -> Self {
         HexModel { device, wanted, marks: &[], read_only: None, lines: 16, addresses: HexAddresses::Counted }
     }
 
-    /// Returns an address as shown.
+    /// Returns an address in its displayed form.
     fn address(&self, at: usize) -> String {
         self.addresses.text(at, self.wanted.len())
     }
@@ -91,13 +91,13 @@ impl<'a> HexModel<'a> {
     }
 }
 
-/// Height of a line, of what surrounds the lines, and of the typed view below the editor.
+/// Height of a line, of the area around the lines, and of the typed view below the editor.
 const LINE: f32 = 20.0;
 const AROUND: f32 = 60.0;
 const TYPED: f32 = 240.0;
 
-/// Returns how many lines an editor shows in this height: all that fit beside the typed view; above it as many as keep it
-/// visible, and sixteen in any case.
+/// Returns the number of lines that an editor of the given height shows. Beside the typed view it fills the height;
+/// above the typed view it leaves room for the view but shows at least sixteen lines.
 pub fn hex_lines(height: f32, beside: bool) -> usize {
     if beside {
         ((height - AROUND) / LINE).clamp(4.0, 64.0) as usize
@@ -106,7 +106,7 @@ pub fn hex_lines(height: f32, beside: bool) -> usize {
     }
 }
 
-/// Draws the editor and returns the user's actions, in order; the caller changes the bytes.
+/// Draws the editor and returns the user's actions in order; the caller applies them to the bytes.
 pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let id = ui.make_persistent_id(("hex_editor", label));
     view.fit(model.wanted.len());
@@ -227,7 +227,7 @@ fn tell(ui: &Ui, response: &Response, label: &str, model: &HexModel<'_>, view: &
     });
 }
 
-/// Draws the location of the cursor, or why something was not done.
+/// Draws the cursor location, or why an action was refused.
 fn status(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
     ui.horizontal(|ui| {
         ui.set_min_height(grid.row);
@@ -256,7 +256,8 @@ fn status(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &
     });
 }
 
-/// Returns a caption with its addresses in the font for bytes: the other one would make a multiplication sign of `0x`.
+/// Returns a caption with its addresses in the monospaced font, since the text font would turn the `0x` into a
+/// multiplication sign.
 fn sentence(theme: &Theme, words: &str, colour: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
     for word in words.split_inclusive(' ') {

@@ -19,50 +19,51 @@ use crate::app::{HoldEvent, HoldInput, HoldScene, HoldState};
 use crate::ui::keys::press_key;
 use crate::ui::{Theme, stop_debounce};
 
-/// A hold button to be drawn.
+/// Hold button to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldButton<'a> {
     pub word: &'a str,
     pub caption: &'a str,
     pub label: &'a str,
-    /// Whether it may be pressed.
+    /// Whether the button may be pressed.
     pub enabled: bool,
 }
 
-/// Context for the hold buttons, set by the window before they are drawn.
+/// Context of the hold buttons, set by the window before they are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::ui) struct HoldSurroundings {
-    /// Something covers the window: none of them can be pressed.
+    /// Whether something covers the window, so that no hold button can be pressed.
     pub(in crate::ui) covered: bool,
     pub(in crate::ui) moving: bool,
 }
 
-/// The state of a button between frames.
+/// State of a hold button between frames.
 #[derive(Clone, Copy, Default)]
 struct HoldMemory {
     state: HoldState,
-    /// The pass in which it was drawn last.
+    /// Pass in which the button was last drawn.
     pass: u64,
     modifiers: Modifiers,
 }
 
-/// The hold buttons of the previous frame, for the window.
+/// State of the previous frame's hold buttons, as seen by the window.
 #[derive(Clone, Copy, Default)]
 struct Drawn {
-    /// The button with the keyboard focus, and the pass in which it had it.
+    /// Button with the keyboard focus, and the pass in which the button had it.
     keyboard: Option<(Id, u64)>,
     pointer: Option<u64>,
 }
 
-/// The least height in points.
+/// Minimum height in points.
 const LEAST: f32 = 56.0;
 
-/// Sets the context for the buttons of this frame.
+/// Sets the context for the hold buttons of the current frame.
 pub(in crate::ui) fn surround_hold_buttons(ctx: &Context, surroundings: HoldSurroundings) {
     ctx.data_mut(|data| data.insert_temp(Id::unique("around hold buttons"), surroundings));
 }
 
-/// Returns whether a hold button had the keyboard focus in the previous frame, and still has it: keys are for it.
+/// Returns whether a hold button had the keyboard focus in the previous frame and still has it, in which case keys
+/// belong to the button.
 pub(in crate::ui) fn has_hold_button_keyboard(ctx: &Context) -> bool {
     let drawn = drawn(ctx);
     let focused = ctx.memory(|memory| memory.focused());
@@ -143,7 +144,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     event
 }
 
-/// Translates an event for the button at this place. `pressed_here`: a pointer press that is still held began on it.
+/// Translates an event for the button at `place`. `pressed_here`: the pointer press in progress began on the button.
 fn translated(event: &Event, place: Rect, pressed_here: bool) -> Option<HoldInput> {
     Some(match event {
         Event::WindowFocused(has) => HoldInput::WindowFocus(*has),

@@ -18,13 +18,13 @@ use crate::app::Text;
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
-/// A Lissajous figure to be drawn.
+/// Lissajous figure to be drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Lissajous<'a> {
     pub figures: &'a [Figure],
-    /// Least and largest good length of the amplitude vector, in volts.
+    /// Minimum and maximum good length of the amplitude vector, in volts.
     pub ok_v: (f64, f64),
-    /// Lengths outside these are a fault, in volts.
+    /// Lengths of the amplitude vector, in volts, outside which it is a fault.
     pub fault_v: (f64, f64),
     pub label: &'a str,
     pub value: &'a str,
@@ -32,21 +32,21 @@ pub struct Lissajous<'a> {
 
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
-    /// Samples as a picture in the colour of the series, and the square that it shows.
+    /// Samples as a picture in the series colour, with the square that the picture covers.
     pub picture: Option<(TextureId, Square)>,
-    /// The fitted curve, closed, as (cosine, sine) in volts.
+    /// Fitted closed curve as (cosine, sine) points in volts.
     pub curve: Vec<(f64, f64)>,
-    /// Index of the series' colour.
+    /// Colour index of the series.
     pub colour: usize,
     pub dashed: bool,
 }
 
-/// Points of a circle.
+/// Number of points used to draw a circle.
 const CIRCLE: usize = 120;
-/// Steps of an axis with labels, in volts; the finest with few enough labels is used.
+/// Label steps of an axis in volts; the finest step with few enough labels is used.
 const STEPS: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
-/// Square on the screen, and volts to its edge.
+/// Square on the screen, with the voltage at its edge.
 #[derive(Clone, Copy)]
 struct PlotArea {
     rect: Rect,
@@ -97,9 +97,9 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
     }
 }
 
-/// Returns the picture of a density in one colour: brighter for more samples, and none invisible.
+/// Returns a single-colour picture of a density, brighter for more samples; even a single sample stays visible.
 pub fn phosphor(density: &Density, colour: Color32) -> ColorImage {
-    /// Brightness of a single sample, as a share of the full one.
+    /// Brightness of a single sample, as a share of full brightness.
     const LEAST: f32 = 0.4;
     let side = density.side();
     let scale = f64::from(density.most()).ln_1p().max(f64::MIN_POSITIVE);
@@ -113,7 +113,7 @@ pub fn phosphor(density: &Density, colour: Color32) -> ColorImage {
     ColorImage::new([side, side], pixels)
 }
 
-/// Returns the volts from the middle to the edge: all samples and curves, and at least the good ring.
+/// Returns the voltage from the centre to the edge, which covers all samples and curves and at least the good ring.
 fn range(figure: &Lissajous<'_>) -> f64 {
     let curves = figure.figures.iter().flat_map(|own| &own.curve).map(|(x, y)| x.abs().max(y.abs()));
     let pictures = figure.figures.iter().filter_map(|own| Some(own.picture?.1.half_v));
@@ -139,7 +139,7 @@ fn grid(painter: &Painter, theme: &Theme, place: &PlotArea) {
     }
 }
 
-/// Draws the labels of the axes over the rings, each with a background.
+/// Draws the axis labels over the rings, each on a background.
 fn labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
     let step = step(place);
     let font = FontId::proportional(theme.sizes.caption);
@@ -206,7 +206,7 @@ fn curve(painter: &Painter, place: &PlotArea, figure: &Figure, colour: Color32) 
     }
 }
 
-/// Draws the values under the pointer: both voltages, length and angle.
+/// Draws the values under the pointer: both voltages, the vector length and the angle.
 fn paint_readout(painter: &Painter, theme: &Theme, place: &PlotArea, pos: Pos2) {
     let (x, y) = place.volts(pos);
     let muted = Stroke::new(1.0, Color32::from(theme.palette.muted).gamma_multiply(0.6));

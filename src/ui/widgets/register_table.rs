@@ -34,7 +34,7 @@ use lines::{LineKind, Lines};
 pub use view::RegisterView;
 use view::Selected;
 
-/// Location of a register: its group, and its index in the group.
+/// Location of a register: its group and its index within the group.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterLocation {
     pub group: usize,
@@ -45,17 +45,17 @@ pub struct RegisterLocation {
 pub struct RegisterTable<'a> {
     pub label: &'a str,
     pub groups: &'a [RegisterGroup],
-    /// Returns a register of a group; called for visible or unfolded ones.
+    /// Function that returns a register of a group, called only for visible or unfolded registers.
     pub row: &'a dyn Fn(RegisterLocation) -> RegisterRow,
     pub kind: RegisterKind,
 }
 
-/// Kind of the values of a table, which determines the columns.
+/// Value type of a table, which determines the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
-    /// Bytes, in hexadecimal digits and as numbers.
+    /// Byte values, shown in hexadecimal digits and as numbers.
     Bytes {
-        /// Number of bytes of the widest register: all of them must be visible.
+        /// Number of bytes in the widest register, all of which must be visible.
         widest: usize,
     },
     Numbers,
@@ -68,41 +68,41 @@ pub struct RegisterGroup {
     pub rows: usize,
 }
 
-/// Register as displayed.
+/// Register in its displayed form.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterRow {
-    /// The address, such as `0x04:0x1F`, or a number.
+    /// Address such as `0x04:0x1F`, or a number.
     pub address: String,
     pub name: String,
-    /// Its value as an entry: bytes in hexadecimal digits, or a number; empty if it was not read.
+    /// Value in the form in which it is entered: bytes in hexadecimal digits, or a number; empty if not read.
     pub value: String,
-    /// For bytes: the same as a number.
+    /// Byte value as a decimal number.
     pub decimal: String,
     pub meaning: String,
-    /// `R`, `W`, `RW`.
+    /// Access: `R`, `W` or `RW`.
     pub access: String,
-    /// The factory setting, in the form of the value; empty if not known.
+    /// Factory setting in the same form as the value; empty if unknown.
     pub default: String,
     pub range: String,
     pub differs: bool,
-    /// Its value has changed since the previous reading.
+    /// Whether the value has changed since the previous reading.
     pub changed: bool,
-    /// The earlier value; empty if not known.
+    /// Previous value; empty if unknown.
     pub before: String,
-    /// Its value was edited and is not written.
+    /// Whether the value was edited but not yet written.
     pub edited: bool,
-    /// The cost of writing it, as text.
+    /// Cost of writing the register, in words, if any.
     pub cost: Option<String>,
-    /// It is stored without supply: the details, as text.
+    /// Details of non-volatile storage, if the register keeps its value without supply.
     pub kept: Option<String>,
-    /// Why the value cannot be edited; `None` if it can.
+    /// Reason why the value cannot be edited, or `None` if it can.
     pub read_only: Option<String>,
     pub fields: Vec<RegisterBits>,
 }
 
 #[derive(Clone, Debug, Default)]
 pub struct RegisterBits {
-    /// The bits, such as `b3…b0`.
+    /// Bit range such as `b3…b0`.
     pub bits: String,
     pub name: String,
     pub value: String,
@@ -120,18 +120,18 @@ pub enum RegisterEvent {
 pub struct RegisterOutput {
     pub event: Option<RegisterEvent>,
     pub groups: Range<usize>,
-    /// Columns are hidden, for want of width.
+    /// Whether columns are hidden because the table is too narrow.
     pub hides_columns: bool,
 }
 
-/// Height of a line.
+/// Line height in points.
 const LINE: f32 = 16.0;
 /// Margin between the edge of the table and its lines.
 const MARGIN: i8 = 4;
-/// Characters of the longest number: −2³¹ is eleven.
+/// Space for the longest number in characters; −2³¹ takes eleven.
 const NUMBER: usize = 12;
 
-/// Returns the width of a value, with the distance to the next column.
+/// Returns the width of a value, including the gap to the next column.
 fn value_width(theme: &Theme, kind: RegisterKind) -> f32 {
     let characters = match kind {
         RegisterKind::Bytes { widest } => widest * 3,
@@ -156,8 +156,8 @@ impl RegisterRow {
     }
 }
 
-/// Draws the table with this height and returns the user's actions. `take` gets the text entered for a register, and
-/// returns why it is refused.
+/// Draws the table at the given height and returns the user's actions. `take` receives the text entered for a register
+/// and returns why it is refused.
 pub fn register_table(
     ui: &mut Ui,
     theme: &Theme,
@@ -349,7 +349,7 @@ fn value_info(role: Role, label: &str, value: &str) -> WidgetInfo {
     info
 }
 
-/// Sets the text of the whole table for a screen reader.
+/// Describes the table to screen readers.
 fn tell(response: &Response, theme: &Theme, table: &RegisterTable<'_>, view: &RegisterView) {
     let value = match view.selected {
         Some(Selected::Row(place)) => {

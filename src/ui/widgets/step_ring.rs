@@ -14,14 +14,14 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Sense, Shape, Stroke, Ui, Vec
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
-/// A ring of steps to be drawn.
+/// Ring of steps to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct StepRing<'a> {
-    /// The step of the absolute position, 0 to 31.
+    /// Step of the absolute position, 0 to 31.
     pub step: u64,
-    /// The analogue position in periods, 0 to 1.
+    /// Analogue position in periods, 0 to 1.
     pub phase: f64,
-    /// From the analogue to the absolute position, in periods; `None`: ambiguous direction.
+    /// Offset from the analogue to the absolute position in periods, or `None` if its direction is ambiguous.
     pub apart: Option<f64>,
     pub colour: Color32,
     pub label: &'a str,
@@ -29,12 +29,12 @@ pub struct StepRing<'a> {
 }
 
 const STEPS: u8 = 32;
-/// Width of the ring, as a share of its radius.
+/// Ring width, as a share of the radius.
 const WIDTH: f32 = 0.14;
-/// Part of a step that its segment leaves free at both ends.
+/// Share of a step left free at each end of its segment.
 const GAP: f64 = 0.08;
 
-/// A circle around a middle.
+/// Circle around a centre point.
 #[derive(Clone, Copy)]
 struct Dial {
     middle: Pos2,
@@ -88,7 +88,7 @@ fn segments(painter: &Painter, theme: &Theme, dial: Dial, own: u64) {
     }
 }
 
-/// Draws the numbers of every eighth step.
+/// Labels every eighth step with its number.
 fn quarters(painter: &Painter, theme: &Theme, dial: Dial) {
     let font = FontId::monospace(theme.sizes.caption);
     for (step, align) in

@@ -20,25 +20,25 @@ use crate::app::Rgb;
 use crate::ui::controls::{enabled_button, fill, paragraph, primary};
 use crate::ui::{Theme, icons};
 
-/// A step of a procedure.
+/// Step of a procedure.
 #[derive(Clone, Debug, Default)]
 pub struct StepRow {
     pub title: String,
     pub state: StepState,
     pub word: String,
-    /// The present task, the result, or why it failed; may be empty.
+    /// Current task, result, or reason for failure; may be empty.
     pub note: String,
     pub gauges: Vec<Gauge>,
-    /// Completed share, 0 to 1; `None` if it does not run or the share is not known.
+    /// Completed share, 0 to 1, or `None` if the step is not running or its share is unknown.
     pub progress: Option<f32>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StepState {
-    /// A later step.
+    /// The step is still to come.
     #[default]
     ToCome,
-    /// It waits for the operator.
+    /// The step waits for the operator.
     Waiting,
     Running,
     Done,
@@ -50,34 +50,32 @@ pub enum StepState {
 #[derive(Clone, Debug)]
 pub struct Gauge {
     pub name: String,
-    /// The value; `None` if there is none now.
+    /// Current value, or `None` if none is available.
     pub value: Option<f64>,
-    /// The value with its unit, as text.
+    /// Value with its unit, ready for display.
     pub shown: String,
     pub allowed: RangeInclusive<f64>,
-    /// The best range; `None` if all values are equally good.
+    /// Best range, or `None` if all allowed values are equally good.
     pub best: Option<RangeInclusive<f64>>,
-    /// The allowed range as text: `498…502 rpm`.
+    /// Allowed range as a label: `498…502 rpm`.
     pub limits: String,
     pub scale: RangeInclusive<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Steps<'a> {
-    /// Its steps in order.
+    /// Steps in order.
     pub steps: &'a [StepRow],
-    /// The start button of the waiting step: its label, and why it is disabled.
+    /// Label of the waiting step's start button, and why the button is disabled, if so.
     pub start: Option<(&'a str, Result<(), &'a str>)>,
-    /// The label of the button that skips the waiting step.
+    /// Label of the button that skips the waiting step, if it can be skipped.
     pub skip: Option<&'a str>,
 }
 
 /// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepsEvent {
-    /// Start the waiting step.
     Start,
-    /// Skip the waiting step.
     Skip,
 }
 
@@ -86,7 +84,7 @@ impl Gauge {
         self.value.is_some_and(|value| self.allowed.contains(&value))
     }
 
-    /// Returns whether the step is allowed and in the best state.
+    /// Returns whether the value lies in both the allowed and the best range.
     pub fn is_best(&self) -> bool {
         self.fits() && self.value.zip(self.best.as_ref()).is_none_or(|(value, best)| best.contains(&value))
     }
@@ -110,7 +108,7 @@ impl StepState {
     }
 }
 
-/// Radius of a step's dot, and the width of the rail.
+/// Radius of a step's dot, and width of the rail.
 const DOT: f32 = 9.0;
 const RAIL: f32 = 32.0;
 
@@ -151,7 +149,7 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
     event
 }
 
-/// Draws the title, which may have several lines; returns the middle of the first of them.
+/// Draws the title, which may have several lines, and returns the vertical centre of its first line.
 fn title(ui: &mut Ui, theme: &Theme, step: &StepRow) -> f32 {
     let palette = theme.palette;
     let ink = match step.state {
@@ -191,8 +189,8 @@ fn content(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> Opt
     buttons(ui, theme, model)
 }
 
-/// Draws the buttons: Start at the end of the text, with Skip and the obstacle beside it, so that it stays in place while a
-/// motor is brought to its speed.
+/// Draws the buttons. Start sits at the end of the text, with Skip and the obstacle beside it, so that Start stays in
+/// position while a motor is brought up to speed.
 fn buttons(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     if model.start.is_none() && model.skip.is_none() {
@@ -225,7 +223,7 @@ fn buttons(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> 
     event
 }
 
-/// Draws the completed share.
+/// Draws a progress bar for the completed share.
 fn progress(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width().max(0.0), 6.0), Sense::hover());
@@ -239,7 +237,7 @@ fn progress(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
     });
 }
 
-/// Draws the dot of a step: its number, or its state.
+/// Draws the dot of a step with its number or state.
 fn dot(painter: &Painter, theme: &Theme, middle: Pos2, number: usize, step: &StepRow) {
     let palette = theme.palette;
     let (icon, colour) = step.state.mark(theme);

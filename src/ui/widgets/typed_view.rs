@@ -13,17 +13,17 @@ use super::focus_ring;
 use crate::bits::{self, TypedKind, TypedRow};
 use crate::ui::{Theme, icons};
 
-/// Seconds for which a copied value is marked.
+/// Time in seconds for which a copied value stays marked.
 const COPIED: f64 = 1.2;
 
-/// Widths of the columns and height of a line.
+/// Column widths and line height.
 struct Columns {
     name: f32,
     value: f32,
     row: f32,
 }
 
-/// Draws the table for the beginning of `bytes`.
+/// Draws the typed values at the beginning of `bytes`.
 pub fn typed_view(ui: &mut Ui, theme: &Theme, bytes: &[u8]) {
     let font = FontId::monospace(theme.sizes.body);
     let glyph = ui.fonts_mut(|fonts| fonts.glyph_width(&font, '0'));

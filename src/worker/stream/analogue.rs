@@ -10,9 +10,9 @@ use crate::link::Clock;
 use crate::sim::sine_cosine::{Checked, Source};
 use crate::units::Moment;
 
-/// Nanoseconds of a batch at full rate.
+/// Duration of a batch at full rate, in nanoseconds.
 const BATCH_NS: i64 = 10_000_000;
-/// Nanoseconds of delay that are caught up.
+/// Maximum delay that is caught up, in nanoseconds.
 const LATE_NS: i64 = 250_000_000;
 
 /// The settings of due samples are no longer stored, because the source was changed too often in the meantime.

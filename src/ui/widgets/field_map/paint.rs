@@ -7,7 +7,7 @@ use super::strip::{Strip, widest};
 use crate::ui::widgets::{focus_ring, hatch, series};
 use crate::ui::{Theme, icons};
 
-/// The state of a part of the map.
+/// State of a part of the map.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct State {
     pub(super) selected: bool,
@@ -15,8 +15,8 @@ pub(super) struct State {
     pub(super) hovered: bool,
 }
 
-/// Returns the shape of a run: half a gap free and rounded at the ends of the field, square where it continues on another
-/// line.
+/// Returns the shape of a run, inset by half a gap and rounded at the ends of the field, but square where the field
+/// continues on another line.
 fn shape(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
     let Some(run) = runs.get(number) else { return (Rect::NOTHING, CornerRadius::ZERO) };
     let (begins, ends) = (number == 0, number + 1 == runs.len());
@@ -63,8 +63,8 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
     }
 }
 
-/// Draws number and icons above, the caption below, as far as they fit. In a narrow field the icons take the caption's
-/// place.
+/// Draws the number and icons above and the caption below, as far as they fit. In a narrow field the icons replace the
+/// caption.
 fn inscribe(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let palette = theme.palette;
     let inside = run.shrink2(Vec2::new(theme.space.between, theme.space.inside + 2.0));
@@ -103,7 +103,7 @@ fn inscribe(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     }
 }
 
-/// Returns the part of a caption that fits: parts separated by ` · ` are dropped from the end.
+/// Returns as much of a caption as fits; parts separated by ` · ` are dropped from the end.
 fn fitting(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync::Arc<egui::Galley>> {
     let mut rest = caption;
     while !rest.is_empty() {
@@ -117,7 +117,7 @@ fn fitting(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync
     None
 }
 
-/// Draws the free space: an outline for each block.
+/// Draws the free space as an outline for each block.
 pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: &State) {
     let painter = ui.painter();
     let edge = match state.hovered {
@@ -139,7 +139,7 @@ pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: 
     }
 }
 
-/// Draws two short lines at the end of the last field.
+/// Draws the resize handle as two short lines at the end of the last field.
 pub(super) fn handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
     let colour = if active { theme.palette.accent } else { theme.palette.text };
     let (x, y) = (run.right() - theme.space.between, run.center().y);
@@ -149,7 +149,7 @@ pub(super) fn handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
     }
 }
 
-/// Draws the last field as it would be.
+/// Draws a preview of the resized last field.
 pub(super) fn ghost(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], words: &str) {
     let accent = Color32::from(theme.palette.accent);
     let painter = ui.painter();

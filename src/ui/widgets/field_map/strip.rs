@@ -4,12 +4,11 @@ use egui::{Pos2, Rect, Vec2};
 
 use crate::ui::Theme;
 
-/// Blocks from left to right and from line to line.
+/// Layout of the blocks, left to right and line by line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strip {
     /// Upper left corner of the map.
     pub(super) origin: Pos2,
-    /// The size of the map.
     pub(super) size: Vec2,
     pub(super) block: Vec2,
     margin: f32,
@@ -18,10 +17,11 @@ pub(super) struct Strip {
 }
 
 impl Strip {
-    /// Widths of a block in steps of the grid, largest first.
+    /// Possible block widths in grid steps, largest first.
     const STEPS: [f32; 6] = [12.0, 10.0, 8.0, 6.0, 5.0, 4.0];
 
-    /// Creates the largest blocks with which `count` of them fit on two lines; the smallest if none do.
+    /// Creates a strip with the largest blocks for which `count` fit on two lines, or with the smallest blocks if none
+    /// do.
     pub(super) fn new(theme: &Theme, room: f32, count: usize) -> Self {
         let (margin, gap) = (theme.space.inside, theme.space.between);
         let columns_of = |width: f32| ((room / width).floor() as usize).max(1);
@@ -37,12 +37,12 @@ impl Strip {
         Strip { origin: Pos2::ZERO, size, block, margin, gap, columns }
     }
 
-    /// Returns the same with its upper left corner there.
+    /// Returns a copy with its upper left corner at `origin`.
     pub(super) fn at(self, origin: Pos2) -> Self {
         Strip { origin, ..self }
     }
 
-    /// Returns the rectangles of the blocks from `first` to before `end`, one a line.
+    /// Returns the rectangles that cover the blocks from `first` up to but excluding `end`, one per line.
     pub(super) fn runs(&self, first: usize, end: usize) -> Vec<Rect> {
         let mut runs = Vec::new();
         let mut at = first;
@@ -58,7 +58,7 @@ impl Strip {
         runs
     }
 
-    /// Returns the boundary between blocks that is nearest to the pointer, as a number of blocks from the beginning.
+    /// Returns the block boundary nearest to the pointer, as a number of blocks from the start.
     pub(super) fn boundary(&self, pos: Pos2) -> usize {
         let inside = pos - self.origin - Vec2::new(0.0, self.margin);
         // Positions above or left of the strip become zero.
@@ -68,7 +68,7 @@ impl Strip {
     }
 }
 
-/// Returns the widest of a field's runs, the first one of several.
+/// Returns the index of a field's widest run, the first if several are equally wide.
 pub(super) fn widest(runs: &[Rect]) -> usize {
     let widths = runs.iter().enumerate().rev();
     widths.max_by(|(_, a), (_, b)| a.width().total_cmp(&b.width())).map_or(0, |(number, _)| number)

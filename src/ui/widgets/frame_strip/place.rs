@@ -3,15 +3,15 @@
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpaceNeeded {
     pub(super) bits: usize,
-    /// The width of the words below it.
+    /// Width of the text below the field.
     pub(super) words: f32,
 }
 
-/// Field, or its part on a line.
+/// A field, or the part of a split field on one line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Placed {
     pub(super) field: usize,
-    /// Its first bit here, counted in the field.
+    /// Index of the piece's first bit within the field.
     pub(super) first: usize,
     pub(super) bits: usize,
     pub(super) line: usize,
@@ -19,18 +19,18 @@ pub(super) struct Placed {
     pub(super) width: f32,
 }
 
-/// All pieces of a frame.
+/// Placement of all pieces of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Placing {
     pub(super) pieces: Vec<Placed>,
     pub(super) lines: usize,
     /// Width of the widest line.
     pub(super) width: f32,
-    /// Width of a cell with the gap after it.
+    /// Width of a cell, including the gap after it.
     pub(super) cell: f32,
 }
 
-/// Widths that a cell may have.
+/// Possible cell widths.
 const CELLS: [f32; 10] = [20.0, 19.0, 18.0, 17.0, 16.0, 15.0, 14.0, 13.0, 12.0, 11.0];
 /// Gap after every four bits.
 const GROUP: f32 = 3.0;
@@ -42,13 +42,13 @@ impl Placed {
     }
 }
 
-/// Returns how many groups of four end between two bits of a field.
+/// Returns the number of four-bit groups that end between two bits of a field.
 fn groups(from: usize, to: usize, field_bits: usize) -> usize {
     let behind = |bit: usize| field_bits.saturating_sub(bit).div_ceil(4);
     behind(from).saturating_sub(behind(to))
 }
 
-/// Places the fields within a width, `gap` between them. A field that is longer than a line is split.
+/// Places the fields within a width, separated by `gap`. A field longer than a line is split.
 pub(super) fn place(wants: &[SpaceNeeded], width: f32, gap: f32) -> Placing {
     let fewest = CELLS.last().map_or(1, |least| with_cell(wants, width, gap, *least).lines);
     let fits = CELLS.iter().map(|cell| with_cell(wants, width, gap, *cell)).find(|placing| placing.lines <= fewest);
@@ -81,7 +81,7 @@ fn with_cell(wants: &[SpaceNeeded], width: f32, gap: f32, cell: f32) -> Placing 
     placing
 }
 
-/// Returns the width of a number of bits of a field, from `first` on.
+/// Returns the width of a run of bits of a field, starting at `first`.
 fn cells(first: usize, bits: usize, field_bits: usize, cell: f32) -> f32 {
     bits as f32 * cell + groups(first, (first + bits).saturating_sub(1), field_bits) as f32 * GROUP
 }

@@ -2,20 +2,21 @@
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HexAddresses {
-    /// Counted from the first byte: `0x1F`.
+    /// Address counted from the first byte: `0x1F`.
     #[default]
     Counted,
-    /// Bank and offset: `0x24:0x1F`.
+    /// Address given as bank and offset: `0x24:0x1F`.
     Banked {
-        /// Bank of the first byte, which is at its beginning.
+        /// Bank that starts with the first byte.
         first: usize,
-        /// Bytes of a bank; not zero.
+        /// Number of bytes in a bank, never zero.
         size: usize,
     },
 }
 
 impl HexAddresses {
-    /// Returns an address among so many bytes: upper-case hex with as many digits as the last one needs, at least two.
+    /// Returns an address in a range of `len` bytes in upper-case hexadecimal, with as many digits as the last address
+    /// needs, at least two.
     pub(super) fn text(self, at: usize, len: usize) -> String {
         match self.parts(at) {
             (None, at) => format!("0x{at:0digits$X}", digits = digits(len)),
@@ -23,7 +24,7 @@ impl HexAddresses {
         }
     }
 
-    /// Returns the heading of the line that begins at an address: the text without its marks.
+    /// Returns the heading of the line that begins at an address: the address without `0x`.
     pub(super) fn heading(self, at: usize, len: usize) -> String {
         self.text(at, len).replace("0x", "")
     }

@@ -9,14 +9,14 @@ use crate::ui::Theme;
 /// Bytes per line.
 pub(super) const WIDTH: usize = 16;
 
-/// Distances in points; the origin is the upper left corner of the first line.
+/// Layout distances in points, measured from the upper left corner of the first line.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
     pub(super) font: FontId,
     pub(super) glyph: f32,
     pub(super) row: f32,
     pub(super) width: f32,
-    /// Extra space after eight bytes, and beside the separator.
+    /// Extra space after eight bytes and beside the separator.
     pub(super) gap: f32,
     pub(super) text_left: f32,
     hex_left: f32,
@@ -25,7 +25,7 @@ pub(super) struct Grid {
     len: usize,
 }
 
-/// Returns the next multiple of four points.
+/// Rounds a length up to the next multiple of four points.
 fn on_grid(length: f32) -> f32 {
     (length / 4.0).ceil() * 4.0
 }
@@ -54,7 +54,7 @@ impl Grid {
         self.len.div_ceil(WIDTH)
     }
 
-    /// Returns the height of this many lines.
+    /// Returns the height of the given number of lines.
     pub(super) fn height_of(&self, lines: usize) -> f32 {
         self.row * lines as f32
     }
@@ -76,7 +76,7 @@ impl Grid {
         (at < self.len && self.cell(origin, column, at).contains(pos)).then_some((column, at))
     }
 
-    /// Returns the byte nearest to the pointer, in the column under it or a given one.
+    /// Returns the byte nearest to the pointer, in the column under the pointer or in a given column.
     pub(super) fn nearest(&self, origin: Pos2, pos: Pos2, column: Column, free: bool) -> (Column, usize) {
         let right = pos.x >= origin.x + self.text_left - self.gap;
         let column = match (free, right) {

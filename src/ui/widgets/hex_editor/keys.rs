@@ -15,7 +15,8 @@ struct Reaction {
     leave: Option<FocusDirection>,
 }
 
-/// Handles the keys of this frame. Called before the widget itself is announced: only then can Tab still leave it.
+/// Handles the keys of the current frame. Call this before the widget is announced; otherwise Tab cannot leave the
+/// widget.
 pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let mut reaction = Reaction::default();
     ui.input_mut(|input| input.events.retain(|event| !hear(event, model, view, &mut reaction)));
@@ -59,7 +60,7 @@ fn hear(event: &Event, model: &HexModel<'_>, view: &mut HexView, reaction: &mut 
     }
 }
 
-/// Handles Tab: from hex to text to the next widget; and back.
+/// Handles Tab, which moves from the hex column to the text column and on to the next widget, and back.
 fn tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut Reaction) -> bool {
     if modifiers.command || modifiers.alt {
         return false;
@@ -132,7 +133,7 @@ fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView,
     true
 }
 
-/// Makes a change, or returns why it is not possible.
+/// Applies a change, or returns why it is not possible.
 fn change(
     model: &HexModel<'_>,
     view: &mut HexView,
@@ -199,7 +200,7 @@ fn ascii_bytes(text: &str) -> Result<Vec<u8>, Text> {
     text.chars().map(byte).collect()
 }
 
-/// Puts bytes where the selection begins; afterwards they are selected, or the cursor is after them.
+/// Writes bytes at the start of the selection; afterwards they are selected, or the cursor is placed after them.
 fn put(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction, select: bool) {
     let address = view.selection().start;
     let room = model.wanted.len().saturating_sub(address);

@@ -25,7 +25,7 @@ pub(super) fn header(ui: &Ui, theme: &Theme, grid: &Grid, rect: Rect, model: &He
     painter.hline(rect.x_range(), y, Stroke::new(1.0, theme.palette.line));
 }
 
-/// Everything of one frame that painting needs.
+/// Everything needed to paint one frame.
 struct Brush<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
@@ -132,7 +132,7 @@ impl Brush<'_> {
         }
     }
 
-    /// Draws a bracket below the bytes; it is open where the range continues on another line.
+    /// Draws a bracket below the bytes, open where the range continues on another line.
     fn mark(&self, mark: &HexMark<'_>, start: usize, end: usize) {
         let (first, last) = (mark.range.start.max(start), mark.range.end.min(end));
         if first >= last {

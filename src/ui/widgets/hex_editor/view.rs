@@ -4,24 +4,24 @@ use std::ops::Range;
 
 use crate::app::Text;
 
-/// The state of an editor between frames.
+/// State of an editor between frames.
 #[derive(Clone, Debug, Default)]
 pub struct HexView {
     anchor: usize,
     cursor: usize,
-    /// Bytes there are.
+    /// Number of bytes.
     len: usize,
-    /// The high nibble of the byte at the cursor, typed already.
+    /// High nibble already typed for the byte at the cursor, if any.
     pub(super) pending: Option<u8>,
     pub(super) column: Column,
     pub(super) problem: Option<Text>,
     pub(super) reveal: bool,
     pub(super) page: usize,
-    /// The bytes as they were before a step was undone or done again.
+    /// Bytes before the last undo or redo, if any.
     before: Option<Vec<u8>>,
 }
 
-/// The column with the keyboard focus.
+/// Column with the keyboard focus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Column {
     #[default]
@@ -34,7 +34,7 @@ impl HexView {
         self.cursor
     }
 
-    /// Returns the selected addresses: at least the cursor's, unless there are no bytes.
+    /// Returns the selected addresses, which include at least the cursor unless the editor has no bytes.
     pub fn selection(&self) -> Range<usize> {
         let (first, last) = (self.anchor.min(self.cursor), self.anchor.max(self.cursor));
         first..(last + 1).min(self.len.max(first))
@@ -56,13 +56,13 @@ impl HexView {
         bytes.get(range).unwrap_or_default()
     }
 
-    /// Follows an undo or redo, from these bytes to the next ones: the cursor moves to the change.
+    /// Moves the cursor to the first byte changed by an undo or redo, given the bytes before it.
     pub fn follow(&mut self, before: &[u8]) {
         self.pending = None;
         self.before = Some(before.to_vec());
     }
 
-    /// Goes to the first byte that a step has changed.
+    /// Moves the cursor to the first byte that a step has changed.
     pub(super) fn follow_to(&mut self, wanted: &[u8]) {
         let Some(before) = self.before.take().filter(|before| before.len() == wanted.len()) else { return };
         if let Some(at) = before.iter().zip(wanted).position(|(before, now)| before != now) {
@@ -70,12 +70,12 @@ impl HexView {
         }
     }
 
-    /// Returns why the last request was not carried out.
+    /// Returns why the last request was not carried out, if so.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
 
-    /// Other bytes, perhaps fewer.
+    /// Adapts the cursor and selection to a new byte count, which may be smaller.
     pub(super) fn fit(&mut self, len: usize) {
         self.len = len;
         let last = len.saturating_sub(1);
@@ -86,7 +86,7 @@ impl HexView {
         self.anchor = self.anchor.min(last);
     }
 
-    /// Moves the cursor, with the selection or without.
+    /// Moves the cursor, extending the selection if `selecting` is set.
     pub(super) fn go(&mut self, to: usize, selecting: bool) {
         self.pending = None;
         self.cursor = to.min(self.len.saturating_sub(1));

@@ -18,10 +18,10 @@ pub(super) enum Column {
     Default,
 }
 
-/// A column with its usual and its minimum width.
+/// Column with its preferred and minimum width.
 type Widths = (Column, f32, f32);
 
-/// Columns of bytes, in order; the width of the value follows from its kind.
+/// Columns of a byte table in display order; the width of the value column follows from its kind.
 const BYTES: [Widths; 8] = [
     (Column::Marks, 38.0, 34.0),
     (Column::Address, 80.0, 76.0),
@@ -41,17 +41,17 @@ const NUMBERS: [Widths; 7] = [
     (Column::Range, 130.0, 88.0),
     (Column::Default, 96.0, 78.0),
 ];
-/// The columns that are hidden, in this order. Their values move to the tooltip.
+/// Columns in the order in which they are hidden. Hidden values move to the tooltip.
 const LEAST: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
-/// Share of the remaining width for the name; the meaning gets the rest.
+/// Share of the remaining width for the name column; the meaning column gets the rest.
 const NAME: f32 = 0.45;
 
-/// The columns that are there, from left to right.
+/// Visible columns from left to right.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Columns(Vec<(Column, Rangef)>);
 
 impl Columns {
-    /// Lays out the columns in this width, with this width for the value.
+    /// Lays out the columns within `width`, with `value` as the width of the value column.
     pub(super) fn new(kind: RegisterKind, width: f32, value: f32) -> Self {
         let mut shown = all(kind).to_vec();
         for (column, usual, least) in &mut shown {
@@ -87,7 +87,7 @@ impl Columns {
         self.0.len() < all(kind).len()
     }
 
-    /// Returns where a column begins and ends, measured from the left edge of the table; `None` if it is hidden.
+    /// Returns the horizontal extent of a column, measured from the table's left edge, or `None` if hidden.
     pub(super) fn range(&self, column: Column) -> Option<Rangef> {
         self.0.iter().find(|(own, _)| *own == column).map(|(_, range)| *range)
     }
@@ -108,7 +108,7 @@ const fn all(kind: RegisterKind) -> &'static [Widths] {
     }
 }
 
-/// Returns the usual and the minimum width of columns together.
+/// Returns the total preferred and minimum widths of the given columns.
 fn total(columns: &[Widths]) -> (f32, f32) {
     columns.iter().fold((0.0, 0.0), |sum, (_, usual, least)| (sum.0 + usual, sum.1 + least))
 }

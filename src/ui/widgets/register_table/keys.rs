@@ -6,13 +6,13 @@ use super::lines::Lines;
 use super::view::{Edit, Selected};
 use super::{RegisterEvent, RegisterLocation, RegisterTable, RegisterView};
 
-/// Reserves the arrows for the table while it has the keyboard focus.
+/// Reserves the arrow keys for the table while the table has the keyboard focus.
 pub(super) fn hold(ui: &Ui, id: Id) {
     let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
 }
 
-/// Puts the events that were held back in the last frame before those of this one, while the keyboard is here.
+/// Inserts the events held back in the previous frame before the current ones while the table has the keyboard focus.
 pub(super) fn catch_up(ui: &Ui, view: &mut RegisterView, id: Id) {
     let late = std::mem::take(&mut view.late);
     let focused = ui.memory(|memory| memory.focused());
@@ -21,13 +21,13 @@ pub(super) fn catch_up(ui: &Ui, view: &mut RegisterView, id: Id) {
     }
 }
 
-/// Returns the id of the editor of a table.
+/// Returns the editor id of a table.
 pub(super) fn entry_id(table: Id) -> Id {
     table.with("entry")
 }
 
-/// Holds back what is typed in this frame behind what ends an edit: Enter, or an arrow up or down, which is Enter and then
-/// goes to another line.
+/// Holds back whatever is typed in the current frame after a key that ends an edit: Enter, or an up or down arrow,
+/// which acts as Enter and then moves to another line.
 pub(super) fn hold_back(ui: &Ui, view: &mut RegisterView) {
     ui.input_mut(|input| {
         let mut ended = false;
@@ -57,13 +57,14 @@ pub(super) fn hold_back(ui: &Ui, view: &mut RegisterView) {
 const ENTER: Event =
     Event::Key { key: Key::Enter, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
 
-/// A press of an arrow that goes to another line.
+/// Returns whether the event is an arrow key press that moves to another line.
 pub(super) fn is_vertical(event: &Event) -> bool {
     let is_plain = |modifiers: &Modifiers| !modifiers.any();
     matches!(event, Event::Key { key: Key::ArrowUp | Key::ArrowDown, pressed: true, modifiers, .. } if is_plain(modifiers))
 }
 
-/// Typing, as the table and its editor hear it. What stops a drive or belongs to the window is never held back.
+/// Returns whether the event counts as typing for the table and its editor. Keys that stop a drive or belong to the
+/// window do not count and are never held back.
 fn is_typed(event: &Event) -> bool {
     use Key::{ArrowDown, ArrowLeft, ArrowRight, ArrowUp, Backspace, Delete, End, Enter, Home};
     match event {
@@ -136,7 +137,7 @@ fn walk(key: Key, modifiers: Modifiers, lines: &Lines, view: &mut RegisterView) 
     true
 }
 
-/// Moves to the next line that can be selected, skipping bit fields.
+/// Moves to the next selectable line, skipping bit fields.
 fn step(at: usize, lines: &Lines, view: &mut RegisterView, next: impl Fn(usize) -> Option<usize>) -> bool {
     let mut line = at;
     while let Some(to) = next(line) {
@@ -150,7 +151,7 @@ fn step(at: usize, lines: &Lines, view: &mut RegisterView, next: impl Fn(usize) 
     true
 }
 
-/// Left folds, right unfolds; from a folded register left goes to the heading of its group.
+/// Folds with Left and unfolds with Right; Left on a folded register moves to its group heading.
 fn fold(key: Key, modifiers: Modifiers, table: &RegisterTable<'_>, view: &mut RegisterView) -> bool {
     let open = match key {
         Key::ArrowLeft => false,
@@ -193,7 +194,7 @@ fn edit(
     true
 }
 
-/// Begins to replace the selected value by typing, if that is allowed.
+/// Starts an edit that replaces the selected value, if editing is allowed.
 pub(super) fn begin(table: &RegisterTable<'_>, view: &mut RegisterView, typed: Option<&str>) -> bool {
     let Some(place) = view.selected() else { return false };
     begin_at(table, view, place, typed)

@@ -8,7 +8,7 @@ use super::{RegisterLocation, RegisterTable, RegisterView};
 pub(super) enum LineKind {
     Group(usize),
     Row(RegisterLocation),
-    /// A bit field of a register, by its number.
+    /// Bit field of a register, by its index.
     Bits(RegisterLocation, usize),
 }
 
@@ -22,7 +22,7 @@ pub(super) struct Lines {
 struct Section {
     start: usize,
     rows: usize,
-    /// The unfolded ones, with their numbers of bit fields.
+    /// Unfolded registers, each with its number of bit fields.
     open: Vec<(usize, usize)>,
 }
 
@@ -46,7 +46,7 @@ impl Lines {
         self.total
     }
 
-    /// Returns the kind of a line, counted from 0.
+    /// Returns the kind of the line with the given zero-based index.
     pub(super) fn at(&self, line: usize) -> Option<LineKind> {
         let group = self.group_at(line)?;
         let section = self.sections.get(group)?;
@@ -70,7 +70,7 @@ impl Lines {
         self.sections.partition_point(|section| section.start <= line).checked_sub(1)
     }
 
-    /// Returns the line of an item; `None` if it is not shown.
+    /// Returns the line of an item, or `None` if not shown.
     pub(super) fn line_of(&self, what: Selected) -> Option<usize> {
         match what {
             Selected::Group(group) => self.sections.get(group).map(|section| section.start),
@@ -82,7 +82,7 @@ impl Lines {
         }
     }
 
-    /// Returns the selectable item nearest to a line: itself, or the register of a bit field.
+    /// Returns the selectable item of a line: the item itself, or the register of a bit field.
     pub(super) fn select_at(&self, line: usize) -> Option<Selected> {
         Some(match self.at(line)? {
             LineKind::Group(group) => Selected::Group(group),

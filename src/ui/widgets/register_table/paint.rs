@@ -9,14 +9,14 @@ use super::{RegisterBits, RegisterGroup, RegisterKind, RegisterRow};
 use crate::app::Text;
 use crate::ui::{Theme, icons};
 
-/// Height of the line with the names of the columns.
+/// Height of the column header.
 pub(super) const HEADER: f32 = 20.0;
-/// Right edge of the caret of a register with bit fields.
+/// Right edge of the caret shown for registers with bit fields.
 pub(super) const CARET: f32 = 16.0;
-/// Distance of the marks.
+/// Spacing between marks.
 const MARK: f32 = 13.0;
 
-/// The state of a line.
+/// State of a line.
 #[derive(Clone, Copy)]
 pub(super) struct State {
     selected: bool,
@@ -81,7 +81,7 @@ pub(super) fn heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup,
     inscribe(ui, theme, rect, middle, room, theme.caption(&group.note), false);
 }
 
-/// Draws a register. Its value is not drawn while it is being edited.
+/// Draws a register, leaving out its value while the value is being edited.
 pub(super) fn row(
     ui: &Ui,
     theme: &Theme,
@@ -141,14 +141,15 @@ pub(super) fn row(
     }
 }
 
-/// Returns the area where the value of a line can be clicked to edit it.
+/// Returns the clickable area that starts editing a line's value.
 pub(super) fn box_of(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
     let inset = theme.space.inside;
     let x = rect.left() + value.min - inset..=rect.left() + value.max - theme.space.between;
     Rect::from_x_y_ranges(x, rect.top() + 0.5..=rect.bottom() - 0.5)
 }
 
-/// Draws a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a cost, a disk for storage.
+/// Draws the marks: a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a cost, a disk for
+/// storage.
 fn marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
     let palette = theme.palette;
     let caret = if open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
@@ -190,7 +191,7 @@ pub(super) fn bits(ui: &Ui, theme: &Theme, rect: Rect, columns: &Columns, bits: 
     ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, palette.line));
 }
 
-/// Returns whether words do not fit into a column.
+/// Returns whether a text does not fit into a column.
 fn is_too_long(ui: &Ui, theme: &Theme, range: Rangef, words: &egui::RichText) -> bool {
     let words = egui::WidgetText::from(words.clone());
     let galley = words.into_galley(ui, Some(TextWrapMode::Extend), f32::INFINITY, TextStyle::Body);

@@ -8,27 +8,27 @@ use super::RegisterLocation;
 use crate::app::Text;
 use crate::ui::Theme;
 
-/// The state of a table between frames.
+/// State of a table between frames.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterView {
     pub(super) selected: Option<Selected>,
-    /// Groups of which only the heading is shown.
+    /// Groups that show only their heading.
     pub(super) folded: BTreeSet<usize>,
     /// Registers with visible bit fields.
     pub(super) open: BTreeSet<RegisterLocation>,
     pub(super) edit: Option<Edit>,
     pub(super) wanted: Option<RegisterLocation>,
-    /// Why the value cannot be edited.
+    /// Reason why the value cannot be edited, if refused.
     pub(super) refused: Option<String>,
-    /// The selection has moved and has to be scrolled into view.
+    /// Whether the selection has moved and must be scrolled into view.
     pub(super) reveal: bool,
     pub(super) page: usize,
-    /// What was typed in the last frame behind a key with which the keyboard goes to the editor or back from it: only the
-    /// next frame has whom it is for.
+    /// Events typed in the previous frame after a key that moves the focus to or from the editor; their recipient is
+    /// known only in the next frame.
     pub(super) late: Vec<Event>,
 }
 
-/// A line that can be selected.
+/// Selectable line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Selected {
     Group(usize),
@@ -40,9 +40,9 @@ pub(super) struct Edit {
     pub(super) place: RegisterLocation,
     pub(super) text: String,
     pub(super) problem: Option<Text>,
-    /// It must get the keyboard focus now.
+    /// Whether the edit has just begun and must get the keyboard focus.
     pub(super) begins: bool,
-    /// It began with a character instead of the value.
+    /// Whether the edit began with a typed character instead of the existing value.
     pub(super) typed: bool,
 }
 
@@ -54,7 +54,7 @@ impl RegisterView {
         }
     }
 
-    /// Returns the selected group, or the one of the selected register.
+    /// Returns the selected group, or the group of the selected register.
     pub fn group(&self) -> Option<usize> {
         match self.selected? {
             Selected::Row(place) => Some(place.group),
@@ -62,7 +62,7 @@ impl RegisterView {
         }
     }
 
-    /// Returns why the edited value cannot be accepted, or not be edited.
+    /// Returns why the edited value was rejected, or why the value cannot be edited.
     pub fn problem(&self, theme: &Theme) -> Option<String> {
         let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| theme.words(problem));
         typed.or_else(|| self.refused.clone())
@@ -73,12 +73,12 @@ impl RegisterView {
         self.edit.as_ref().map(|edit| edit.place)
     }
 
-    /// Returns whether the edited value was refused and is still open.
+    /// Returns whether the edited value was refused and its editor is still open.
     pub fn is_refused(&self) -> bool {
         self.edit.as_ref().is_some_and(|edit| edit.problem.is_some())
     }
 
-    /// Selects a register, unfolds its group and scrolls to it.
+    /// Selects a register, unfolds its group and scrolls to the register.
     pub fn select(&mut self, place: RegisterLocation) {
         self.folded.remove(&place.group);
         self.go(Selected::Row(place));
@@ -97,8 +97,8 @@ impl RegisterView {
         self.folded.contains(&group)
     }
 
-    /// Follows a change of the registers in the table: selection and entry stay with their register, and end if it no longer
-    /// exists.
+    /// Adapts to a changed set of registers: selection and edit stay with their register, and end if the register no
+    /// longer exists.
     pub fn follow(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
             Some(Selected::Row(place)) => now(place).map(Selected::Row),

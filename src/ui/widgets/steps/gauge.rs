@@ -13,7 +13,7 @@ const NAME: f32 = 112.0;
 const VALUE: f32 = 96.0;
 const HEIGHT: f32 = 20.0;
 
-/// Draws name, value, scale and limits of each on one line; the limits below if they do not fit.
+/// Draws each gauge's name, value, scale and limits on one line, with the limits below if they do not fit.
 pub(super) fn gauges_ui(ui: &mut Ui, theme: &Theme, gauges: &[Gauge]) {
     let width = |gauge: &Gauge| {
         let font = FontId::proportional(theme.sizes.caption);
@@ -65,7 +65,7 @@ fn column(ui: &mut Ui, width: f32, words: RichText) {
     });
 }
 
-/// Draws the allowed band, and a hand at the value; beyond the scale an arrow at its end.
+/// Draws the allowed band with a hand at the value, or an arrow at the end of the scale if the value lies beyond it.
 fn scale(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, HEIGHT), Sense::hover());
     response.widget_info(|| {

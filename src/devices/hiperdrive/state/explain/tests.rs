@@ -34,18 +34,15 @@ fn invalid_input_names_cause_and_remedy() {
     let out = OutOfRange { number: number(166), name: "maximum speed", value: 351, range: Range::Within(5, 350) };
     assert_eq!(
         english(&device(&Error::OutOfRange(out))),
-        "Parameter 166 (Maximum speed) cannot be 351. Allowed: 5 to 350."
+        "Parameter 166 (Maximum speed) cannot be set to 351. Allowed: 5 to 350."
     );
     let outside = PlanError::PositionOutside { drive: ONE, position: 5000, lower: 0, upper: 4000 };
     assert!(english(&plan(&outside)).starts_with("Drive 1 is at 5000, outside the limits 0 to 4000"));
     let read_only = PlanError::ReadOnly { item: Item(number(107)) };
-    assert_eq!(
-        english(&plan(&read_only)),
-        "Parameter 107 (Actual position) can only be read. Choose another parameter."
-    );
+    assert_eq!(english(&plan(&read_only)), "Parameter 107 (Actual position) is read-only. Choose another parameter.");
     assert_eq!(
         english(&device(&Error::NotRequested { drive: ONE })),
-        "Drive 1 is not requested: parameter 152 is 0. Set it to 1 first."
+        "Drive 1 is not requested (parameter 152 is 0). Set parameter 152 to 1 first."
     );
     let switch = ended(Ended::NotStarted, plain);
     assert!(english(&switch).contains("S3 of the hub is 0"), "{}", english(&switch));
