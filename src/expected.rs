@@ -6,10 +6,10 @@ use std::fmt;
 
 use thiserror::Error;
 
-/// The allowed values in place of a wrong one.
+/// The set of values allowed where an invalid value was given.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Expected {
-    /// One of these words, few enough to be read as a sentence.
+    /// One of a few keywords, listed in a sentence.
     #[error("{}", alternatives(.0))]
     Words(Cow<'static, [&'static str]>),
     #[error("one of {}", .0.join(", "))]
@@ -34,7 +34,7 @@ pub enum Expected {
         /// The greatest.
         most: u32,
     },
-    /// Revolutions a minute in one direction.
+    /// Revolutions per minute, in one direction only.
     #[error("a speed from 0 to {most} rpm")]
     RevolutionsAMinute {
         /// The greatest.
@@ -75,10 +75,10 @@ pub enum Expected {
     OnlyWith(&'static str),
     #[error("a polynomial with all terms, such as 0x43, or none")]
     Polynomial,
-    /// A frame that is not too long.
+    /// A frame of at most 64 bits.
     #[error("a frame of at most 64 bits, including turns, two flags and CRC")]
     ShortFrame,
-    /// The address of an encoder on a bus, or of the only one.
+    /// An encoder address on the bus, or the address for a single connected encoder.
     #[error("0x40 to 0x5F, or 0xFF if only one encoder is connected")]
     AddressOrOnlyOne,
     #[error("an address from 0x40 to {last:#04X}")]
@@ -86,7 +86,7 @@ pub enum Expected {
         /// The greatest.
         last: u8,
     },
-    /// The address of the first of several encoders.
+    /// The first of several consecutive encoder addresses.
     #[error("an address from 0x40 to {last:#04X}, so that every encoder gets one")]
     FirstAddress {
         /// The greatest.
@@ -182,7 +182,7 @@ pub enum Expected {
     Clocks,
 }
 
-/// The quantity of a range, with its article.
+/// The quantity that a range refers to, worded with its article.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Quantity {
     /// Nothing in particular.
@@ -239,7 +239,7 @@ pub enum Quantity {
     /// The share of frames with a bit inverted.
     #[error("a share of damaged frames")]
     DamagedFrames,
-    /// The share of requests that are answered with an exception.
+    /// Share of requests answered with an exception.
     #[error("a share of requests answered with an exception")]
     RefusedRequests,
 }

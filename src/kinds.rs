@@ -26,7 +26,7 @@ pub fn program() -> Program {
     })
 }
 
-/// Returns the virtual devices at the virtual adapter, those that take a speed (`rpm`) last.
+/// Returns the virtual devices available at the virtual adapter. Those that take a speed (`rpm`) come last.
 pub fn at_adapter() -> &'static [&'static dyn Attachable] {
     static DEVICES: OnceLock<Vec<&'static dyn Attachable>> = OnceLock::new();
     DEVICES.get_or_init(|| {

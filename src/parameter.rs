@@ -8,22 +8,22 @@ use crate::expected::Expected;
 
 pub use values::{ANY, Checked, Decimal, Maybe, Milliseconds, Millivolts, SWITCH, Values, Whole, Words, number};
 
-/// A value that a parameter does not take.
+/// A value that a parameter does not accept.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused {
     pub key: String,
-    /// The value as it was written.
+    /// The refused value as written.
     pub value: String,
     pub allowed: Expected,
 }
 
 impl Refused {
-    /// Creates the error for `value`; `allowed` are the possible values.
+    /// Creates the error for a refused value; `allowed` describes the accepted values.
     pub fn new(key: &str, value: impl ToString, allowed: Expected) -> Self {
         Refused { key: key.to_owned(), value: value.to_string(), allowed }
     }
 
-    /// Returns it without the value, which is a secret.
+    /// Replaces the value, which is a secret, by asterisks.
     #[must_use]
     pub fn masked(self) -> Self {
         Refused { value: "**".to_owned(), ..self }
@@ -35,43 +35,43 @@ impl Refused {
 pub struct Entry {
     pub key: &'static str,
     pub label: &'static str,
-    /// The symbol of the unit; empty if there is none.
+    /// Unit symbol, or empty if the parameter has no unit.
     pub unit: &'static str,
-    /// The default while the entry is empty, or an example.
+    /// The default that applies while the entry is empty, or an example.
     pub hint: String,
-    /// Whether it is a number that may have a decimal point.
+    /// Whether the value is a number that may have a decimal point.
     pub is_decimal: bool,
 }
 
-/// Returns the entries with these keys, in the order of the keys.
+/// Returns the entries with the given keys, in the order of the keys.
 pub fn chosen(entries: &[Entry], keys: &[&str]) -> Vec<Entry> {
     keys.iter().filter_map(|key| entries.iter().find(|own| own.key == *key).cloned()).collect()
 }
 
-/// A group of parameters, made by `parameters!`. The default applies to those that are not given.
+/// A group of parameters, declared with `parameters!`. Parameters that are not given keep their defaults.
 pub trait Parameters: Default {
-    /// The reason why a value is refused.
+    /// Error returned when a value is refused.
     type Error;
 
-    /// Their keys, in the order in which they are declared.
+    /// All keys in order of declaration.
     const KEYS: &'static [&'static str];
 
-    /// The keys among them whose values are neither shown nor kept.
+    /// Keys whose values are neither displayed nor stored.
     const SECRETS: &'static [&'static str];
 
-    /// Sets a value; returns false if the key does not exist.
+    /// Sets a value; returns `false` if the key does not exist.
     ///
     /// # Errors
-    /// Returns an error if the key does not take the value.
+    /// Returns an error if the key does not accept the value.
     fn set(&mut self, key: &str, value: &str) -> Result<bool, Self::Error>;
 
-    /// Returns the entries that a user can type, in the order of declaration.
+    /// Returns the entries that a user can fill in, in order of declaration.
     fn entries() -> Vec<Entry>;
 
-    /// Parses the existing keys; others are ignored. Of a key given twice the last one counts.
+    /// Parses the known keys and ignores all others. If a key is given twice, the last value counts.
     ///
     /// # Errors
-    /// Returns the first value that its key does not take.
+    /// Returns an error for the first value that its key does not accept.
     fn read(pairs: &[(String, String)]) -> Result<Self, Self::Error> {
         let mut own = Self::default();
         for (key, value) in pairs {
@@ -94,9 +94,9 @@ pub trait Parameters: Default {
 /// }
 /// ```
 ///
-/// A line has field, type, default, key and [`Values`]; then, for a form, the text that names the entry, with an example
-/// after `like` where the default says little. A line without a key is a field and no parameter. The value of a key with
-/// `secret` before it is neither shown nor kept.
+/// Each line has a field, its type, its default, a key and [`Values`]. For a form, the label of the entry follows, with
+/// an example after `like` if the default says little. A line without a key declares a field that is not a parameter.
+/// The value of a key preceded by `secret` is neither displayed nor stored.
 #[macro_export]
 macro_rules! parameters {
     (@hint $values:expr, $default:expr) => {
@@ -138,7 +138,7 @@ macro_rules! parameters {
 
         #[allow(dead_code, reason = "not all are asked for their keys")]
         impl $name {
-            /// The keys, in the order in which they are declared.
+            /// All keys in order of declaration.
             $vis const KEYS: &'static [&'static str] = &[$($($key,)?)*];
         }
 

@@ -6,13 +6,13 @@ use crate::cli::{Commands, DeviceCommands, OwnCommand, ProtocolDecoder};
 use crate::profile::{Formats, ProfileFormat};
 use crate::ui::{DeviceView, TabViews, ToolView};
 
-/// A kind of device: its pages, with its state and its profiles, and its commands.
+/// A kind of device: its pages, state, profiles and commands.
 #[derive(Clone, Copy)]
 pub struct Kind {
     pub view: &'static dyn DeviceView,
     pub commands: &'static dyn DeviceCommands,
-    /// Virtual device on the virtual adapter; `None` for a kind that does not use an adapter. The adapter uses the
-    /// program's own list (`kinds::at_adapter`): a kind from outside is not on it.
+    /// Virtual device for the virtual adapter, or `None` for a kind that does not use an adapter. The adapter only
+    /// offers the program's built-in list (`kinds::at_adapter`), which excludes external kinds.
     pub at_adapter: Option<&'static dyn Attachable>,
 }
 
@@ -22,7 +22,7 @@ pub struct ToolTab {
     pub view: &'static dyn ToolView,
 }
 
-/// The kinds of devices and the tools, as the studio, the window and the command line take them.
+/// Device kinds and tools that make up the program, for use by the studio, the window and the command line.
 #[derive(Clone, Copy)]
 pub struct Program {
     pub studio: Kinds,
@@ -31,9 +31,9 @@ pub struct Program {
 }
 
 impl Program {
-    /// Creates a program with these kinds of devices and tools, in the order of the navigation and of the help; `protocols`
-    /// can be decoded too, and `further` commands are added to those of devices. The lists remain in memory as long as the
-    /// process runs.
+    /// Creates a program with the given device kinds and tools, in the order used for navigation and help. `protocols`
+    /// adds protocols to decode, and `further` adds commands to those of the devices. The lists are kept for the
+    /// lifetime of the process.
     pub fn new(
         kinds: &[Kind],
         tools: &[ToolTab],

@@ -53,8 +53,8 @@ impl LinkError {
         LinkError { target: target.into(), kind }
     }
 
-    /// Converts an error of reading or writing an open connection: whatever the system calls it, it means that the
-    /// connection is lost, except for errors that clearly mean something else.
+    /// Converts an I/O error on an open connection. Any such error is treated as a lost connection, unless it clearly
+    /// has another cause.
     pub(super) fn during_use(target: &str, error: &io::Error) -> Self {
         let kind = match error.kind() {
             io::ErrorKind::InvalidInput | io::ErrorKind::OutOfMemory => LinkErrorKind::Other(error.to_string()),

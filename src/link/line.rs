@@ -20,13 +20,13 @@ use crate::units::Moment;
 
 /// Tries before a reading command fails.
 pub(crate) const TRIES: u32 = 5;
-/// No further try after this time without a valid reply: a command has to end within ten seconds.
+/// Time without a valid reply after which no further attempt is made, since a command must finish within ten seconds.
 const PATIENCE: Duration = Duration::from_secs(8);
 /// Longest interval between two checks for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
-/// A line on which bytes arrive for this time has no silence.
+/// Duration of continuous reception after which a line is considered never silent.
 const NEVER_SILENT: Duration = Duration::from_secs(2);
-/// Largest number of bytes kept that belong to no frame; noise from a socket is unlimited.
+/// Maximum number of bytes kept that belong to no frame, because a socket can deliver noise without limit.
 pub(crate) const MOST_KEPT: usize = 4096;
 
 /// The reason why an exchange on a line ends early.
@@ -41,7 +41,7 @@ pub(crate) enum LineError {
 }
 
 impl LineError {
-    /// Returns it as an error of the device at the line.
+    /// Converts the line error to the error type of the device on that line.
     pub(crate) fn at_device<E>(self, cancelled: E, never_silent: E, link: fn(LinkError) -> E) -> E {
         match self {
             LineError::Cancelled => cancelled,
@@ -57,13 +57,13 @@ impl From<LinkError> for LineError {
     }
 }
 
-/// The host's side of a line, for one job.
+/// Host side of a serial line, for the duration of a job.
 pub(crate) struct SerialLine<'a> {
     pub(crate) ctx: Ctx<'a>,
     /// Time to repeat requests without an answer, if not the default.
     pub(crate) patience: Option<Duration>,
     shielded: bool,
-    /// The skipped bytes, if they are kept.
+    /// The skipped bytes, or `None` if they are not being recorded.
     passed: Option<Vec<u8>>,
 }
 
@@ -82,15 +82,15 @@ impl<'a> SerialLine<'a> {
     }
 
     /// # Errors
-    /// [`LineError::Cancelled`] if the user cancelled.
+    /// Returns [`LineError::Cancelled`] if the user has cancelled.
     pub(crate) fn check_cancel(&self) -> Result<(), LineError> {
         if !self.shielded && self.ctx.cancel.is_requested() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
-    /// Waits; ends early if the user cancels.
+    /// Waits for the given duration, or until the user cancels.
     ///
     /// # Errors
-    /// [`LineError::Cancelled`].
+    /// Returns [`LineError::Cancelled`] if the user cancels.
     pub(crate) fn wait(&mut self, duration: Duration) -> Result<(), LineError> {
         let end = self.now() + duration;
         while self.now() < end {
@@ -101,10 +101,11 @@ impl<'a> SerialLine<'a> {
         Ok(())
     }
 
-    /// Receives without sending, and returns the bytes received; of continuous noise, only the first.
+    /// Receives for the given duration without sending anything. If the noise is continuous, only its first bytes are
+    /// returned.
     ///
     /// # Errors
-    /// Errors of the connection, or [`LineError::Cancelled`].
+    /// Returns connection errors, or [`LineError::Cancelled`].
     pub(crate) fn drain(&mut self, duration: Duration) -> Result<Vec<u8>, LineError> {
         let end = self.now() + duration;
         let mut heard = Vec::new();
@@ -118,19 +119,19 @@ impl<'a> SerialLine<'a> {
         Ok(heard)
     }
 
-    /// Checks for the user's request to end before an exchange.
+    /// Checks whether the user has cancelled before an exchange starts.
     ///
     /// # Errors
-    /// [`LineError::Cancelled`].
+    /// Returns [`LineError::Cancelled`] if the user has cancelled.
     pub(crate) fn start(&mut self) -> Result<(), LineError> {
         if !self.shielded && self.ctx.cancel.stops_transaction() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
-    /// Prepares an exchange on a line without packets: checks for cancellation and waits for silence. On a busy line, the
-    /// silence has to last for `quiet`.
+    /// Prepares an exchange on a line without packets: checks for cancellation and waits for silence. On a busy line,
+    /// the silence has to last for `quiet`.
     ///
     /// # Errors
-    /// See [`LineError`].
+    /// Returns a [`LineError`] if the user cancels or the line stays busy.
     pub(crate) fn begin(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         self.start()?;
         let mut stray = Vec::new();
@@ -147,10 +148,10 @@ impl<'a> SerialLine<'a> {
         }
     }
 
-    /// Sends a frame and traces its visible bytes, even if a recording does not contain the frame.
+    /// Sends a frame and traces its visible bytes, even if the frame is not part of a recording.
     ///
     /// # Errors
-    /// Errors of the connection.
+    /// Returns connection errors.
     pub(crate) fn send(&mut self, bytes: &[u8], shown: MaskedBytes, at: Moment) -> Result<(), LinkError> {
         let text = shown.to_string();
         self.ctx.trace.record(at, Direction::Sent, shown);
@@ -162,32 +163,31 @@ impl<'a> SerialLine<'a> {
         })
     }
 
-    /// Receives bytes, at most until `until`.
+    /// Receives bytes until `until` at the latest.
     ///
     /// # Errors
-    /// Errors of the connection.
+    /// Returns connection errors.
     pub(crate) fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
         self.ctx.wire.receive(until, into)
     }
 
-    /// Keeps bytes that come too late or after a reply, until they are taken.
+    /// Starts recording bytes that arrive too late or after a reply.
     pub(crate) fn keep_passed(&mut self) {
         self.passed = Some(Vec::new());
     }
 
-    /// Returns the bytes that arrived too late or after a reply since recording of them began, and ends the recording.
+    /// Returns the recorded bytes that arrived too late or after a reply, and stops recording them.
     pub(crate) fn take_passed(&mut self) -> Vec<u8> {
         self.passed.take().unwrap_or_default()
     }
 
-    /// Skips bytes that are not the reply. Of continuous noise, only the first bytes are kept.
+    /// Skips bytes that are not part of the reply. If the noise is continuous, only its first bytes are kept.
     pub(crate) fn pass(&mut self, bytes: &[u8]) {
         if let Some(passed) = &mut self.passed {
             passed.extend(bytes.iter().take(MOST_KEPT.saturating_sub(passed.len())));
         }
     }
 
-    /// Passes received bytes to the trace.
     pub(crate) fn show(&mut self, at: Moment, shown: MaskedBytes) {
         self.ctx.trace.record(at, Direction::Received, shown);
     }
@@ -196,7 +196,8 @@ impl<'a> SerialLine<'a> {
         self.show(at, MaskedBytes::hidden(count));
     }
 
-    /// Counts a try without an answer; returns whether another is allowed. `longest` is the maximum duration of a try.
+    /// Counts an unanswered attempt and returns whether another is allowed. `longest` is the maximum duration of an
+    /// attempt.
     pub(crate) fn may_ask_again(&mut self, state: &mut LineState, tries: u32, longest: Duration) -> bool {
         let now = self.now();
         state.damaged += 1;
@@ -211,8 +212,8 @@ impl<'a> SerialLine<'a> {
         again
     }
 
-    /// Keeps receiving after a time-out, for longer each time. Bytes that arrive now belong to an earlier request, on a
-    /// connection that is slower than its margin. They must not be taken for the reply to the next request.
+    /// Keeps receiving after a time-out, for longer each time. Bytes that arrive now belong to an earlier request on a
+    /// connection that is slower than its margin, and must not be taken for the reply to the next request.
     ///
     /// # Errors
     /// See [`LineError`].
@@ -236,8 +237,8 @@ impl<'a> SerialLine<'a> {
         self.let_late_ones_pass(state, quiet)
     }
 
-    /// Skips late bytes: every request without a reply may still get one. The first of them shows the maximum delay of the
-    /// connection, and for that time after the last of them nothing is sent.
+    /// Skips late bytes, since every unanswered request may still get a reply. The first late byte shows the maximum
+    /// delay of the connection; nothing is sent until that much time has passed after the last one.
     ///
     /// # Errors
     /// See [`LineError`].
@@ -259,7 +260,7 @@ impl<'a> SerialLine<'a> {
     /// Receives until nothing arrives for `quiet`.
     ///
     /// # Errors
-    /// Errors of the connection, or [`LineError::NeverSilent`].
+    /// Returns connection errors, or [`LineError::NeverSilent`].
     pub(crate) fn wait_for_silence(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         let give_up = self.now() + NEVER_SILENT;
         let mut stray = Vec::new();

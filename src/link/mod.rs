@@ -81,7 +81,7 @@ pub struct Cancel(Arc<CancelState>);
 #[derive(Debug)]
 struct CancelState {
     requested: AtomicBool,
-    /// Number of transactions left until the automatic cancellation.
+    /// Number of transactions left before automatic cancellation.
     fuse: AtomicU64,
 }
 

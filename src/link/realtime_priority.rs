@@ -13,7 +13,7 @@ pub fn wake_before_others() -> bool {
     asked.is_ok()
 }
 
-/// The lowest of the real-time priorities is above every ordinary one.
+/// Requests the lowest real-time priority, which is above every ordinary priority.
 #[cfg(unix)]
 fn ask() -> Result<(), Error> {
     use thread_priority::unix::{

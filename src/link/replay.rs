@@ -6,10 +6,10 @@ use super::{ByteLink, Clock, Direction, LinkError, LinkErrorKind, TraceEntry};
 use crate::bits::{MaskedBytes, hex};
 use crate::units::{CharacterFormat, Moment};
 
-/// One request of the recording and its reply.
+/// A recorded request and its reply.
 struct Exchange {
     request: MaskedBytes,
-    /// `None` if no reply came, or the reply was masked.
+    /// The reply, or `None` if it never arrived or was masked.
     reply: Option<Vec<u8>>,
 }
 

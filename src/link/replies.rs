@@ -11,14 +11,14 @@ pub struct Replies(Arc<Measured>);
 #[derive(Debug, Default)]
 struct Measured {
     count: AtomicU64,
-    /// Microseconds, of all together.
+    /// Sum of all reply times in microseconds.
     sum: AtomicU64,
-    /// Microseconds.
+    /// Longest reply time in microseconds.
     longest: AtomicU64,
 }
 
 impl Replies {
-    /// Records the time between a request and its reply, in time or too late.
+    /// Records the time between a request and its reply, even if the reply was late.
     pub(crate) fn note(&self, took: Duration) {
         let took = u64::try_from(took.as_micros()).unwrap_or(u64::MAX);
         self.0.sum.fetch_add(took, Ordering::Relaxed);

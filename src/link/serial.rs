@@ -163,7 +163,7 @@ fn parity(parity: Parity) -> serialport::Parity {
     }
 }
 
-/// The system's message for a device without a speed, such as /dev/null.
+/// The system's error message for a device without a baud rate, such as /dev/null.
 const NOT_A_TERMINAL: &str = "Not a typewriter";
 
 fn opening(path: &str, error: &serialport::Error) -> LinkErrorKind {
@@ -187,7 +187,7 @@ mod platform {
 
     use super::LinkErrorKind;
 
-    /// Returns whether serialport can list ports: it looks into this folder without checking that it exists.
+    /// Returns whether `serialport` can list ports: it reads this folder without checking that the folder exists.
     pub(super) fn lists_ports() -> bool {
         !cfg!(target_os = "linux") || Path::new("/sys/class/tty").is_dir()
     }

@@ -70,7 +70,7 @@ pub struct SimPort {
     next: u16,
 }
 
-/// The first port that is assigned; any will do.
+/// First port to be assigned; the choice is arbitrary.
 const FIRST_PORT: u16 = 50_000;
 
 impl SimPort {

@@ -18,7 +18,7 @@ pub struct TcpLink {
 
 impl TcpLink {
     const CONNECT_TIME: Duration = Duration::from_secs(3);
-    /// A socket's own time-out has the resolution of the system tick: shorter waits are polled.
+    /// Longest wait that is polled: a socket's own time-out only has the resolution of the system tick.
     const SHORT: Duration = Duration::from_millis(10);
     const GLANCE: Duration = Duration::from_micros(500);
 
@@ -43,7 +43,7 @@ impl TcpLink {
         Err(reason)
     }
 
-    /// Reads bytes, without waiting if the wait is short.
+    /// Reads bytes, polling instead of blocking if the wait is short.
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<usize> {
         if wait >= Self::SHORT {
             self.stream.set_read_timeout(Some(wait))?;

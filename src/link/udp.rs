@@ -11,11 +11,11 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use super::{Broadcast, Clock, DatagramPort, Datagrams, LinkError, LinkErrorKind, wake_before_others};
 use crate::units::Moment;
 
-/// The longest packet that is accepted; process data are much shorter.
+/// Maximum accepted packet length in bytes; process data are much shorter.
 const LONGEST: usize = 1500;
-/// Largest number of received packets that wait to be read. Further packets are dropped.
+/// Maximum number of received packets waiting to be read; further packets are dropped.
 const WAITING: usize = 64;
-/// The longest time until a receiver notices that its owner has been dropped.
+/// Maximum time until a receiver thread notices that its owner has been dropped.
 const GLANCE: Duration = Duration::from_millis(100);
 
 /// UDP channels to the target of a TCP connection, bound to the local address that leads to it.
@@ -64,7 +64,7 @@ impl DatagramPort for UdpPort {
     }
 }
 
-/// Returns the address of ours from which packets to a target leave.
+/// Returns the local address from which packets to the target leave.
 fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
     // Sends nothing, and selects the network interface.
@@ -75,7 +75,8 @@ fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     }
 }
 
-/// Packets to and from one target. A thread receives, so that a wait ends exactly with the packet or the time.
+/// Packets to and from one target. A dedicated thread receives them, so that a wait ends exactly when the packet
+/// arrives or the time is up.
 struct Packets {
     name: String,
     target: SocketAddrV4,
@@ -88,7 +89,7 @@ struct Packets {
     clock: Arc<dyn Clock>,
 }
 
-/// A thread that listens at a socket, until this is dropped.
+/// A thread that listens on a socket until the listener is dropped.
 struct Listener {
     is_stopped: Arc<AtomicBool>,
 }
@@ -213,13 +214,13 @@ impl UdpBroadcast {
     }
 }
 
-/// Returns the broadcast addresses of the networks that are reached without a gateway, if the system lists them.
+/// Returns the broadcast addresses of the directly connected networks, if the system lists them.
 fn networks_of_ours() -> Vec<Ipv4Addr> {
     std::fs::read_to_string("/proc/net/route").map(|table| broadcasts(&table)).unwrap_or_default()
 }
 
-/// Returns the broadcast addresses in the routing table of Linux: interface, destination, gateway, flags, …, mask (the
-/// eighth column).
+/// Returns the broadcast addresses in Linux's routing table, whose columns are interface, destination, gateway, flags,
+/// … and, eighth, the mask.
 fn broadcasts(table: &str) -> Vec<Ipv4Addr> {
     let address = |text: &str| u32::from_str_radix(text, 16).ok().map(|raw| u32::from_be_bytes(raw.to_le_bytes()));
     let mut found = Vec::new();

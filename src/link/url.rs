@@ -42,7 +42,7 @@ impl Scheme {
         Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
     }
 
-    /// Returns the part that is required after the colon.
+    /// Describes what has to follow the colon, with an example.
     fn needs(self) -> &'static str {
         match self {
             Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
@@ -214,7 +214,7 @@ const MODBUS_PORT: &str = ":502";
 /// Default port of EtherNet/IP explicit messages.
 const ENIP_PORT: &str = ":44818";
 
-/// Returns whether a text is a host alone, which may be an IPv6 address in brackets.
+/// Returns whether the target is a host without a port; the host may be an IPv6 address in brackets.
 fn has_no_port(target: &str) -> bool {
     !target.is_empty() && (!target.contains(':') || target.ends_with(']'))
 }

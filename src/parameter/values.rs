@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::Refused;
 use crate::expected::{Expected, Limit, Quantity};
 
-/// The values that a parameter takes.
+/// The set of values that a parameter accepts.
 pub trait Values {
     type Value;
 
@@ -14,12 +14,12 @@ pub trait Values {
 
     fn allowed(&self) -> Expected;
 
-    /// Prints a value, if it is short enough for an example.
+    /// Formats a value, if it is short enough to serve as an example.
     fn print(&self, _value: &Self::Value) -> String {
         String::new()
     }
 
-    /// Returns the symbol of the unit; empty if there is none.
+    /// Returns the unit symbol, or an empty string if the values have no unit.
     fn unit(&self) -> &'static str {
         ""
     }
@@ -29,35 +29,35 @@ pub trait Values {
         false
     }
 
-    /// Returns the meaning of the value of a key.
+    /// Parses the value of a key.
     ///
     /// # Errors
-    /// Returns the allowed values.
+    /// Returns the allowed values if the key does not accept the value.
     fn take(&self, key: &str, value: &str) -> Result<Self::Value, Refused> {
         self.read(value).ok_or_else(|| Refused::new(key, value, self.allowed()))
     }
 }
 
-/// Whole numbers: their quantity and range.
+/// Whole numbers, with their quantity and range.
 #[derive(Clone, Debug)]
 pub struct Whole<T>(pub Quantity, pub RangeInclusive<T>);
 
-/// Numbers that may have a decimal point: their quantity and range, exact to a thousandth.
+/// Numbers that may have a decimal point, with their quantity and range, exact to a thousandth.
 #[derive(Clone, Debug)]
 pub struct Decimal(pub Quantity, pub RangeInclusive<f64>);
 
 #[derive(Clone, Debug)]
 pub struct Milliseconds(pub RangeInclusive<u64>);
 
-/// Volts, read as millivolts of a range.
+/// Voltages entered in volts and stored in millivolts, with the allowed range in millivolts.
 #[derive(Clone, Debug)]
 pub struct Millivolts(pub RangeInclusive<u16>);
 
-/// Words, each with its meaning.
+/// Keywords, each with its meaning.
 #[derive(Clone, Copy, Debug)]
 pub struct Words<T: 'static>(pub &'static [(&'static str, T)]);
 
-/// Values of a form of their own, and how one is read.
+/// Values in a custom notation, with the function that parses them.
 #[derive(Clone, Debug)]
 pub struct Checked<T>(pub Expected, pub fn(&str) -> Option<T>);
 
@@ -67,10 +67,10 @@ pub struct Maybe<V>(pub V);
 
 pub const SWITCH: Words<bool> = Words(&[("on", true), ("off", false)]);
 
-/// Any text, whose meaning depends on other parameters. No text is refused here.
+/// Any string; its meaning depends on other parameters, so none is refused at this stage.
 pub const ANY: Checked<String> = Checked(Expected::words(&[]), |text| Some(text.to_owned()));
 
-/// Parses a whole number that fits into its type: decimal, or hexadecimal after `0x`.
+/// Parses a whole number that fits into `T`: decimal, or hexadecimal after `0x`.
 pub fn number<T: TryFrom<i128>>(text: &str) -> Option<T> {
     let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         Some(digits) => u64::from_str_radix(digits, 16).ok()?.into(),
@@ -79,7 +79,7 @@ pub fn number<T: TryFrom<i128>>(text: &str) -> Option<T> {
     T::try_from(number).ok()
 }
 
-/// Returns the symbol of a unit, for values shown with it in a form.
+/// Returns the unit symbol shown next to a value in a form.
 const fn sign(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Milliseconds => "ms",

@@ -10,13 +10,13 @@ use super::{Comparison, ProfileError};
 
 /// Profile of one kind of device, implemented by the device.
 pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
-    /// The word for the kind of device, as on the command line and in profiles.
+    /// Keyword for the kind of device on the command line and in profiles.
     const KIND: &'static str;
 
     /// Entry of the format in [`Formats`].
     const FORMAT: &'static dyn ProfileFormat = &FormatOf::<Self>(PhantomData);
 
-    /// The formats with only this one: for places where no other kind is possible.
+    /// The profile formats reduced to this kind, for callers that accept no other.
     const FORMATS: Formats = Formats::new(&[Self::FORMAT]);
 
     /// Parses the profile from the entries of a document.
@@ -86,7 +86,7 @@ impl<P: Profile> ProfileBody for P {
     }
 }
 
-/// The format of a [`Profile`].
+/// The file format of a [`Profile`].
 struct FormatOf<P>(PhantomData<fn() -> P>);
 
 impl<P: Profile> fmt::Debug for FormatOf<P> {
@@ -192,7 +192,7 @@ impl Formats {
         self.0.iter().map(|format| format.kind())
     }
 
-    /// Reads the content for the kind of device that a document names.
+    /// Parses the content for the kind of device named in the document.
     pub(super) fn parse(self, kind: String, entries: &mut Entries) -> Result<Body, ProfileError> {
         match self.0.iter().find(|format| format.kind() == kind) {
             Some(format) => format.parse(entries),

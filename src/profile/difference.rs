@@ -48,7 +48,7 @@ impl Comparison {
     }
 }
 
-/// Runs of differing bytes, as far as both sides reach.
+/// Returns the runs of differing bytes, up to the length of the shorter side.
 pub(crate) fn runs(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (at, _) in left.iter().zip(right).enumerate().filter(|(_, (a, b))| a != b) {

@@ -4,17 +4,18 @@ use std::cell::{Cell, RefCell};
 
 use super::{ProfileError, SCHEMA};
 
-/// State shared by the structures of a file while it is read.
+/// State shared by the structures of a file while it is being read.
 #[derive(Default)]
 pub(super) struct Reading {
-    /// The newer schema of the file, whose unknown entries are kept.
+    /// Schema of the file if it is newer than the supported one; unknown entries are kept in that case.
     newer: Cell<Option<u32>>,
     beyond: RefCell<Vec<String>>,
-    /// The misspelt name of an entry that was not found, and the cause of an error about that entry.
+    /// A misspelt name in place of a missing entry, which explains an error about that entry.
     slip: RefCell<Option<Misspelling>>,
 }
 
-/// A name that differs from another one by a typing error. The one with the fewest different letters is the least.
+/// A name that differs from an expected one by a typing error. Misspellings are ordered by the number of differing
+/// letters.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Misspelling {
     pub(super) letters: usize,
@@ -23,7 +24,7 @@ pub(super) struct Misspelling {
 }
 
 impl Misspelling {
-    /// Returns the error without its line, which is added later.
+    /// Returns the error without its line number, which is added later.
     pub(super) fn error(self) -> ProfileError {
         let Misspelling { path, intended, .. } = self;
         ProfileError::Misspelt { line: 0, column: 0, path, intended }
@@ -31,7 +32,7 @@ impl Misspelling {
 }
 
 impl Reading {
-    /// Notes that the file is of this newer schema.
+    /// Notes that the file uses the given newer schema.
     pub(super) fn set_newer(&self, schema: u32) {
         self.newer.set(Some(schema));
     }
@@ -40,24 +41,24 @@ impl Reading {
         self.newer.get().is_some()
     }
 
-    /// Notes that the entry at this path is beyond the schema.
+    /// Notes that the entry at this path is not part of the known schema.
     pub(super) fn is_beyond(&self, path: String) {
         self.beyond.borrow_mut().push(path);
     }
 
-    /// Places of entries beyond the schema, in the order of reading.
+    /// Returns the paths of the entries beyond the known schema, in reading order.
     pub(super) fn beyond(&self) -> Vec<String> {
         self.beyond.borrow().clone()
     }
 
-    /// Records a misspelt name where reading ended early. The innermost structure counts.
+    /// Records a misspelt name where reading ended early. The innermost structure takes precedence.
     pub(super) fn is_misspelt(&self, slip: Misspelling) {
         self.slip.borrow_mut().get_or_insert(slip);
     }
 
-    /// Returns the error to report: about the misspelt name if that is the cause. An error about another entry is
-    /// attributed to a misspelt name only if no more than one letter differs. For a file with a newer schema, the schema is
-    /// the error.
+    /// Returns the error to report, which is the misspelt name if that is the cause. An error about another entry is
+    /// attributed to a misspelt name only if no more than one letter differs. For a file with a newer schema, the
+    /// schema is the error.
     pub(super) fn reported_error(&self, error: ProfileError) -> ProfileError {
         if let Some(found) = self.newer.get() {
             return ProfileError::Schema { found, known: SCHEMA };
@@ -72,8 +73,8 @@ impl Reading {
     }
 }
 
-/// Returns how many letters differ between a name and the intended one, if that looks like a typing error: a few do, or
-/// one is the beginning of the other. Case, hyphens and underscores do not count.
+/// Returns how many letters differ between a name and the intended one if that looks like a typing error: only a few
+/// letters differ, or one name is a prefix of the other. Case, hyphens and underscores are ignored.
 pub(super) fn letters_apart(name: &str, intended: &str) -> Option<usize> {
     let plain = |text: &str| -> Vec<char> {
         text.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()
@@ -85,7 +86,8 @@ pub(super) fn letters_apart(name: &str, intended: &str) -> Option<usize> {
     (begins || letters <= (longer.len() / 2).clamp(1, 3)).then_some(letters)
 }
 
-/// Letters that have to be put in, left out, replaced or exchanged with their neighbour to make one of the other.
+/// Returns the number of letters that must be inserted, removed, replaced or swapped with a neighbour to turn one name
+/// into the other.
 fn distance(from: &[char], to: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=to.len()).collect();

@@ -17,12 +17,12 @@ pub struct MountingMark<Item> {
     pub unknown: Unknown,
 }
 
-/// The entry that lists them.
+/// Name of the entry that lists the marks.
 const ENTRY: &str = "mounting";
 
 impl<Item> MountingMark<Item> {
-    /// Reads all marks of a profile. `item` parses a marked item or returns why it cannot; `expected` is the form of an
-    /// item.
+    /// Reads all marks of a profile. `item` parses a marked item or returns why the item is invalid; `expected`
+    /// describes the form of an item.
     pub(crate) fn read_all<E: Error + Clone + Eq + Send + Sync + 'static>(
         entries: &mut Entries,
         expected: Expected,
@@ -45,7 +45,7 @@ impl<Item> MountingMark<Item> {
 }
 
 impl<Item: ToString> MountingMark<Item> {
-    /// Writes all marks of a profile, with a comment on their purpose; writes nothing if there are none.
+    /// Writes all marks of a profile, with a comment on their purpose; writes nothing if the list is empty.
     pub(crate) fn write_all(marks: &[Self], comment: &str, writer: &mut Writer) {
         if marks.is_empty() {
             return;
@@ -61,5 +61,5 @@ impl<Item: ToString> MountingMark<Item> {
     }
 }
 
-/// Text for items that are copied onto another encoder only on request.
+/// Comment for items that are copied to another encoder only on request.
 pub(crate) const NEVER_BY_ITSELF: &str = "belongs to the mounting: never restored onto another encoder by itself";

@@ -5,7 +5,8 @@ use std::fmt;
 use ron::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-/// Returns line and column of an entry's name, counted from 1; `None` if there is none at that path (`fields[2].status`).
+/// Returns the line and column of an entry's name, counted from 1, or `None` if the path (such as `fields[2].status`)
+/// leads to no entry.
 pub(super) fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
     let sought = EntrySearch { path: String::new(), wanted: path };
     let found = ron::Options::default().from_str_seed(text, sought).err()?;
@@ -20,10 +21,10 @@ pub(super) fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
     Some((line, at.unwrap_or(found.span.end.col)))
 }
 
-/// Error text that ends the search when the entry is found.
+/// Error message that ends the search when the entry is found.
 const FOUND: &str = "found";
 
-/// A walk through the structures of a text to an entry.
+/// A walk through the structures of a document to an entry.
 struct EntrySearch<'w> {
     path: String,
     wanted: &'w str,

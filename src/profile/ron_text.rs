@@ -23,13 +23,12 @@ const EXTRA: &str = "extra";
 pub struct Entries {
     path: String,
     entries: BTreeMap<String, Value>,
-    /// Names that were asked for and are not there.
+    /// Requested names that do not exist.
     missed: Vec<String>,
     reading: Rc<Reading>,
 }
 
 impl Entries {
-    /// Opens the structure `value` at `path`.
     pub(super) fn open(path: &str, value: Value, reading: &Rc<Reading>) -> Result<Self, ProfileError> {
         let map = match unwrapped(value) {
             Value::Map(map) => map,
@@ -50,7 +49,7 @@ impl Entries {
         Ok(Entries { path: path.to_owned(), entries, missed: Vec::new(), reading: reading.clone() })
     }
 
-    /// Takes an entry as read, and records it if it is missing.
+    /// Takes an entry for reading, and records its name if the entry is missing.
     fn take(&mut self, name: &str) -> Option<Value> {
         let value = self.entries.remove(name);
         if value.is_none() {
@@ -59,7 +58,7 @@ impl Entries {
         value
     }
 
-    /// Returns the remaining entry that is most like a missing name, if no more than `most` letters differ.
+    /// Returns the remaining entry most similar to a missing name, if no more than `most` letters differ.
     fn misspelt(&self, most: usize) -> Option<Misspelling> {
         if self.reading.is_newer() {
             return None;
@@ -197,7 +196,7 @@ impl Entries {
 }
 
 impl Drop for Entries {
-    /// Reading ended early, before all names were requested: the missing entry may exist under a misspelt name.
+    /// Looks for a misspelt name if reading ended before all names were requested.
     fn drop(&mut self) {
         if let Some(slip) = self.misspelt(2) {
             self.reading.is_misspelt(slip);
@@ -205,7 +204,7 @@ impl Drop for Entries {
     }
 }
 
-/// Parses bytes of two digits each, so that a digit lost in an editor does not result in another byte.
+/// Parses bytes of two digits each, so that a digit lost in an editor does not yield a different byte.
 fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     match line.split_whitespace().find(|group| group.len() == 1) {
         Some(digit) => Err(HexError::Odd(digit.to_owned())),
@@ -213,7 +212,7 @@ fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     }
 }
 
-/// Returns `x` for `Some(x)`, which is also allowed.
+/// Returns `x` for `Some(x)`, which is allowed as well, and any other value unchanged.
 fn unwrapped(value: Value) -> Value {
     match value {
         Value::Option(Some(inner)) => *inner,
@@ -296,7 +295,7 @@ pub(crate) fn quoted(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
-/// Returns the user's own entries, to follow the known ones of a structure on one line: `, extra: {…}`.
+/// Formats the user's own entries to follow the known entries of a single-line structure: `, extra: {…}`.
 pub(crate) fn entries_text(unknown: &Unknown) -> String {
     if unknown.is_empty() { String::new() } else { format!(", {EXTRA}: {}", extra_text(unknown)) }
 }
@@ -307,7 +306,7 @@ fn extra_text(unknown: &Unknown) -> String {
     format!("{{{}}}", entries.join(", "))
 }
 
-/// Formats a value as RON; structures as `(name: value)` if their names allow it.
+/// Formats a value as RON, with structures as `(name: value)` if their names allow it.
 pub(crate) fn value_text(value: &Value) -> String {
     let is_name = |text: &str| {
         text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')

@@ -2,7 +2,7 @@
 
 use super::{Carried, Document, Profile};
 
-/// Changes a profile with its note, and saves it over the text from which it was read.
+/// Edits a profile and its note, and saves the profile over the text from which it was read.
 pub(crate) fn edited<P: Profile>(text: &str, edit: impl FnOnce(&mut Option<String>, &mut P)) -> (Document, Carried) {
     let mut document = Document::parse(text, P::FORMATS).unwrap();
     edit(&mut document.note, document.body.get_mut().unwrap());
@@ -11,7 +11,7 @@ pub(crate) fn edited<P: Profile>(text: &str, edit: impl FnOnce(&mut Option<Strin
     (document, carried)
 }
 
-/// Checks that a change replaces only `from` by `to` in the text, or nothing if there is none.
+/// Checks that an edit only replaces `from` with `to` in the text, or changes nothing if neither is given.
 pub(crate) fn changed_in_place<P: Profile>(text: &str, edit: impl FnOnce(&mut P), from: &str, to: &str) {
     let (_, same) = edited(text, |_, _: &mut P| {});
     assert_eq!(same, Carried { text: text.to_owned(), lost: Vec::new() });

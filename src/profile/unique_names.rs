@@ -8,10 +8,10 @@ use std::fmt;
 use ron::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-/// Any RON without duplicate names in a structure; the content itself is not kept.
+/// Visitor for any RON document that rejects duplicate names in a structure; the content is discarded.
 #[derive(Clone, Copy)]
 pub(super) struct UniqueNames<'t> {
-    /// The name that appears twice, if any.
+    /// The first duplicate name, if any.
     pub(super) twice: &'t RefCell<Option<String>>,
 }
 

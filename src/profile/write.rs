@@ -9,15 +9,15 @@ use super::{Consent, Operation, Plan, WriteRecord};
 
 /// The device to which a plan is written: the parts that differ between kinds.
 pub trait Write {
-    /// The values that a plan is based on.
+    /// Device values that a plan is based on.
     type Base: Hash;
     /// An operation of a plan.
     type Op: Operation + Clone + Hash;
-    /// The reason why an operation ended early.
+    /// The reason why an operation failed.
     type Error: OperationError;
     /// Record of the write that the profile was the backup of.
     type Written: WriteRecord;
-    /// The state in which an interrupted write left the device.
+    /// State in which an interrupted write left the device.
     type EndState;
 
     /// Reads the base of the plan again without writing, after checking that the device is the one for which the plan
@@ -77,7 +77,7 @@ pub trait Write {
 
 /// The reason why an operation of a plan ended early.
 pub trait OperationError: fmt::Display {
-    /// The error of the device or its connection.
+    /// The error type of the device and its connection.
     type Device;
 
     /// Returns the error of the device or its connection, or `None` for other causes.
@@ -128,12 +128,13 @@ pub struct Interrupted<Op, E, Done, Left> {
     pub end_state: Left,
 }
 
-/// [`Interrupted`], of a kind of device.
+/// [`Interrupted`] for one kind of device.
 pub(crate) type InterruptedWrite<W> =
     Interrupted<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::EndState>;
 
 impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
-    /// Checks the consent, and lets the device read the base of the plan again; `None` if the consent is for another plan.
+    /// Checks the consent and has the device read the plan's base values again. Returns `None` if the consent was given
+    /// for another plan.
     pub(crate) fn confirm<W: Write<Base = Base, Op = Op>>(
         plan: &'p Plan<Base, Op>,
         consent: Consent,
@@ -147,10 +148,10 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
         self.plan
     }
 
-    /// Carries the plan out; each operation is reported before it begins, with its number from 0.
+    /// Executes the plan. Each operation is reported, with its index from 0, before it begins.
     ///
     /// # Errors
-    /// Returns the progress of an interrupted write.
+    /// Returns the progress of the interrupted write.
     pub(crate) fn carry_out<W: Write<Base = Base, Op = Op>>(
         &self,
         write: &mut W,
@@ -174,7 +175,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
 }
 
 impl<Op, E: OperationError, Done: WriteRecord, Left> Interrupted<Op, E, Done, Left> {
-    /// Returns the cause for the logbook; `None` if the user cancelled.
+    /// Returns the cause for the logbook, or `None` if the user cancelled.
     pub(crate) fn reason(&self) -> Option<String> {
         (!self.cause.is_only_cancelled()).then(|| self.cause.to_string())
     }

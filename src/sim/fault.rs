@@ -93,7 +93,7 @@ pub struct Carried {
 }
 
 impl Faults {
-    /// Longest delay in milliseconds.
+    /// Maximum delay in milliseconds.
     const MAX_DELAY_MS: u32 = 60_000;
 
     /// Returns the delay added before each reply.
@@ -130,7 +130,8 @@ fn happens(probability: f64, rng: &mut Rng) -> bool {
 impl FromStr for Faults {
     type Err = FaultError;
 
-    /// Parses `drop:0.01,delay:5`; of an item given twice the last one counts, and an empty text means no fault.
+    /// Parses a list such as `drop:0.01,delay:5`. If an item is given twice, the last one counts; an empty string means
+    /// no fault.
     fn from_str(text: &str) -> Result<Self, FaultError> {
         let mut faults = Faults::default();
         for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {

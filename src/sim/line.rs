@@ -10,7 +10,7 @@ use fastrand::Rng;
 use super::{ByteDevice, Faults};
 use crate::units::{CharacterFormat, Moment};
 
-/// Items in transit, ordered by their moment, and by insertion within the same moment.
+/// Items in transit, ordered by time and, for equal times, by insertion.
 #[derive(Clone, Debug)]
 pub(crate) struct Queue<T>(VecDeque<(Moment, T)>);
 
@@ -30,7 +30,7 @@ impl<T> Queue<T> {
         self.0.len()
     }
 
-    /// Returns when the next event counts.
+    /// Returns when the next event is due.
     pub(crate) fn due(&self) -> Option<Moment> {
         self.0.front().map(|(at, _)| *at)
     }
@@ -54,20 +54,20 @@ pub(crate) struct Character {
     pub(crate) start: Moment,
     pub(crate) end: Moment,
     pub(crate) byte: u8,
-    /// Whether one bit was inverted on the way, so that a parity bit is wrong.
+    /// Whether one bit was inverted in transit, so that a parity bit is wrong.
     pub(crate) flipped: bool,
 }
 
-/// The outcome of sent bytes.
+/// The outcome of a transmission.
 pub(crate) struct Sent {
     pub(crate) heard: Vec<Character>,
-    /// The characters as sent: an echoing converter returns them without the noise of the line.
+    /// The characters as sent: an echoing converter returns them without line noise.
     pub(crate) own: Vec<Character>,
-    /// The last one is through.
+    /// Time at which the last character ends.
     pub(crate) end: Moment,
 }
 
-/// The common parts of every line. Created with a device's settings.
+/// The parts common to all lines, created with a device's settings.
 #[derive(Clone)]
 pub(crate) struct Wires {
     pub(crate) faults: Faults,
@@ -75,7 +75,7 @@ pub(crate) struct Wires {
     pub(crate) host: CharacterFormat,
     pub(crate) now: Moment,
     host_done: Moment,
-    /// Numbers of bytes that the host's UART still sends, with the time at which the last of them is sent.
+    /// Numbers of bytes that the host's UART has yet to send, each with the time at which the last byte is sent.
     sending: VecDeque<(Moment, usize)>,
     /// Bytes that have arrived at the host.
     pub(crate) inbox: Vec<u8>,
@@ -94,18 +94,18 @@ impl Wires {
         }
     }
 
-    /// Number of bytes that a UART buffers, as in a device server; further bytes are lost. No request of these protocols is
-    /// longer, and at 9600 bit/s it takes half a second.
+    /// Number of bytes that a UART buffers, as in a device server; further bytes are lost. No request of the simulated
+    /// protocols is longer, and at 9600 bit/s it takes half a second to send.
     const BUFFER: usize = 512;
 
-    /// Returns how many bytes the host's UART can still accept.
+    /// Returns how many more bytes the host's UART can accept.
     fn room(&mut self) -> usize {
         let now = self.now;
         while self.sending.pop_front_if(|(end, _)| *end <= now).is_some() {}
         Self::BUFFER.saturating_sub(self.sending.iter().map(|(_, count)| count).sum())
     }
 
-    /// Sends bytes over the noisy line, from `start` on, each taking the time of a character.
+    /// Sends bytes over the noisy line from `start` on, each taking one character time.
     pub(crate) fn send(&mut self, start: Moment, character: Duration, bytes: &[u8]) -> Sent {
         let mut sent = Sent { heard: Vec::new(), own: Vec::new(), end: start };
         for byte in bytes {
@@ -125,9 +125,9 @@ impl Wires {
     }
 }
 
-/// A line and its devices. Implementing this makes it a [`ByteDevice`].
+/// A line with its devices. Implementing this trait makes the line a [`ByteDevice`].
 pub(crate) trait VirtualLine: Send {
-    /// The next event; of events at the same moment the least comes first.
+    /// An event on the line; of simultaneous events, the smallest comes first.
     type Event;
 
     fn wires(&self) -> &Wires;

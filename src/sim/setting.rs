@@ -113,7 +113,7 @@ impl Values for Rpm {
     }
 }
 
-/// Returns the keys and values of a query, for a test.
+/// Returns the keys and values of a query, for tests.
 #[cfg(test)]
 pub(crate) fn pairs(query: &str) -> Vec<(String, String)> {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));

@@ -21,16 +21,16 @@ pub enum ReadCaptureError {
     Cancelled,
 }
 
-/// Reports bytes read and bytes in all; 0 in all for a file without a length (a pipe).
+/// Callback that receives the number of bytes read and the total, which is 0 for a file without a length (a pipe).
 pub type OnProgress<'a> = &'a mut dyn FnMut(u64, u64);
 
-/// Bytes per piece. Between two pieces, progress is reported and cancellation is checked.
+/// Bytes read at a time. Between two reads, progress is reported and cancellation is checked.
 const PIECE: usize = 1 << 20;
 
 /// Reads a capture and returns how its table was interpreted.
 ///
 /// # Errors
-/// [`ReadCaptureError`]: the file is missing, is not a capture, or `cancel` was set.
+/// Returns a [`ReadCaptureError`] if the file is missing or is not a capture, or if `cancel` was set.
 pub fn read_capture(
     path: &Path,
     hints: &TableHints,
@@ -71,11 +71,11 @@ pub fn read_capture(
     }
 }
 
-/// Returns the first bytes of a file, [`HEAD`] of them or all if it is shorter. A pipe can be read only once, so nothing is
-/// read from it here.
+/// Returns the first [`HEAD`] bytes of a file, or all bytes of a shorter file. Nothing is read from a pipe, since it
+/// can be read only once.
 ///
 /// # Errors
-/// [`FileError`] if it cannot be read.
+/// Returns a [`FileError`] if the file cannot be read.
 pub fn capture_head(path: &Path) -> Result<Vec<u8>, FileError> {
     let failed = |error: io::Error| FileProblem::from(error).of(FileTask::Read, path);
     let mut head = Vec::new();

@@ -11,7 +11,7 @@ use super::files::{create_folder, read_text, write_atomically};
 
 const EXTENSION: &str = "ron";
 
-/// The exclusive right to keep a draft while this value lives; the system releases it when a program ends.
+/// The exclusive right to keep a draft while the value lives; the system releases the claim when the program ends.
 #[derive(Debug)]
 pub struct Claim {
     _lock: FileLock,
@@ -25,17 +25,17 @@ impl Drafts {
         Drafts(folder)
     }
 
-    /// Writes a draft, `<device>/<key>.ron`, over the one before.
+    /// Writes a draft, `<device>/<key>.ron`, replacing the previous one.
     ///
     /// # Errors
-    /// Returns an error if the folder cannot be created or the file cannot be written; then the previous draft still
-    /// exists.
+    /// Returns an error if the folder cannot be created or the file cannot be written; the previous draft is then
+    /// preserved.
     pub fn save(&self, device: &str, key: &str, text: &str) -> Result<(), FileError> {
         create_folder(&self.folder_of(device))?;
         write_atomically(&self.path_of(device, key), text.as_bytes())
     }
 
-    /// Reads a draft; `None` if there is none.
+    /// Reads a draft, or returns `None` if the draft does not exist.
     ///
     /// # Errors
     /// Returns an error if a draft exists but cannot be read.
@@ -51,10 +51,10 @@ impl Drafts {
         fs::read_dir(self.folder_of(device)).is_ok_and(|mut files| files.next().is_some())
     }
 
-    /// Claims a draft; `None` if it is already claimed, in this program or another.
+    /// Claims a draft, or returns `None` if the draft is already claimed by this or another program.
     ///
     /// # Errors
-    /// Returns an error if no file can be created for the lock.
+    /// Returns an error if the lock file cannot be created.
     pub fn claim(&self, device: &str, key: &str) -> Result<Option<Claim>, FileError> {
         // Outside the folder of the drafts, so that listing those finds nothing else.
         let folder = self.0.with_file_name("locks").join(safe_name(device, Case::Kept));
@@ -66,7 +66,7 @@ impl Drafts {
     /// Removes a draft, if it exists.
     ///
     /// # Errors
-    /// Returns an error if it cannot be removed.
+    /// Returns an error if the draft cannot be removed.
     pub fn remove(&self, device: &str, key: &str) -> Result<(), FileError> {
         let path = self.path_of(device, key);
         match fs::remove_file(&path).map_err(FileProblem::from) {

@@ -35,57 +35,53 @@ impl fmt::Display for FileTask {
     }
 }
 
-/// The obstacle to reading or writing a file.
+/// The reason why a file could not be read or written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FileProblem {
     /// The file does not exist.
     #[error("it does not exist")]
     NotFound,
-    /// The folder in which the file is to be written does not exist.
+    /// The folder of the new file does not exist.
     #[error("its folder does not exist")]
     NoFolder,
-    /// A file is in a place where the path needs a folder.
+    /// A component of the path is a file instead of a folder.
     #[error("a part of the path is a file, not a folder")]
     NotFolder,
     #[error("it is a folder")]
     IsFolder,
-    /// The path is that of a pipe or a device.
+    /// The path leads to a pipe or a device.
     #[error("it is no file but a pipe or a device")]
     NotAFile,
-    /// The file exists, and replacing it was not allowed.
+    /// The file exists and must not be replaced.
     #[error("it exists already")]
     Exists,
-    /// This user may not do this.
+    /// The user lacks the required permission.
     #[error("permission denied")]
     PermissionDenied,
-    /// The file, or its disk, is marked as read-only.
+    /// The file or its disk is marked as read-only.
     #[error("it is write-protected")]
     WriteProtected,
-    /// The disk is full, or this user's share of it.
+    /// The disk is full, or the user's quota is exhausted.
     #[error("the disk is full")]
     DiskFull,
-    /// Another program has had it locked for seconds.
+    /// Another program has kept the file locked for seconds.
     #[error("another program keeps it locked")]
     InUse,
-    /// The file is larger than any the program writes.
+    /// The file is larger than any file the program writes.
     #[error("it is larger than {limit} bytes")]
     TooLarge {
-        /// Most bytes possible.
+        /// Maximum size in bytes.
         limit: u64,
     },
-    /// The file is not a text, or a text in another encoding.
+    /// The file is not text, or uses another encoding.
     #[error("it is not UTF-8 text: byte {offset} does not fit")]
     NotUtf8 {
-        /// The first byte that does not fit, counted from 0.
+        /// Offset of the first invalid byte, counted from 0.
         offset: usize,
     },
-    /// Any other error, as named by the system.
+    /// Any other error reported by the system.
     #[error("{what}")]
-    Other {
-        /// The system's kind of error.
-        kind: io::ErrorKind,
-        what: String,
-    },
+    Other { kind: io::ErrorKind, what: String },
 }
 
 impl From<io::Error> for FileProblem {
@@ -109,7 +105,7 @@ impl FileProblem {
         FileError { path: path.to_owned(), task, problem: self }
     }
 
-    /// Returns the problem of creating a new file, where the file itself cannot be the missing one.
+    /// Returns the problem with creating a new file, in which case the file itself cannot be what is missing.
     pub(super) fn while_making(error: io::Error) -> Self {
         match error.into() {
             FileProblem::NotFound => FileProblem::NoFolder,

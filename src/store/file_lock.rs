@@ -9,19 +9,19 @@ use std::time::{Duration, Instant};
 use super::file_error::{FileError, FileProblem, FileTask};
 use super::files::{create_folder, read_text, write_atomically};
 
-/// The longest time for another program to read and write a file.
+/// Maximum time to wait for another program to read and write a file.
 const PATIENCE: Duration = Duration::from_secs(2);
 const RETRY: Duration = Duration::from_millis(5);
 
-/// A lock that no other program has while this lives.
+/// A lock that excludes all other programs while the value lives.
 #[derive(Debug)]
 pub(super) struct FileLock {
     _locked: File,
 }
 
 impl FileLock {
-    /// Locks with a file, which is created if it is missing; `None` if the lock is held elsewhere, in this program or
-    /// another.
+    /// Acquires a lock file, which is created if missing; returns `None` if the lock is held by this or another
+    /// program.
     pub(super) fn try_at(path: &Path) -> Result<Option<Self>, FileError> {
         let failed = |error: io::Error| FileProblem::from(error).of(FileTask::Write, path);
         let file = open(path).map_err(failed)?;
@@ -45,12 +45,12 @@ fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Replaces a text by the result of `make`, which receives the current text or the error of reading it. No other program
-/// that uses this function writes in between. The text is written as by [`write_atomically`], in a folder that is created
-/// if it is missing; `None` leaves it unchanged.
+/// Replaces a file's text with the result of `make`, which receives the current text or the error of reading it; `None`
+/// leaves the file unchanged. No other program that uses this function can write in between. The text is written as by
+/// [`write_atomically`], in a folder that is created if missing.
 ///
 /// # Errors
-/// [`FileProblem::InUse`] if another program keeps the lock, and those of [`write_atomically`] and of `make`.
+/// Returns [`FileProblem::InUse`] if another program keeps the lock, and the errors of [`write_atomically`] and `make`.
 pub fn update_text<T>(
     path: &Path,
     make: impl FnOnce(Result<String, FileError>) -> Result<(Option<String>, T), FileError>,
@@ -80,7 +80,7 @@ fn wait_for(path: &Path) -> Result<FileLock, FileError> {
     }
 }
 
-/// The file is replaced with each write, so that it cannot be locked itself.
+/// Returns the path of the lock file, which is separate because the file itself is replaced by each write.
 fn lock_of(path: &Path) -> PathBuf {
     let mut beside = path.to_owned().into_os_string();
     beside.push(".lock");

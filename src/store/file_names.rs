@@ -1,17 +1,17 @@
 //! Folder and file names derived from external strings such as serial numbers and item names.
 
-/// How a name records the case of its letters, which file names on Windows and macOS do not distinguish.
+/// How a name records letter case, which file names on Windows and macOS do not distinguish.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Case {
-    /// It does not: no two names differ only in case.
+    /// Case is not recorded: no two names differ only in case.
     Kept,
-    /// As part of the name: names may differ only in case.
+    /// Case is part of the name: names may differ only in case.
     Told,
 }
 
-/// Returns the name of a folder, or of a file without its extension, for any text, different for different texts, on every
-/// system: letters, digits, `.`, `_` and `-` are unchanged, every other byte is `%XX`. With [`Case::Told`], lower-case
-/// letters add `%` and an `l` or a `u` for each letter.
+/// Returns a file name without extension (or folder name) for any text, valid on every system and different for
+/// different texts: letters, digits, `.`, `_` and `-` are unchanged, every other byte becomes `%XX`. With
+/// [`Case::Told`], lower-case letters add `%` and an `l` or a `u` for each letter.
 pub(super) fn safe_name(text: &str, case: Case) -> String {
     if text.is_empty() {
         return "%none".to_owned();
@@ -43,7 +43,7 @@ pub(super) fn safe_name(text: &str, case: Case) -> String {
     name
 }
 
-/// Returns whether it is the name of a device on Windows, with any extension.
+/// Returns whether Windows reserves the name for a device, with any extension.
 fn is_reserved(text: &str) -> bool {
     let stem = text.split('.').next().unwrap_or(text).to_ascii_uppercase();
     match stem.as_str() {

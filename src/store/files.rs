@@ -12,20 +12,20 @@ use tempfile::NamedTempFile;
 
 use super::file_error::{FileError, FileProblem, FileTask};
 
-/// Most bytes that [`read_text`] reads: 16 MiB. The largest profile is a hundredth of it.
+/// Maximum number of bytes read by [`read_text`]: 16 MiB. The largest profile is a hundredth of that.
 pub const MAX_TEXT: u64 = 16 << 20;
 
-/// The byte order mark, as some editors write it before a text.
+/// The byte order mark that some editors write before a text.
 const MARK: &str = "\u{FEFF}";
 
 /// Writes a file so that a crash or a full disk leaves either the old content or the new one.
 ///
-/// A file that exists keeps its permissions; a link stays a link, and its target is replaced. A device or a pipe
+/// An existing file keeps its permissions; a link stays a link, and its target is replaced. A device or a pipe
 /// (`/dev/stdout`) has no content to protect and is written to directly.
 ///
 /// # Errors
-/// Returns an error, with the old content unchanged: the folder is missing, the target is a folder or write-protected, the
-/// disk is full.
+/// Returns an error, with the old content unchanged, if the folder is missing, the target is a folder or
+/// write-protected, or the disk is full.
 pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if fs::metadata(path).is_ok_and(|target| !target.is_dir() && !target.is_file()) {
         return write_directly(path, content).map_err(|error| FileProblem::from(error).of(FileTask::Write, path));
@@ -33,10 +33,10 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_by(path, |file| file.write_all(content))
 }
 
-/// Writes a text as [`write_atomically`] does. If the file has a byte order mark from an editor, the mark remains.
+/// Writes a text like [`write_atomically`] does, but preserves an existing byte order mark from an editor.
 ///
 /// # Errors
-/// Errors as for [`write_atomically`].
+/// Returns the errors of [`write_atomically`].
 pub fn write_text_over(path: &Path, text: &str) -> Result<(), FileError> {
     let is_file = fs::metadata(path).is_ok_and(|target| target.is_file());
     let has_mark = is_file && read_at_most(path, 3).is_ok_and(|head| head == MARK.as_bytes());
@@ -44,11 +44,11 @@ pub fn write_text_over(path: &Path, text: &str) -> Result<(), FileError> {
     write_atomically(path, [mark, text].concat().as_bytes())
 }
 
-/// Writes a file as [`write_atomically`] does, with content that `write` produces in parts. When `write` fails, the old
+/// Writes a file like [`write_atomically`] does, with content that `write` produces in parts. If `write` fails, the old
 /// file remains.
 ///
 /// # Errors
-/// Errors as for [`write_atomically`], and those of `write`; a device or a pipe is refused.
+/// Returns the errors of [`write_atomically`] and of `write`; a device or a pipe is refused.
 pub fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
     let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
     let permissions = match fs::metadata(path) {
@@ -67,10 +67,11 @@ pub fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
 
-/// Writes a new file as [`write_atomically`] does, but never replaces one, even if another program writes at the same time.
+/// Writes a new file like [`write_atomically`] does, but never replaces an existing one, even if another program writes
+/// at the same time.
 ///
 /// # Errors
-/// [`FileProblem::Exists`] if the file exists.
+/// Returns [`FileProblem::Exists`] if the file exists.
 pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
     let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
     let folder = folder_of(path).map_err(failed)?;
@@ -80,7 +81,7 @@ pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
 
-/// Makes a folder and those above it that are missing.
+/// Creates a folder and its missing parents.
 pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|error| match error.into() {
         // A folder that exists is no error: this is a file, or a link that leads nowhere.
@@ -89,10 +90,10 @@ pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     })
 }
 
-/// Writes a file of the program's own as [`write_atomically`] does, in a folder that is created if it is missing.
+/// Writes one of the program's own files like [`write_atomically`] does, in a folder that is created if missing.
 ///
 /// # Errors
-/// Returns an error if the folder cannot be created; otherwise as for [`write_atomically`].
+/// Returns an error if the folder cannot be created, and the errors of [`write_atomically`].
 pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
@@ -100,10 +101,10 @@ pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_atomically(path, content)
 }
 
-/// Reads a text as [`read_text`] does, but only from a file: reading a pipe could block forever.
+/// Reads a text like [`read_text`] does, but only from a regular file, since reading a pipe could block forever.
 ///
 /// # Errors
-/// Errors as for [`read_text`]; also if it is a pipe or a device.
+/// Returns the errors of [`read_text`], and an error for a pipe or a device.
 pub fn read_file(path: &Path) -> Result<String, FileError> {
     match fs::metadata(path) {
         Ok(found) if !found.is_file() && !found.is_dir() => Err(FileProblem::NotAFile.of(FileTask::Read, path)),
@@ -137,8 +138,8 @@ fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes directly. A pipe without a reader would block forever: after a time it is abandoned, with the thread that waits
-/// for it.
+/// Writes to a file directly. A pipe without a reader would block forever, so after a time it is abandoned along with
+/// the waiting thread.
 fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     const PATIENCE: Duration = Duration::from_secs(8);
     let (sender, written) = mpsc::channel();
@@ -151,9 +152,9 @@ fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     written.recv_timeout(PATIENCE).unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "nobody reads it")))
 }
 
-/// Returns the file at the end of a chain of links; it need not exist.
+/// Returns the file at the end of a chain of links; the file need not exist.
 fn through_links(path: &Path) -> io::Result<PathBuf> {
-    /// Largest number of links, as in Linux.
+    /// Maximum number of links followed, as in Linux.
     const MOST: usize = 40;
     let mut target = path.to_owned();
     for _ in 0..MOST {
@@ -174,7 +175,7 @@ fn folder_of(path: &Path) -> Result<&Path, FileProblem> {
     }
 }
 
-/// Writes and flushes a temporary file in the folder of the target; it is removed when dropped.
+/// Writes and flushes a temporary file in the target's folder; the file is removed when dropped.
 fn stage(
     folder: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -201,7 +202,8 @@ mod platform {
     use std::os::unix::fs::PermissionsExt;
     use std::path::Path;
 
-    /// Sets the permissions of any new file; a temporary file is otherwise private to its owner. The umask applies.
+    /// Gives a new file the usual permissions, subject to the umask; a temporary file is otherwise private to its
+    /// owner.
     pub(super) fn with_usual_permissions(builder: &mut tempfile::Builder<'_, '_>) {
         builder.permissions(Permissions::from_mode(0o666));
     }

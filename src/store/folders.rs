@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 
 use directories::UserDirs;
 
-/// The folders from which relative paths start.
+/// The base folders of relative paths.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Folders {
     working: Option<PathBuf>,
@@ -13,7 +13,7 @@ pub struct Folders {
 }
 
 impl Folders {
-    /// Returns the folder in which the program was started, and the user's home.
+    /// Returns the working directory in which the program was started and the user's home.
     pub fn of_user() -> Self {
         let home = UserDirs::new().map(|own| own.home_dir().to_owned());
         Folders { working: std::env::current_dir().ok(), home }
@@ -23,18 +23,18 @@ impl Folders {
         Folders { working: Some(working.to_owned()), home: Some(home.to_owned()) }
     }
 
-    /// Returns the folder from which relative paths start; `None` if the system does not name one.
+    /// Returns the folder from which relative paths start, or `None` if the system does not report one.
     pub fn working(&self) -> Option<&Path> {
         self.working.as_deref()
     }
 
-    /// Returns the user's home; `None` if the system names none.
+    /// Returns the user's home, or `None` if the system does not report one.
     pub fn home(&self) -> Option<&Path> {
         self.home.as_deref()
     }
 
-    /// Returns an absolute path to the same file: a leading `~` is the user's home, and any other relative path starts from
-    /// the folder in which the program was started.
+    /// Returns an absolute path to the given file: a leading `~` is the user's home, and any other relative path starts
+    /// from the folder in which the program was started.
     pub fn absolute(&self, path: &Path) -> PathBuf {
         let mut parts = path.components();
         let from_home = parts.next() == Some(Component::Normal(OsStr::new("~")));

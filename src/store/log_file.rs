@@ -16,16 +16,16 @@ use tracing_subscriber::filter::Targets;
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::{fmt, registry};
 
-/// Bytes from which a new file begins.
+/// Size in bytes from which a new file is begun.
 const LARGE: u64 = 1 << 20;
 
-/// Lines that wait for the disk, at most.
+/// Maximum number of lines waiting to be written.
 const QUEUE: usize = 1024;
 
-/// Time that the end of the program waits for the last lines.
+/// Maximum time that the program waits for the last lines when it ends.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// A handle that accepts lines for the log file without ever waiting. Clones write into the same file.
+/// A handle that accepts lines for the log file without ever blocking. Clones write to the same file.
 #[derive(Clone, Debug)]
 pub struct LogFile {
     queue: Sender<Order>,
@@ -35,16 +35,16 @@ pub struct LogFile {
 #[derive(Debug)]
 enum Order {
     Line(Vec<u8>),
-    /// Everything before has been written.
+    /// A request to report when everything before it has been written.
     Flush(Sender<()>),
 }
 
 impl LogFile {
-    /// Starts writing the messages of this program (from the level "info") and the warnings of its libraries into this
-    /// file, creating it and its folder if they are missing. If it cannot be opened, the program works without.
+    /// Starts writing this program's messages (from level "info") and its libraries' warnings to the given file,
+    /// creating the file and its folder if missing. If the file cannot be opened, the program runs without a log file.
     ///
     /// # Errors
-    /// Returns an error if the system has no free thread.
+    /// Returns an error if no thread can be started.
     pub fn begin(path: &Path) -> io::Result<Self> {
         let own = path.to_owned();
         let log = Self::writing_into(move || Rotating::open(&own, LARGE), QUEUE)?;
@@ -75,7 +75,7 @@ impl LogFile {
         }
     }
 
-    /// Waits until everything is in the file, but not for a disk that hangs.
+    /// Waits until everything has been written to the file, but gives up if the disk hangs.
     pub fn wait(&self) {
         let (done, waited) = bounded(1);
         if self.queue.send_timeout(Order::Flush(done), PATIENCE).is_ok() {
@@ -106,7 +106,7 @@ fn write_all(mut file: impl Write, orders: &Receiver<Order>, dropped: &AtomicU64
     }
 }
 
-/// A line at a time.
+/// Queues one line per write.
 impl Write for LogFile {
     fn write(&mut self, line: &[u8]) -> io::Result<usize> {
         self.add(line);
@@ -118,7 +118,7 @@ impl Write for LogFile {
     }
 }
 
-/// A file that starts again when it has grown large.
+/// A file that starts over once it has grown large.
 struct Rotating {
     path: PathBuf,
     large: u64,

@@ -40,22 +40,22 @@ pub struct Store {
 /// The reason why the store cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StoreError {
-    /// The system names no home folder for this user.
+    /// The system does not report a home folder for this user.
     #[error("this user has no home folder")]
     NoHome,
     /// A file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// One of the user's own files about a kind of device is invalid, with the error of that device.
+    /// One of the user's own device files is invalid; the error comes from its kind of device.
     #[error("{0}")]
     Refused(Cause),
 }
 
 impl Store {
-    /// Creates the folders that the system keeps for this user and this program.
+    /// Opens the store in the system's folders for this user and program, creating them if missing.
     ///
     /// # Errors
-    /// [`StoreError::NoHome`] if there are none.
+    /// Returns [`StoreError::NoHome`] if the system does not report such folders.
     pub fn for_user() -> Result<Self, StoreError> {
         let folders = ProjectDirs::from("", "", "encoder-studio")
             // With a relative home, backups would depend on the folder in which the program is started.
@@ -64,47 +64,48 @@ impl Store {
         Ok(Store { data: folders.data_dir().to_owned(), config: folders.config_dir().to_owned() })
     }
 
-    /// Returns a store in the folders `data` and `config` under `root`, for a test or a portable copy.
+    /// Returns a store in the folders `data` and `config` under `root`, for tests or a portable copy.
     pub fn at(root: &Path) -> Self {
         Store { data: root.join("data"), config: root.join("config") }
     }
 
-    /// Returns the backups taken before devices were written.
+    /// Returns the backups taken before devices were written to.
     pub fn backups(&self) -> Backups {
         Backups::in_folder(self.data.join("backups"))
     }
 
-    /// Returns the drafts: edits that are not written yet.
+    /// Returns the drafts, which are edits that have not been written yet.
     pub fn drafts(&self) -> Drafts {
         Drafts::in_folder(self.data.join("drafts"))
     }
 
-    /// Returns the modes that devices had before a job changed them: a text each, until the mode is restored.
+    /// Returns the device modes in effect before a job changed them, as one text per device until the mode is restored.
     pub fn excursions(&self) -> Drafts {
         Drafts::in_folder(self.data.join("excursions"))
     }
 
-    /// Returns the file of the program's settings; it need not exist.
+    /// Returns the path of the program's settings; the file need not exist.
     pub fn settings_path(&self) -> PathBuf {
         self.config.join("settings.ron")
     }
 
-    /// Returns the file for the program's own messages; it need not exist.
+    /// Returns the path of the program's own log; the file need not exist.
     pub fn log_path(&self) -> PathBuf {
         self.data.join("encoder-studio.log")
     }
 
-    /// Returns the file for [`Logbook::open`].
+    /// Returns the path to pass to [`Logbook::open`].
     pub fn logbook_path(&self) -> PathBuf {
         self.data.join("logbook.sqlite")
     }
 
-    /// Returns the file in which a user may describe devices of this kind; it need not exist.
+    /// Returns the path of the file in which a user may describe devices of the given kind; the file need not exist.
     pub fn device_file(&self, kind: &str) -> PathBuf {
         self.config.join("devices").join(kind).with_extension("ron")
     }
 
-    /// Returns the folder in which a user may describe devices of this kind, a file each (`*.ron`); it need not exist.
+    /// Returns the path of the folder in which a user may describe devices of the given kind, one per `*.ron` file; the
+    /// folder need not exist.
     pub fn device_folder(&self, kind: &str) -> PathBuf {
         self.config.join("devices").join(kind)
     }

@@ -98,7 +98,7 @@ fn writes(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     });
 }
 
-/// Draws the status codes that were read: the device does not report them again.
+/// Draws the recorded status codes, which the device does not report again.
 fn statuses(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     card(ui, theme, "statuses_card.title", |ui| {
         for status in device.statuses() {
@@ -110,7 +110,7 @@ fn statuses(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     });
 }
 
-/// Formats a time of the logbook in the local time zone.
+/// Formats a logbook time in the local time zone.
 pub(super) fn time(at: Timestamp) -> String {
     at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d  %H:%M:%S").to_string()
 }

@@ -15,20 +15,20 @@ use crate::store::Backup;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
 
-/// Shows and hides the help, over a dialog too.
+/// Key that shows or hides the help, even over a dialog.
 pub(super) const HELP_KEY: Key = Key::F1;
 
-/// The keys of the tabs with Ctrl, in the tabs' order.
+/// Keys that select the tabs together with Ctrl, in tab order.
 const TAB_KEYS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
-/// An action with a name.
+/// A named action.
 pub(super) struct Command {
-    /// The device or the tab that it is about; empty for the program.
+    /// Name of the device or tab that the command acts on; empty for the program.
     pub(super) about: String,
     pub(super) name: String,
     pub(super) shortcut: Option<KeyboardShortcut>,
-    /// While text is being typed, its key belongs to the text.
+    /// Whether the shortcut is left to text editing while the user is typing.
     pub(super) yields_to_typing: bool,
     pub(super) is_enabled: bool,
     pub(super) effect: Effect,
@@ -37,7 +37,7 @@ pub(super) struct Command {
 pub(super) enum Effect {
     Act(Action),
     Page(SessionId, usize),
-    /// Open a page of a tab without devices.
+    /// Opens a page of a tab without devices.
     ToolPage(Tab, usize),
     ToggleHelp,
     About,
@@ -51,7 +51,8 @@ pub struct NamedAction {
     pub action: Action,
 }
 
-/// Returns the commands that have a key, those with more modifiers first: with fewer, they would be taken for the others.
+/// Returns the commands that have a shortcut. Shortcuts with more modifiers come first, since they would otherwise be
+/// mistaken for those with fewer.
 pub(super) fn with_keys(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = of_program(theme, studio, views);
     if let Some(device) = studio.selected_device().filter(|device| device.tab() == studio.settings.tab) {
@@ -64,7 +65,7 @@ pub(super) fn with_keys(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Co
     commands
 }
 
-/// Returns all commands, those of the device that is shown first.
+/// Returns all commands, starting with those of the displayed device.
 pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = Vec::new();
     if let Some(device) = studio.selected_device() {
@@ -94,7 +95,7 @@ pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command>
     commands
 }
 
-/// Returns what can be asked for without a device.
+/// Returns the commands that need no device.
 fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let command = |word: &'static str, effect| Command::new("", theme.say(word), effect);
     let act = |word: &'static str, action| command(word, Effect::Act(action));
@@ -154,7 +155,7 @@ fn of_every_device(theme: &Theme, device: &AnyDevice, views: &Views) -> Vec<Comm
     ]
 }
 
-/// Returns the commands that restore a backup of the device.
+/// Returns the commands that restore one of the device's backups.
 fn backups(theme: &Theme, device: &AnyDevice) -> Vec<Command> {
     let Some(Ok(backups)) = device.backups() else { return Vec::new() };
     let restore = |backup: &Backup| {
@@ -165,7 +166,7 @@ fn backups(theme: &Theme, device: &AnyDevice) -> Vec<Command> {
     backups.iter().map(restore).collect()
 }
 
-/// Returns the commands that write an open profile to a connected device of its kind.
+/// Returns the commands that write an open profile to a connected device of the matching kind.
 fn targets(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
     let is_target = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let write = |target: &AnyDevice| {
@@ -178,7 +179,7 @@ fn targets(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
 }
 
 impl NamedAction {
-    /// An action whose button has this text in the catalogue of common texts.
+    /// Creates an action named after its button's label in the catalogue of common messages.
     pub fn new(theme: &Theme, word: &'static str, is_enabled: bool, action: Action) -> Self {
         NamedAction { name: theme.say(word), is_enabled, action }
     }

@@ -13,21 +13,21 @@ pub use super::label_column::{entry, row};
 use super::{Theme, icons};
 use crate::analysis::quality::Verdict;
 
-/// The least width for words beside an entry; an icon stands for them in less.
+/// Minimum width in points for a label beside an entry; in narrower spaces, an icon replaces the label.
 const BESIDE: f32 = 64.0;
-/// The least width of a dialog.
+/// Minimum width of a dialog in points.
 const MODAL: f32 = 240.0;
-/// Takes the whole width; in a very small window it may be negative.
+/// Takes up the whole available width, which may be negative in a very small window.
 pub(crate) fn fill(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
 }
 
-/// Draws words over several lines, beginning at the left.
+/// Draws wrapped, left-aligned text.
 pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
     ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
 }
 
-/// Draws why something cannot be shown or done.
+/// Draws the reason why something cannot be shown or done.
 pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     match problem {
         Some(problem) => paragraph(ui, RichText::new(theme.words(problem)).color(theme.palette.bad)),
@@ -36,7 +36,8 @@ pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::T
     }
 }
 
-/// Draws why entries cannot be used, below them, in a space that is always reserved: nothing below moves when it comes.
+/// Draws the reason why entries are invalid below them. The space is always reserved, so that nothing below moves when
+/// a message appears.
 pub(crate) fn problem_below(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -47,7 +48,7 @@ pub(crate) fn problem_below(ui: &mut Ui, theme: &Theme, problem: Option<&crate::
     });
 }
 
-/// Draws why an entry cannot be used, at its right: nothing moves when it comes.
+/// Draws the reason why an entry is invalid to its right, so that nothing moves when a message appears.
 pub(crate) fn problem_beside(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let Some(problem) = problem else { return };
     let (words, ink) = (theme.words(problem), theme.palette.bad);
@@ -58,8 +59,8 @@ pub(crate) fn problem_beside(ui: &mut Ui, theme: &Theme, problem: Option<&crate:
     }
 }
 
-/// Draws a message on one line, or smaller on two, which are together as high as a button: nothing below it moves. One that is
-/// longer has a tooltip with all of it.
+/// Draws a message on one line, or in a smaller font on two lines with a total height of one button, so that nothing
+/// below moves. A longer message is shown in full in a tooltip.
 pub(crate) fn two_lines(ui: &mut Ui, theme: &Theme, words: String, ink: egui::Color32) -> Response {
     let width = ui.available_width();
     let font = |size: f32| egui::FontId::proportional(size);
@@ -76,7 +77,7 @@ pub(crate) fn two_lines(ui: &mut Ui, theme: &Theme, words: String, ink: egui::Co
     if elided { response.on_hover_text(words) } else { response }
 }
 
-/// Draws a dialog over the window, which is blocked meanwhile.
+/// Draws a modal dialog over the window.
 pub(super) fn modal<R>(
     ctx: &egui::Context,
     theme: &Theme,
@@ -99,8 +100,8 @@ pub(super) fn modal<R>(
     shown.inner
 }
 
-/// Draws the buttons at the end of a dialog, the first at the right, in a line as high as a button: centred in the
-/// remaining space they would keep the dialog at its former height.
+/// Draws the buttons at the end of a dialog, the first one at the far right, on a line as high as a button. If they
+/// were centred in the remaining space, they would keep the dialog from shrinking.
 pub(super) fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
@@ -110,13 +111,13 @@ pub(crate) fn button(ui: &mut Ui, icon: &str, word: &str) -> Response {
     enabled_button(ui, true, icon, word)
 }
 
-/// Draws a button that may not be pressed now.
+/// Draws a button that may be disabled.
 pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
     name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
 }
 
-/// Draws a button with the reason why it is disabled.
+/// Draws a button, with the reason as a tooltip if it is disabled.
 pub(crate) fn allowed_button(
     ui: &mut Ui,
     theme: &Theme,
@@ -142,19 +143,19 @@ pub(crate) fn primary(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &str, wor
     name(ui.add_enabled(enabled, button), enabled, word)
 }
 
-/// Draws an icon button; its text is the tooltip.
+/// Draws an icon button with its label as a tooltip.
 pub(crate) fn icon_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
     let response = ui.add_enabled(enabled, Button::new(icon).min_size(vec2(28.0, 28.0)));
     name(response, enabled, word).on_hover_text(word).on_disabled_hover_text(word)
 }
 
-/// Gives a widget the name by which a screen reader and a test find it.
+/// Gives a widget the name by which screen readers and tests find it.
 pub(crate) fn name(response: Response, enabled: bool, word: &str) -> Response {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, enabled, word));
     response
 }
 
-/// Draws a short text in a frame of its colour.
+/// Draws a short label in a coloured frame.
 pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<egui::Color32>) {
     let colour = colour.into();
     let font = egui::FontId::proportional(theme.sizes.caption);
@@ -180,7 +181,7 @@ pub(crate) fn empty(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&st
     pressed
 }
 
-/// Draws an icon that opens a small panel below itself. Clicks and typing there do not close it.
+/// Draws an icon that opens a small panel below it. Clicks and typing inside the panel do not close it.
 pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnce(&mut Ui)) {
     let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(icon).min_size(vec2(28.0, 28.0));
@@ -192,7 +193,7 @@ pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnc
     name(response, true, word).on_hover_text(word);
 }
 
-/// Draws a choice from a list, with a name for screen readers.
+/// Draws a drop-down list, with a name for screen readers.
 pub(crate) fn choice<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
@@ -220,8 +221,8 @@ pub(crate) fn choice<T: PartialEq + Copy>(
     *value != before
 }
 
-/// Draws a choice with all options visible, as many per row as fit: also where a list could not open, in a panel that a
-/// click outside closes.
+/// Draws a choice with all options visible, as many per row as fit. This also works where a list could not open, such
+/// as in a panel that an outside click closes.
 pub(crate) fn options<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
@@ -246,7 +247,7 @@ pub(crate) fn options<T: PartialEq + Copy>(
     *value != before
 }
 
-/// Draws a spinner that turns slowly enough to cost nothing.
+/// Draws a spinner that turns slowly enough to use hardly any CPU time.
 pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
     const STEPS: f64 = 8.0;
     let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
@@ -261,7 +262,7 @@ pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(125));
 }
 
-/// Returns icon and colour of a verdict on a signal.
+/// Returns the icon and colour for a verdict on a signal.
 pub(crate) fn verdict(theme: &Theme, verdict: Verdict) -> (&'static str, crate::app::Rgb) {
     let palette = theme.palette;
     match verdict {
@@ -271,7 +272,7 @@ pub(crate) fn verdict(theme: &Theme, verdict: Verdict) -> (&'static str, crate::
     }
 }
 
-/// Draws a verdict with its text, in its colour.
+/// Draws a verdict with its label, in its colour.
 pub(crate) fn verdict_ui(ui: &mut Ui, theme: &Theme, own: Verdict, words: &crate::app::Text) {
     let (icon, colour) = verdict(theme, own);
     ui.horizontal_top(|ui| {
@@ -291,7 +292,7 @@ pub(crate) fn severity(theme: &Theme, severity: crate::app::Severity) -> (&'stat
     }
 }
 
-/// Draws two columns of cards if they fit, else one below the other.
+/// Draws two columns of cards if they fit, or a single column if not.
 pub(crate) fn two_columns<C>(
     ui: &mut Ui,
     theme: &Theme,
@@ -302,7 +303,8 @@ pub(crate) fn two_columns<C>(
     split(ui, theme, (0.5, 640.0), context, left, right);
 }
 
-/// The page of an encoder: who it is and its check, beside what it says; a profile has no more than who it is and the wiring.
+/// Draws an encoder's page, with its identity and check beside its readings; a profile has only the identity and the
+/// wiring.
 pub(crate) fn encoder_page<C>(
     ui: &mut Ui,
     theme: &Theme,
@@ -321,7 +323,8 @@ pub(crate) fn encoder_page<C>(
     two_columns(ui, theme, context, left, |ui, context| if is_profile { wiring(ui) } else { status(ui, context) });
 }
 
-/// Two columns of cards, the left one with this share of the width, from this width on; else one below the other.
+/// Draws two columns of cards, the left one with the given share of the width. Below the minimum width, draws a single
+/// column instead.
 pub(crate) fn split<C>(
     ui: &mut Ui,
     theme: &Theme,
@@ -350,7 +353,7 @@ pub(crate) fn split<C>(
     });
 }
 
-/// Draws a dot: filled for a connection, hollow for none.
+/// Draws a dot that is filled if connected and hollow if not.
 pub(crate) fn dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
     let (rect, _) = ui.allocate_exact_size(vec2(12.0, 16.0), Sense::hover());
     let colour = colour.into();

@@ -29,7 +29,7 @@ impl PageInfo {
 
 /// Pages of a tab.
 pub trait TabPage: Copy + PartialEq + Default + 'static {
-    /// All pages, in the order of the navigation.
+    /// All pages in navigation order.
     const PAGES: &'static [(Self, PageInfo)];
 
     /// Returns the index of the page within its tab.
@@ -42,7 +42,7 @@ pub(crate) fn infos<P: TabPage>() -> Vec<PageInfo> {
     P::PAGES.iter().map(|(_, info)| *info).collect()
 }
 
-/// Returns the page at an index; `None` if the tab has fewer.
+/// Returns the page at an index, or `None` if the tab has fewer pages.
 pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
     P::PAGES.get(place).map(|(page, _)| *page)
 }
@@ -53,12 +53,12 @@ pub trait TypedDeviceView: Sync + 'static {
     type Device: DeviceType;
     /// Pages of the device's tab.
     type Page: TabPage;
-    /// The text buffers and selections of one session; they are dropped when another device replies.
+    /// Text buffers and selections of one session, which are dropped when another device replies.
     type Memory: Default + 'static;
-    /// The form in the connection dialog.
+    /// The form that edits a link to this device.
     type ConnectForm: TypedConnectForm;
 
-    /// Whether the keys of undo and redo act on the edits of the device; false if an editor has its own.
+    /// Whether the undo and redo keys act on the device's edits; false if an editor handles the keys itself.
     const HAS_UNDO_KEYS: bool;
 
     /// Returns what distinguishes a device from others of its kind, or `None` if that is unknown or irrelevant.
@@ -218,7 +218,7 @@ struct Session<V: TypedDeviceView> {
     memory: Memory<V::Memory>,
 }
 
-/// Memory of a session's view, and the device that it belongs to.
+/// Memory of a session's view, with the serial number of its device.
 #[derive(Default)]
 struct Memory<M> {
     serial_number: Option<String>,
@@ -226,7 +226,7 @@ struct Memory<M> {
 }
 
 impl<M: Default> Memory<M> {
-    /// Returns the memory for this device, without text and selections for another one.
+    /// Returns the memory for the given device, after clearing another device's text and selections.
     fn of(&mut self, serial_number: Option<&str>) -> &mut M {
         if let Some(own) = serial_number
             && self.serial_number.as_deref() != Some(own)
@@ -314,13 +314,13 @@ impl TabViews {
         self.pages(tab).into_iter().map(|page| page.word).collect()
     }
 
-    /// Returns the pages of a tab in their order.
+    /// Returns the pages of a tab in order.
     pub(crate) fn pages(self, tab: Tab) -> Vec<PageInfo> {
         let of_device = self.device(tab).map(DeviceView::pages);
         of_device.or_else(|| self.tool(tab).map(ToolView::pages)).unwrap_or_default()
     }
 
-    /// Returns all tabs in their order.
+    /// Returns all tabs in order.
     pub(crate) fn tabs(self) -> impl Iterator<Item = Tab> {
         self.of_devices().chain(self.tools.iter().map(|view| view.kind().tab()))
     }
@@ -330,17 +330,17 @@ impl TabViews {
         title.or_else(|| self.device(tab).map(|view| view.kind().bus().to_owned())).unwrap_or_default()
     }
 
-    /// Returns the tabs of devices in their order.
+    /// Returns the device tabs in order.
     pub(crate) fn of_devices(self) -> impl Iterator<Item = Tab> {
         self.devices.iter().map(|view| view.kind().tab())
     }
 
-    /// Returns the view of the device that a tab shows.
+    /// Returns the view of the device shown in a tab.
     pub(crate) fn device(self, tab: Tab) -> Option<&'static dyn DeviceView> {
         self.devices.iter().copied().find(|view| view.kind().tab() == tab)
     }
 
-    /// Returns the tabs without devices in their order.
+    /// Returns the tabs without devices in order.
     pub(crate) fn tools(self) -> &'static [&'static dyn ToolView] {
         self.tools
     }

@@ -16,35 +16,35 @@ pub(super) enum Pane {
     Log,
 }
 
-/// The part of the row that the panel Live takes at first.
+/// Initial share of the row taken by the Live panel.
 const LIVE: f32 = 0.3;
-/// Width of the panel Live with values alone.
+/// Width in points of the Live panel without its plot.
 const VALUES: f32 = 248.0;
 
 impl Pane {
     const ALL: [Pane; 5] = [Pane::Workspace, Pane::Live, Pane::Trace, Pane::Jobs, Pane::Log];
-    /// The panes of the lower panel.
+    /// Panes of the lower panel.
     const LOWER: [Pane; 3] = [Pane::Trace, Pane::Jobs, Pane::Log];
 }
 
-/// The arrangement of the panels.
+/// The panel layout.
 pub(super) struct Docks {
     tree: Tree<Pane>,
     edited: bool,
-    /// The panel Live was drawn as values alone; `None` before it was drawn.
+    /// Whether the Live panel was last drawn without its plot; `None` before the first frame.
     alone: Option<bool>,
-    /// Its part of the row that it stands in, with its plot.
+    /// Share of the row taken by the Live panel when it shows its plot.
     with_plot: f32,
 }
 
 impl Docks {
-    /// Loads the stored arrangement, or else the default.
+    /// Loads the stored layout, or the default one.
     pub(super) fn load(layout: Option<&str>) -> Self {
         let tree = layout.and_then(|text| ron::from_str::<Tree<Pane>>(text).ok()).filter(is_complete);
         Docks { tree: tree.unwrap_or_else(first_layout), edited: false, alone: None, with_plot: LIVE }
     }
 
-    /// Returns the arrangement as text, if it has changed since the last call.
+    /// Returns the serialized layout if it has changed since the last call.
     pub(super) fn changed(&mut self) -> Option<String> {
         std::mem::take(&mut self.edited).then(|| ron::to_string(&self.tree).ok()).flatten()
     }
@@ -72,7 +72,8 @@ impl Docks {
         hidden.iter().for_each(|tile| self.tree.set_visible(*tile, true));
     }
 
-    /// Gives the panel Live the width of its values, or the one it had with its plot, when that changes.
+    /// Resizes the Live panel when its plot appears or disappears: to the width of its values, or to its previous width
+    /// with the plot.
     fn fit_live(&mut self, alone: bool, width: f32) {
         if self.alone.replace(alone).is_none_or(|before| before == alone) {
             return;
@@ -98,7 +99,8 @@ impl Docks {
         }
     }
 
-    /// Returns the tiles that make up the lower panel, wherever they were dragged: those with nothing but its panes.
+    /// Returns the tiles that make up the lower panel, wherever they have been dragged: those that contain nothing but
+    /// its panes.
     fn lower_tiles(&self) -> Vec<TileId> {
         let mut lower = Vec::new();
         if let Some(root) = self.tree.root() {
@@ -107,7 +109,8 @@ impl Docks {
         lower
     }
 
-    /// Collects the outermost such tiles at or below `tile`. A pane that shares its tabs with another one stays there.
+    /// Collects the outermost lower-panel tiles at or below `tile`. A pane that shares its tabs with a pane of another
+    /// panel is left out.
     fn find_lower(&self, tile: TileId, lower: &mut Vec<TileId>) {
         if self.is_lower(tile) {
             lower.push(tile);
@@ -126,7 +129,7 @@ impl Docks {
     }
 }
 
-/// Returns whether each panel is in it once.
+/// Returns whether the tree contains each pane exactly once.
 fn is_complete(tree: &Tree<Pane>) -> bool {
     Pane::ALL.iter().all(|pane| {
         let same = |tile: &Tile<Pane>| matches!(tile, Tile::Pane(own) if own == pane);

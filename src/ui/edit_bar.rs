@@ -8,7 +8,8 @@ use super::{Theme, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 
-/// Width below which not all buttons of a profile, or those of a device and the count of edits, have room for their words.
+/// Width in points below which the buttons have no room for all their labels, beside a profile or a device's edit
+/// count.
 const NARROW: f32 = 660.0;
 
 /// The kind of edits that a page counts.
@@ -73,7 +74,7 @@ pub fn edit_bar_ui(
     });
 }
 
-/// Draws the number of edits, as a number only if the text does not fit.
+/// Draws the number of edits, without the label if it does not fit.
 fn edits(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     let color = theme.palette.staged;
     let font = egui::TextStyle::Body.resolve(ui.style());
@@ -84,7 +85,7 @@ fn edits(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     label.on_hover_text(words);
 }
 
-/// Draws the choice of a connected device of its kind to write the profile to.
+/// Draws the choice of a connected device of the matching kind to which the profile can be written.
 fn write_into(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();

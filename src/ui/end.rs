@@ -7,12 +7,12 @@ use std::time::Duration;
 
 use crate::app::{Action, Brakes, Mailbox, Studio};
 
-/// A window that is drawn answers in this time.
+/// Time within which a window that is being drawn responds.
 const ANSWERS: Duration = Duration::from_secs(2);
 /// Exit status of a program ended by a signal: 128 plus the number of SIGTERM.
 const ENDED: i32 = 143;
 
-/// Releases the drives when its thread ends, or when that thread ends the program.
+/// Guard that releases the drives when its thread ends or when that thread ends the program.
 struct ReleaseOnDrop(Brakes);
 
 impl Drop for ReleaseOnDrop {
@@ -23,11 +23,12 @@ impl Drop for ReleaseOnDrop {
 }
 
 thread_local! {
-    /// The display library ends the program itself when the display is lost: thread-local values are dropped even then.
+    /// Guard of the window's thread: the display library ends the program itself when the display is lost, but
+    /// thread-local values are dropped even then.
     static LAST: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
 }
 
-/// Handles signals, and the end of the window's thread, from now on.
+/// Installs the handlers for signals and for the end of the window's thread.
 pub(super) fn prepare(studio: &Studio) {
     let (brakes, mailbox) = (studio.brakes(), studio.mailbox());
     LAST.with(|last| last.set(ReleaseOnDrop(brakes.clone())).unwrap_or_default());
@@ -43,7 +44,7 @@ pub(super) fn prepare(studio: &Studio) {
     }
 }
 
-/// Ends the drives first, then the window as if it were closed, but without questions. Returns whether the window closes.
+/// Ends the drives first, then closes the window without any questions. Returns whether the window closes.
 fn end(brakes: &Brakes, mailbox: &Mailbox) -> bool {
     brakes.begin();
     mailbox.send(Action::Quit);

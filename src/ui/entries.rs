@@ -6,7 +6,7 @@ use super::Theme;
 use super::controls::entry;
 use crate::app::Text;
 
-/// Inner margin of a line of text, so that it is as high as a button.
+/// Inner margin that makes a text entry as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
 /// Draws a one-line entry with a name for screen readers.
 pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
@@ -43,7 +43,7 @@ fn entry_in(
     response
 }
 
-/// Draws a one-line entry for a secret: hidden on the screen, from screen readers and from undo.
+/// Draws a one-line entry for a secret, which is hidden on screen, from screen readers and from the undo history.
 pub(crate) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str) -> Response {
     let edit = egui::TextEdit::singleline(text).password(true).desired_width(width).margin(FIELD);
     let response = ui.add(edit);
@@ -51,7 +51,7 @@ pub(crate) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &s
     response
 }
 
-/// Empties a secret entry, with all that could bring it back.
+/// Clears a secret entry, including everything that could restore it.
 pub(crate) fn forget_secret(ui: &Ui, response: &Response, text: &mut String) {
     text.clear();
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
@@ -70,8 +70,8 @@ pub(crate) fn labelled_entry(
     entry(ui, theme, &word, |ui| text_entry(ui, text, width, &word, hint))
 }
 
-/// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. `draft` holds the text until then, or
-/// until it is valid: text refused by `take` stays, with the reason below it.
+/// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. `draft` holds the text until then;
+/// a text that `take` refuses stays in the entry, with the reason below.
 pub fn settled_entry(
     ui: &mut Ui,
     draft: &mut Option<(String, Option<crate::app::Text>)>,

@@ -9,7 +9,7 @@ use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
 
-/// Width of STOP while nothing moves.
+/// Width of the STOP button in points while nothing is moving.
 const STOP: f32 = 72.0;
 
 pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {

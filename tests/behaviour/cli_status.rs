@@ -15,7 +15,7 @@ fn position(bench: &Bench, codes: &str) -> Option<(Ran, Value)> {
     Some((ran, line))
 }
 
-/// Issue 22.10: the codes that `status` has removed from the encoder are in the logbook.
+/// Issue 22.10: the codes that `status` has removed in the encoder are in the logbook.
 #[test]
 fn status_codes_are_kept_in_the_logbook() {
     let bench = Bench::new();
@@ -47,7 +47,7 @@ fn status_reads_the_entire_queue_and_always_exits_with_success() {
     assert_eq!(told, json!({"ok": true, "errors": [], "warnings": []}));
 }
 
-/// Issue 22.10: 50h removes a code from the encoder: a reply ten times as late as allowed (17.6 ms, reference 4) is still
+/// Issue 22.10: 50h removes a code in the encoder: a reply ten times as late as allowed (17.6 ms, reference 4) is still
 /// accepted, so that a repeated request loses no code.
 #[test]
 fn codes_in_late_replies_are_not_lost() {

@@ -138,7 +138,7 @@ fn noted(desk: &Desk) -> Vec<String> {
     }
 }
 
-/// Issue 22.10: 50h removes a code from the encoder, so that it is in the logbook before it is shown: with every way to
+/// Issue 22.10: 50h removes a code in the encoder, so that it is in the logbook before it is shown: with every way to
 /// read it, and even if the job that read it fails.
 #[test]
 fn a_status_code_that_was_read_is_logged() {

@@ -1,4 +1,4 @@
-//! Profiles: saved from the encoder, opened beside it, edited without one.
+//! Profiles: saved in the encoder, opened beside it, edited without one.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;

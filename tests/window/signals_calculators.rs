@@ -43,7 +43,7 @@ fn the_input_circuit_is_computed_while_typing() {
     for words in ["102.400 kHz", "17578.1 rpm", "16.825°", "1.496/32", "0.95719", "338.6 kHz"] {
         assert!(screen.shows(words), "{words}");
     }
-    assert!(screen.shows("Within the bandwidth of 150 kHz"));
+    assert!(screen.shows("The signal is within the bandwidth of 150 kHz."));
     screen.retype("input.speed", "18000");
     assert!(screen.shows("Above the bandwidth of 150 kHz"));
     screen.retype("input.capacitance", "47 pigs");
@@ -67,7 +67,7 @@ fn absolute_and_analog_positions_are_synchronised_while_typing() {
     for words in ["339.02000", "30.36/32", "+1", "153051Eh", "119.186719°", "29.3 rpm"] {
         assert!(screen.shows(words), "{words}");
     }
-    assert_eq!(value(&screen), "They agree: -1.64/32 period apart.");
+    assert_eq!(value(&screen), "The positions agree to within -1.64/32 of a period.");
     screen.retype("synchronise.absolute", "10831");
     screen.retype("synchronise.phase", "0.47");
     assert!(screen.shows("338.47000"));

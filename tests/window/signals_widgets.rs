@@ -95,7 +95,7 @@ fn the_figure_has_an_accessible_value_and_a_corrected_view() {
             .unwrap_or_default();
         image.to_owned()
     };
-    assert_eq!(value(&screen), "Amplitude vector 0.415 … 0.558 V, good from 0.45 to 0.55 V");
+    assert_eq!(value(&screen), "Vector length 0.415 … 0.558 V, allowed 0.45 to 0.55 V");
     screen.click("quality.corrected");
     screen.act(Action::SetLanguage(Language::German));
     assert!(value(&screen).contains("0,415 … 0,558 V"), "{}", value(&screen));

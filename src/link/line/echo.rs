@@ -14,10 +14,10 @@ pub enum Echo {
 }
 
 impl Echo {
-    /// The values of `echo=`.
+    /// Accepted values of the `echo=` parameter.
     pub(crate) const WORDS: Words<Echo> = Words(&[("auto", Echo::Unknown), ("on", Echo::On), ("off", Echo::Off)]);
 
-    /// Returns the bytes after the echo of `sent`; `None` while it may still be the echo.
+    /// Returns the bytes after the echo of `sent`, or `None` while `line` may still be an incomplete echo.
     pub(crate) fn strip<'l>(self, line: &'l [u8], sent: &[u8]) -> Option<&'l [u8]> {
         match self {
             Echo::Off => Some(line),
@@ -30,7 +30,7 @@ impl Echo {
         }
     }
 
-    /// Learns from the first exchange with a valid answer.
+    /// Learns from the first validly answered exchange whether the line echoes.
     pub(crate) fn learn(&mut self, echo_heard: bool) {
         if *self == Echo::Unknown {
             *self = if echo_heard { Echo::On } else { Echo::Off };

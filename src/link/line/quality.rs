@@ -18,12 +18,12 @@ pub struct LineQuality {
     pub silent: u64,
     /// Number of replies that arrived too late.
     pub late: u64,
-    /// The newest reply times, from the first byte of the request to that of the reply.
+    /// The most recent reply times, from the first byte of a request to the first byte of its reply.
     answers: VecDeque<Duration>,
 }
 
 impl LineQuality {
-    /// Answer times that are kept.
+    /// Number of reply times kept.
     const ANSWERS: usize = 1000;
 
     /// Returns whether a request had to be repeated, or a reply arrived too late.

@@ -6,10 +6,10 @@ use super::{Echo, LineQuality};
 use crate::parameter::Milliseconds;
 use crate::units::Moment;
 
-/// The margin of the slowest connection.
+/// Margin of the slowest supported connection.
 pub(super) const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 
-/// The allowed delay of a reply beyond the protocol's worst case.
+/// Allowed reply delay beyond the protocol's worst case.
 pub(crate) const MARGIN: Milliseconds = Milliseconds(0..=LONGEST_MARGIN.as_millis() as u64);
 
 /// Line state that is kept between jobs.
@@ -25,9 +25,9 @@ pub struct LineState {
     /// Line quality.
     pub quality: LineQuality,
     pub(crate) quiet_until: Moment,
-    /// Time since which no valid reply came.
+    /// Time since which no valid reply has arrived.
     pub(super) troubled_since: Option<Moment>,
-    /// Time of the first request that has no reply yet.
+    /// Time of the first request that is still unanswered.
     pub(super) outstanding_since: Option<Moment>,
     /// Time of the last request.
     pub(super) last_sent: Moment,
@@ -68,17 +68,17 @@ impl LineState {
         self.quality.replies += 1;
     }
 
-    /// Notes when the reply began.
+    /// Records when the reply began.
     pub(crate) fn answer_began(&mut self, at: Moment) {
         self.quality.answered_after(at.since(self.last_sent));
     }
 
-    /// Resets the patience after a valid reply.
+    /// Resets the time-out margin after a valid reply.
     pub(crate) fn recovered(&mut self) {
         self.troubled_since = None;
     }
 
-    /// Allows further replies to come that much later, plus half as much again.
+    /// Allows further replies to be late by the given time plus half as much again.
     pub(super) fn allow_for(&mut self, lateness: Duration) {
         let margin = (self.margin + lateness).saturating_mul(3) / 2;
         self.margin = margin.min(LONGEST_MARGIN).max(self.margin);

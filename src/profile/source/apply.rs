@@ -5,12 +5,12 @@ use std::ops::Range;
 use super::changes::{Change, Step, means_the_same, steps};
 use super::tree::{Kind, Node, Part, comment_behind, read};
 
-/// Returns a text with all changes applied one after the other; `None` if one of them has no place in it.
+/// Applies the changes one after the other; returns `None` if one of them cannot be placed in the text.
 pub(in crate::profile) fn applied(text: &str, changes: &[Change]) -> Option<String> {
     changes.iter().try_fold(text.to_owned(), |text, change| apply(&text, change))
 }
 
-/// Returns a text with a change applied; `None` if it has no place in it.
+/// Applies a change to a text; returns `None` if the change cannot be placed.
 pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
     let root = read(text)?;
     let (last, way) = match change.path.split_last() {
@@ -39,7 +39,7 @@ pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
     }
 }
 
-/// Finds the value at a path of a text, with the steps to its predecessors, the nearest first.
+/// Finds the value at a path, along with the steps to its predecessors, nearest first.
 pub(super) fn value_at(text: &str, path: &[Step]) -> Option<(String, Vec<Step>)> {
     let root = read(text)?;
     let (last, way) = path.split_last()?;
@@ -63,7 +63,7 @@ fn replaced(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
     Some([text.get(..place.start)?, by, text.get(place.end..)?].concat())
 }
 
-/// Moves the comment that this program wrote after an entry together with its value; a user's own comment stays.
+/// Moves the comment that this program wrote after an entry along with its value; a user's own comment stays.
 fn with_comment(text: &str, at: usize, comments: &(Option<String>, Option<String>)) -> Option<String> {
     let found = comment_behind(text, at);
     match (found, comments) {
@@ -75,7 +75,7 @@ fn with_comment(text: &str, at: usize, comments: &(Option<String>, Option<String
     }
 }
 
-/// Returns the text without an entry, and without its line if the entry has its own.
+/// Returns the text without an entry, including its line if the entry has one to itself.
 fn without(text: &str, part: &Part) -> Option<String> {
     let before = text.get(..part.start())?;
     let after = part.end;
@@ -96,7 +96,7 @@ fn without(text: &str, part: &Part) -> Option<String> {
     replaced(text, &(start..after), "")
 }
 
-/// Returns the text with a new entry after its predecessor.
+/// Returns the text with a new entry inserted after its predecessor.
 fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Option<String> {
     if matches!(within.kind, Kind::Plain) || matches!(last, Step::At(_)) {
         return None;
@@ -144,7 +144,7 @@ fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Op
     }
 }
 
-/// Returns the text after an opening bracket and the comment on its line.
+/// Returns the text after an opening bracket and any comment on the same line.
 fn after_comment(text: &str) -> &str {
     match comment_behind(text, 0) {
         Some((place, _)) => text.get(place.end..).unwrap_or_default(),
@@ -152,14 +152,14 @@ fn after_comment(text: &str) -> &str {
     }
 }
 
-/// Returns the blanks with which the line of a place begins.
+/// Returns the indentation of the line at the given offset.
 fn indent_at(text: &str, at: usize) -> &str {
     let line = text.get(..at).unwrap_or_default().rfind('\n').map_or(0, |at| at + 1);
     let line = text.get(line..).unwrap_or_default();
     line.get(..line.len() - line.trim_start_matches([' ', '\t']).len()).unwrap_or_default()
 }
 
-/// Indents a value of several lines, which was written elsewhere, for its new place.
+/// Adapts the indentation of a multi-line value to its new position.
 fn indented(value: &str, indent: &str, end: &str) -> String {
     let mut lines = value.lines();
     let first = lines.next().unwrap_or_default().to_owned();
@@ -169,7 +169,7 @@ fn indented(value: &str, indent: &str, end: &str) -> String {
     rest.into_iter().fold(first, |all, line| format!("{all}{end}{indent}{}", line.get(own..).unwrap_or(line.trim())))
 }
 
-/// Joins a value of several lines into one; `None` if it contains a comment.
+/// Joins a multi-line value into one line, or returns `None` if the value contains a comment.
 fn one_line(value: &str) -> Option<String> {
     if !value.contains('\n') {
         return Some(value.to_owned());

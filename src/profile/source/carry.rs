@@ -13,8 +13,8 @@ pub struct Carried {
     pub lost: Vec<String>,
 }
 
-/// Returns a user's text, which contains what the program wrote as `before`, with the changes to `after`; `None` if it
-/// cannot be followed. The caller has to check that the result means the same as `after`.
+/// Applies the changes from `before` to `after` to the user's text, which contains what the program wrote as `before`.
+/// Returns `None` if the text cannot be followed. The caller has to check that the result means the same as `after`.
 pub(in crate::profile) fn carry(text: &str, before: &str, after: &str) -> Option<Carried> {
     let mut carried = text.to_owned();
     for change in changes(before, after)? {
@@ -24,7 +24,7 @@ pub(in crate::profile) fn carry(text: &str, before: &str, after: &str) -> Option
     Some(Carried { text: carried, lost })
 }
 
-/// Replaces the enclosing value if a part of it cannot be placed.
+/// Replaces the enclosing value if one of its parts cannot be placed.
 fn as_a_whole(text: &str, change: &Change, after: &str) -> Option<String> {
     (1..change.path.len()).rev().find_map(|length| {
         let path = change.path.get(..length)?.to_vec();
@@ -34,7 +34,7 @@ fn as_a_whole(text: &str, change: &Change, after: &str) -> Option<String> {
     })
 }
 
-/// Returns the comments of the user that are missing in the new text.
+/// Returns the user's comments that are missing in the new text.
 pub(in crate::profile) fn lost(text: &str, now: &str, generated: &str) -> Vec<String> {
     let (mut there, own) = (comments(now), comments(generated));
     let mut lost = Vec::new();

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::tree::{Kind, Node, Part, comment_behind, read};
 
-/// Entries that identify the elements of a list; the first existing one counts.
+/// Entries that identify the elements of a list; the first existing one takes precedence.
 const NAMES: [&str; 7] = ["number", "program", "cam", "bank", "banks", "item", "name"];
 
 /// A step of the path to an entry.
@@ -61,7 +61,7 @@ impl fmt::Display for Step {
     }
 }
 
-/// Returns the changes that turn `left` into `right`; `None` if one of them cannot be parsed here.
+/// Returns the changes that turn `left` into `right`, or `None` if either cannot be parsed.
 pub(in crate::profile) fn changes(left: &str, right: &str) -> Option<Vec<Change>> {
     let (from, to) = (read(left)?, read(right)?);
     let mut walk = Walk { left, right, path: Vec::new(), found: Vec::new() };
@@ -69,14 +69,13 @@ pub(in crate::profile) fn changes(left: &str, right: &str) -> Option<Vec<Change>
     Some(walk.found)
 }
 
-/// Returns whether two texts of plain values mean the same: `0x10` and `16`.
+/// Returns whether two plain values mean the same, such as `0x10` and `16`.
 pub(super) fn means_the_same(one: &str, other: &str) -> bool {
     let value = |text| ron::from_str::<Value>(text).ok();
     one == other || value(one).is_some_and(|own| Some(own) == value(other))
 }
 
-/// Returns the step to each part of a list or structure. Elements without a name of their own, or with the same name, use
-/// their index.
+/// Returns the step to each part of a list or structure. Elements without a unique name are identified by their index.
 pub(super) fn steps(text: &str, node: &Node) -> Vec<Step> {
     let slice = |part: &Part| part.key.as_ref().and_then(|key| text.get(key.clone()));
     let parts = node.parts();
@@ -103,7 +102,7 @@ fn name_of(text: &str, element: &Node) -> Option<Step> {
     matches!(element.kind, Kind::Entries(_)).then(|| NAMES.into_iter().find_map(entry)).flatten()
 }
 
-/// Returns a value in one notation, so that `0x10` and `16` are one name.
+/// Normalizes a value, so that `0x10` and `16` yield the same name.
 fn plain(value: &str) -> String {
     ron::from_str::<Value>(value).ok().and_then(|value| ron::to_string(&value).ok()).unwrap_or_else(|| value.to_owned())
 }
@@ -169,8 +168,8 @@ impl Walk<'_> {
     }
 }
 
-/// Returns whether the order is unchanged: named elements may be added and removed as long as the rest keeps its order;
-/// those without a name keep their number.
+/// Returns whether the order is unchanged. Named elements may be added or removed as long as the rest keep their order;
+/// unnamed elements keep their index.
 fn is_one_order(own: &[Step], other: &[Step]) -> bool {
     let common = |these: &[Step], those: &[Step]| -> Vec<Step> {
         these.iter().filter(|step| those.contains(step)).cloned().collect()
@@ -180,7 +179,7 @@ fn is_one_order(own: &[Step], other: &[Step]) -> bool {
     is_same && (!by_place(own) && !by_place(other) || own.len() == other.len())
 }
 
-/// Comments on the lines right above a place.
+/// Returns the comments on the lines directly above the given offset.
 fn heading(text: &str, at: usize) -> Vec<String> {
     let before = text.get(..at).unwrap_or_default();
     let own_line = before.rfind('\n').map_or(0, |at| at + 1);

@@ -3,15 +3,13 @@
 
 use std::ops::Range;
 
-/// A value in a text.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Node {
-    /// From its first character to the end of its last; for `Some(…)`, only the content.
+    /// Range from the first character to the end of the last; for `Some(…)`, only the content.
     pub(super) span: Range<usize>,
     pub(super) kind: Kind,
 }
 
-/// The structure of a value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Kind {
     /// A number, a string, an identifier or a tuple.
@@ -22,13 +20,13 @@ pub(super) enum Kind {
     Entries(Vec<Part>),
 }
 
-/// An element of a list, or an entry of a structure.
+/// An element of a list or an entry of a structure.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
-    /// The text before the colon.
+    /// Range of the key before the colon.
     pub(super) key: Option<Range<usize>>,
     pub(super) value: Node,
-    /// End of its value, or of the comma if there is one.
+    /// End of the value, or of the comma that follows.
     pub(super) end: usize,
     pub(super) comma: bool,
 }
@@ -48,7 +46,7 @@ impl Node {
     }
 }
 
-/// Parses a text; `None` if it cannot be parsed here.
+/// Parses a text; returns `None` if its syntax is not supported.
 pub(super) fn read(text: &str) -> Option<Node> {
     let mut reader = Reader { text, at: 0 };
     reader.skip();
@@ -76,7 +74,7 @@ pub(super) fn comments(text: &str) -> Vec<&str> {
     found
 }
 
-/// Returns the comment that follows a position on the same line, with its range.
+/// Returns the comment that follows a position on the same line, along with its range.
 pub(super) fn comment_behind(text: &str, at: usize) -> Option<(Range<usize>, &str)> {
     let rest = text.get(at..)?;
     let blanks = rest.len() - rest.trim_start_matches([' ', '\t']).len();
@@ -139,7 +137,7 @@ impl<'t> Reader<'t> {
         rest.get(2..at.saturating_sub(2)).map(str::trim)
     }
 
-    /// Skips a text or a character, whose quotes may contain anything.
+    /// Skips a string or character literal, which may contain any character.
     fn quoted(&mut self) -> Option<()> {
         let rest = self.rest();
         let plain = rest.strip_prefix('b').unwrap_or(rest);
@@ -195,7 +193,7 @@ impl<'t> Reader<'t> {
         Some(Node { span: start..self.at, kind })
     }
 
-    /// Parses a structure, or a tuple, which counts as a whole.
+    /// Parses a structure, or a tuple, which is treated as a single value.
     fn bracket(&mut self) -> Option<Kind> {
         let (parts, named) = self.parts('(', ')')?;
         Some(if named || parts.is_empty() { Kind::Entries(parts) } else { Kind::Plain })

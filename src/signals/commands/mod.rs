@@ -24,7 +24,7 @@ use crate::cli::runner::{Bar, failed};
 use crate::cli::{Done, Failure, Result};
 use crate::store::read_capture;
 
-/// `analyse`: a recorded signal.
+/// The `analyse` command, for a recorded signal.
 pub(crate) struct AnalyseCommand;
 
 impl OwnCommand for AnalyseCommand {
@@ -87,7 +87,7 @@ fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
     }
 }
 
-/// Prints DNL and INL, if there are a reference and the number of periods; the reason for missing ones is a remark.
+/// Prints DNL and INL if a reference and the number of periods are known, or else a remark on why they are missing.
 fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: Option<u32>) -> Option<Revolution> {
     let reference = capture.reference_deg.as_ref()?;
     let Some(periods) = periods else {

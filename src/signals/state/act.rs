@@ -20,11 +20,10 @@ use crate::link::LinkUrl;
 use crate::signals::state::TEXTS;
 use crate::store::ReadCaptureError;
 
-/// State of the Signals tab.
 pub struct Signals {
     family: Family,
     periods: Option<u32>,
-    /// The periods are those of the virtual encoder: they do not apply to a capture.
+    /// Whether the number of periods is that of the virtual encoder, which does not apply to a capture.
     periods_of_source: bool,
     pub(crate) source: Source,
     synchronise: Synchronise,
@@ -111,12 +110,12 @@ impl Tool for Signals {
 }
 
 impl Signals {
-    /// Creates the state with the links of adapters used before, the latest first.
+    /// Creates the state with the links of previously used adapters, latest first.
     pub(crate) fn at(links: &[String]) -> Self {
         Signals { source: Source::at(links.first()), ..Signals::default() }
     }
 
-    /// Starts an adapter: it gets its connection first, and is stored in the settings.
+    /// Starts an adapter once its connection is available, and stores its link in the settings.
     fn begin_with_adapter(&mut self, context: &mut ToolContext<'_>) {
         let earlier = match self.source.adapter_url() {
             Some(url) => context.free_wire(&url, TEXTS.text("session.let_go_for_signals")),
@@ -135,8 +134,8 @@ impl Signals {
         self.family
     }
 
-    /// Returns the signal periods per revolution, at least 1; `None`: not known, so nothing that depends on them is
-    /// reported.
+    /// Returns the signal periods per revolution, at least 1, or `None` if unknown; results that depend on them are
+    /// then omitted.
     pub fn periods(&self) -> Option<u32> {
         self.periods
     }
@@ -153,17 +152,17 @@ impl Signals {
         &self.source
     }
 
-    /// Returns the results of the capture that this one is compared with.
+    /// Returns the results of the capture used for comparison, if any.
     pub fn comparison(&self) -> Option<&Arc<Results>> {
         self.comparison.as_ref()
     }
 
-    /// Returns the table that was read last, whether it could be or not.
+    /// Returns the last table, even if it could not be read.
     pub fn table(&self) -> Option<&Table> {
         self.table.as_ref()
     }
 
-    /// Returns why the last table could not be read; the previous capture is still shown.
+    /// Returns why the last table could not be read; the previous capture is still displayed.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -176,19 +175,19 @@ impl Signals {
         &self.scope
     }
 
-    /// Returns the findings, the worst first.
+    /// Returns the findings, worst first.
     pub fn findings(&self) -> &[DiagnosisFinding] {
         self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
     }
 
-    /// Returns the changes since the capture that this one is compared with, both judged by the same limits.
+    /// Returns the changes since the capture used for comparison, with both judged by the same limits.
     pub fn changes(&self) -> Option<Changes> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
         let before = kept.diagnosis.by_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
         Some(compare(&before, &own.diagnosis))
     }
 
-    /// Sets the number of periods per revolution, and judges the capture again.
+    /// Sets the number of periods per revolution and judges the capture again.
     pub(super) fn set_periods(&mut self, periods: u32, of_source: bool, services: &mut Services) {
         self.periods = Some(periods.clamp(1, MOST_PERIODS));
         self.periods_of_source = of_source;
@@ -197,7 +196,7 @@ impl Signals {
         }
     }
 
-    /// Forgets the reading in progress: its result will not arrive.
+    /// Forgets the reading in progress, whose result will not arrive.
     pub(super) fn forget_reading(&mut self) {
         if let Some(reading) = self.reading.take() {
             self.table.clone_from(&reading.settled);
@@ -210,7 +209,6 @@ impl Signals {
         }
     }
 
-    /// Carries out an action.
     pub(crate) fn act(&mut self, action: SignalsAction, services: &mut Services) {
         match action {
             SignalsAction::Open(path) => self.open_at(TableSource::File(path), services),
@@ -268,7 +266,7 @@ impl Signals {
         }
     }
 
-    /// Handles a task without a result.
+    /// Handles a task that ended without a result.
     fn failed(&mut self, failed: Failed, services: &mut Services) {
         let what = match failed {
             Failed::Read(number) if self.reading.as_ref().is_some_and(|reading| reading.number == number) => {
@@ -282,14 +280,14 @@ impl Signals {
         services.notify(Severity::Error, vec![TEXTS.text(what)], None);
     }
 
-    /// Replaces the samples: a table of the previous ones that is being written cannot be completed.
+    /// Replaces the samples. A table of the previous samples that is still being written cannot be completed.
     pub(super) fn replace_scope(&mut self, scope: Scope, services: &Services) {
         self.scope.recorder.act(recorder::RecorderAction::CancelExport);
         task_guard::let_go(&services.tasks, std::mem::replace(&mut self.scope, scope));
     }
 
     fn show(&mut self, measurement: Measurement, services: &Services) {
-        /// Number of samples whose memory takes longer to release than a thread to start.
+        /// Number of samples above which releasing their memory takes longer than starting a thread.
         const LARGE: usize = 100_000;
         if let Some(before) = self.measurement.replace(Arc::new(measurement))
             && before.capture.sine_v.len() > LARGE
@@ -298,7 +296,7 @@ impl Signals {
         }
     }
 
-    /// Replaces the displayed capture by the newest samples of the source.
+    /// Replaces the displayed capture with the newest samples from the source.
     pub(super) fn show_live(&mut self, measurement: Measurement, services: &Services) {
         self.show(measurement, services);
         self.problem = None;
@@ -333,12 +331,12 @@ impl Signals {
         }
     }
 
-    /// Returns the table as it was read for the displayed capture, also while it is being read differently.
+    /// Returns the table of the displayed capture, even while it is being read again with other settings.
     fn settled(&self) -> Option<Table> {
         self.reading.as_ref().map_or_else(|| self.table.clone(), |reading| reading.settled.clone())
     }
 
-    /// Reads the table again with another setting.
+    /// Reads the table again with a changed setting.
     fn reread_table(&mut self, services: &mut Services, change: impl FnOnce(&mut TableHints)) {
         let settled = self.settled();
         if let Some(table) = &mut self.table {
@@ -375,7 +373,7 @@ impl Signals {
         });
     }
 
-    /// Begins to read; a reading in progress is cancelled.
+    /// Starts reading a table; a reading in progress is cancelled.
     fn read(&mut self, place: TableSource, hints: TableHints, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;

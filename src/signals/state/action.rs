@@ -10,66 +10,66 @@ use crate::store::ReadCaptureError;
 #[derive(Clone, Debug, PartialEq)]
 pub enum SignalsAction {
     Open(PathBuf),
-    /// Read one of the captures that ship with the program.
+    /// Reads one of the captures that ship with the program.
     Example(Example),
-    /// Another delimiter than the one found.
+    /// Uses a delimiter other than the detected one.
     SetDelimiter(Delimiter),
-    /// Numbers have a decimal comma, or not.
+    /// Sets whether numbers have a decimal comma.
     SetDecimalComma(bool),
-    /// Select another column, from 1; `None`: no column.
+    /// Selects another column, counted from 1; `None` selects no column.
     SetColumn(Column, Option<usize>),
     SetTimeUnit(TimeUnit),
-    /// Volts in one unit of the table; finite, not zero.
+    /// Sets the volts per unit of the table, which are finite and not zero.
     SetVolts(f64),
-    /// Find all of that out again.
+    /// Detects the table's format again.
     Detect,
     Cancel,
     SetFamily(Family),
-    /// Signal periods in one revolution, at least 1.
+    /// Sets the signal periods per revolution, at least 1.
     SetPeriods(u32),
-    /// Put the capture that is shown aside, to be compared with those that come.
+    /// Keeps the displayed capture for comparison with later ones.
     Keep,
-    /// Compare no longer.
+    /// Ends the comparison.
     DropComparison,
-    /// An action about the source: the virtual encoder, or an adapter.
+    /// An action on the source, either the virtual encoder or an adapter.
     Source(SourceAction),
     Synchronise(synchronise::SynchroniseAction),
 }
 
 pub enum Done {
-    /// A capture was read, or not.
+    /// A capture has been read, or reading has failed.
     Read {
-        /// Number of the attempt: only the latest counts.
+        /// Number of the attempt; only the latest counts.
         number: u32,
         read: Box<Read>,
     },
-    /// The displayed capture was judged again.
+    /// The displayed capture has been judged again.
     Judged {
-        /// Number of the attempt: only the latest counts.
+        /// Number of the attempt; only the latest counts.
         number: u32,
         measurement: Box<Measurement>,
     },
     Measured {
-        /// Number of the start: only the latest counts.
+        /// Number of the start; only the latest counts.
         number: u32,
         measurement: Box<Measurement>,
     },
-    /// A task could not be started, or broke off.
+    /// A task could not be started, or ended without a result.
     Failed(Failed),
-    /// Something large is no more.
+    /// A large value has been dropped.
     LetGo,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failed {
     Read(u32),
-    /// Judging the capture that is shown again.
+    /// Judging the displayed capture again.
     Judge,
     Measure(u32),
 }
 
 pub struct Read {
-    /// Its first lines, and the detected format.
+    /// First lines of the table, with the detected format.
     pub(super) table: Table,
     pub(super) result: Result<(Measurement, Scope), ReadCaptureError>,
 }

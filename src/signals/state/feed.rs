@@ -20,12 +20,12 @@ use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
 use crate::worker::stream::{Analogue, Batch, End, Producer, Stream};
 
-/// Both signals in volts, equally long.
+/// Both signals in volts, with equally many samples.
 #[derive(Clone, Debug)]
 pub(super) struct Channels {
     pub(super) sine_v: Vec<f64>,
     pub(super) cosine_v: Vec<f64>,
-    /// The single wires, if they are known.
+    /// Voltages of the single wires, if known.
     pub(super) wires: Option<Wires>,
 }
 
@@ -34,7 +34,7 @@ impl Channels {
         self.sine_v.len()
     }
 
-    /// Returns a wire; empty if it is not known.
+    /// Returns the samples of a wire, or an empty slice if unknown.
     pub(super) fn wire(&self, of: fn(&Wires) -> &Vec<f64>) -> &[f64] {
         self.wires.as_ref().map_or(&[], |wires| of(wires))
     }
@@ -56,13 +56,13 @@ pub(super) enum Feed {
     Virtual(Stream<Analogue>),
     Adapter {
         stream: Stream<Bridge<SineCosine>>,
-        /// The adapter and its actual setting, once known.
+        /// The adapter and its actual sampling, once known.
         streaming: Arc<OnceLock<Streaming>>,
         url: LinkUrl,
     },
 }
 
-/// Link to an adapter; nothing has been opened.
+/// Link to an adapter that has not been opened yet.
 pub(super) struct AdapterLink {
     url: LinkUrl,
     clock: Arc<dyn Clock>,
@@ -71,10 +71,10 @@ pub(super) struct AdapterLink {
 }
 
 impl AdapterLink {
-    /// Reads a link.
+    /// Parses a link.
     ///
     /// # Errors
-    /// Why it does not lead to an adapter.
+    /// Returns why the link does not lead to an adapter.
     pub(super) fn read(text: &str) -> Result<Self, Text> {
         let url: LinkUrl =
             text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url(&why)))?;
@@ -83,11 +83,11 @@ impl AdapterLink {
         Ok(AdapterLink { url, clock, margin, open })
     }
 
-    /// Starts sampling at this rate, with the encoder's supply switched on if one is given. The stream reports whether the
-    /// adapter is present.
+    /// Starts sampling at the given rate, with the encoder's supply switched on if a voltage is given. The stream
+    /// reports whether the adapter is present.
     ///
     /// # Errors
-    /// No thread is left.
+    /// Returns an error if no thread can be started.
     pub(super) fn start(
         self,
         sample_hz: u32,
@@ -118,17 +118,17 @@ impl AdapterLink {
 const WAITING: usize = 200_000;
 
 impl Feed {
-    /// Creates the virtual encoder.
+    /// Starts the virtual encoder.
     ///
     /// # Errors
-    /// No thread is left.
+    /// Returns an error if no thread can be started.
     pub(super) fn of_encoder(checked: Checked, services: &Services) -> Result<Self, Text> {
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
         let producer = Analogue::new(checked, clock.now());
         Ok(Feed::Virtual(spawn(producer, clock, services)?))
     }
 
-    /// Returns the batches since the last call.
+    /// Returns the batches received since the last call.
     pub(super) fn take(&self) -> Vec<Batch<Channels>> {
         match self {
             Feed::Virtual(stream) => stream.take().into_iter().map(channels).collect(),
@@ -136,7 +136,7 @@ impl Feed {
         }
     }
 
-    /// Returns the number of samples lost since the beginning.
+    /// Returns the number of samples lost since the start.
     pub(super) fn lost(&self) -> u64 {
         match self {
             Feed::Virtual(stream) => stream.lost(),
@@ -162,7 +162,8 @@ impl Feed {
         }
     }
 
-    /// Returns the adapter and its actual setting; `None` for the virtual encoder, and until it is known.
+    /// Returns the adapter and its actual sampling, or `None` for the virtual encoder and while the sampling is not yet
+    /// known.
     pub(super) fn streaming(&self) -> Option<&Streaming> {
         match self {
             Feed::Virtual(_) => None,
@@ -183,7 +184,7 @@ impl Feed {
         }
     }
 
-    /// Stops it if it is running, as if it had ended by itself.
+    /// Stops the feed if it is running, as if it had ended by itself.
     #[cfg(test)]
     pub(super) fn stop(&self) {
         match self {
@@ -192,7 +193,7 @@ impl Feed {
         }
     }
 
-    /// Stops it: an adapter is stopped without waiting for it.
+    /// Stops the feed without waiting for an adapter to end.
     pub(super) fn let_go(self, services: &mut Services) {
         if let Feed::Adapter { stream, url, .. } = self {
             let end: End = stream.end();
@@ -221,7 +222,7 @@ fn failed(error: &BridgeError) -> Text {
     }
 }
 
-/// Returns the text for an invalid link, which is edited in its own entry.
+/// Returns the message for an invalid link, which the user edits in a separate entry.
 fn refused(error: &OpenError) -> Text {
     match error {
         OpenError::Url(why) => TEXTS.text("adapter.link").with_text("why", explain::url(why)),

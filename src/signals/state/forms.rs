@@ -4,26 +4,26 @@ use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, whole};
 use crate::signals::state::TEXTS;
 
-/// Returns the signal periods in a revolution.
+/// Parses the number of signal periods per revolution.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Returns why the entry is invalid.
 pub fn periods(text: &str) -> Result<u32, Text> {
     whole(TEXTS.text("quality.periods_per_turn"), text, 1, MOST_PERIODS)
 }
 
-/// Parses a number with a decimal point or comma; finite.
+/// Parses a finite number with a decimal point or comma.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Returns why the entry is invalid.
 pub fn number(text: &str) -> Result<f64, Text> {
     crate::app::number(text).ok_or_else(|| TEXTS.text("signals.bad_number").with("entry", text))
 }
 
-/// Returns the volts in one unit of a table.
+/// Parses the volts per unit of a table.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Returns why the entry is invalid.
 pub fn volts_per_unit(text: &str) -> Result<f64, Text> {
     let refused = || TEXTS.text("signals.bad_volts").with("entry", text);
     number(text).ok().filter(|volts| *volts != 0.0).ok_or_else(refused)

@@ -13,38 +13,37 @@ pub struct Form {
     pub periods: String,
     /// Speed in revolutions per minute.
     pub speed: String,
-    /// The resistor across the capacitor: `10k`.
+    /// Resistor across the capacitor, such as `10k`.
     pub resistance: String,
-    /// The capacitor: `22p`.
+    /// Capacitor, such as `22p`.
     pub capacitance: String,
 }
 
-/// The signals and the filter at one speed.
+/// The signals and the filter response at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Revolutions per minute.
+    /// Speed in revolutions per minute.
     pub speed_rpm: f64,
-    /// Frequency of the signals in hertz.
+    /// Signal frequency in hertz.
     pub frequency_hz: f64,
-    /// Response of the filter at that point.
     pub response: Response,
-    /// The lag in degrees of the shaft.
+    /// Lag in mechanical degrees of the shaft.
     pub shaft_deg: f64,
 }
 
-/// The circuit of the entries.
+/// The circuit described by the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circuit {
     pub here: Point,
-    /// The speed in revolutions per minute at which the signals reach the encoder's bandwidth.
+    /// Speed in revolutions per minute at which the signals reach the encoder's bandwidth.
     pub most_rpm: f64,
-    /// The frequency in hertz at which the filter leaves 71 % of the amplitude.
+    /// Frequency in hertz at which the filter leaves 71 % of the amplitude.
     pub corner_hz: f64,
     periods: u32,
     filter: InputFilter,
 }
 
-/// Fastest speed that can be typed, in revolutions per minute.
+/// Highest speed that can be entered, in revolutions per minute.
 const MOST_RPM: f64 = 1_000_000.0;
 
 impl Default for Form {
@@ -58,7 +57,7 @@ impl Form {
     /// Calculates the circuit.
     ///
     /// # Errors
-    /// Why the first invalid entry is invalid.
+    /// Returns why the first invalid entry is invalid.
     pub fn circuit(&self) -> Result<Circuit, Text> {
         let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
         let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MOST_RPM)?;
@@ -73,18 +72,19 @@ impl Form {
 }
 
 impl Circuit {
-    /// Returns whether the signals are within the encoder's bandwidth at the speed that was typed.
+    /// Returns whether the signals are within the encoder's bandwidth at the entered speed.
     pub fn is_within(&self) -> bool {
         self.here.frequency_hz <= BANDWIDTH_HZ
     }
 
-    /// Returns this many evenly spaced speeds above zero, the last at the encoder's bandwidth.
+    /// Returns the response at `count` evenly spaced speeds above zero, the last at the encoder's bandwidth.
     pub fn course(&self, count: u32) -> Vec<Point> {
         let speed = |at: u32| self.most_rpm * f64::from(at) / f64::from(count.max(1));
         (1..=count).map(|at| point(self.periods, self.filter, speed(at))).collect()
     }
 
-    /// Returns the error in electrical degrees that reading both channels one microsecond apart makes at the typed speed.
+    /// Returns the error in electrical degrees caused by reading both channels one microsecond apart at the entered
+    /// speed.
     pub fn degrees_per_microsecond(&self) -> f64 {
         360.0 * self.here.frequency_hz * 1e-6
     }

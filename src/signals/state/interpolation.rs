@@ -8,7 +8,7 @@ use crate::analysis::arctan::{self, DEGREES, OctantTable, Phase};
 use crate::app::Text;
 use crate::signals::state::TEXTS;
 
-/// Sizes of the displayed tables.
+/// Numbers of intervals of the displayed tables.
 pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,28 +16,28 @@ pub struct TableError {
     pub intervals: usize,
     /// Largest error in electrical degrees.
     pub largest_deg: f64,
-    /// The error is at most one part of this number of a period.
+    /// Fraction of a period that bounds the error, as its reciprocal.
     pub parts: f64,
-    /// As bits of a period.
+    /// Resolution in bits per period that corresponds to the error.
     pub bits: f64,
 }
 
-/// One pair of voltages, both ways.
+/// The phase of one pair of voltages, calculated exactly and by table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interpolated {
     pub exact: Phase,
     pub table: Phase,
-    /// Table minus exact, in electrical degrees, within ±180.
+    /// Table phase minus exact phase in electrical degrees, within ±180.
     pub difference_deg: f64,
 }
 
-/// Returns the errors of the usual tables.
+/// Returns the errors of the displayed tables.
 pub fn table_errors() -> &'static [TableError] {
     static ERRORS: LazyLock<Vec<TableError>> = LazyLock::new(|| INTERVALS.map(table_error).to_vec());
     &ERRORS
 }
 
-/// Evaluates all intervals of a table, at points that include the largest error.
+/// Evaluates all intervals of a table at points that include the largest error.
 fn table_error(intervals: usize) -> TableError {
     const PLACES: usize = 64;
     let table = OctantTable::new(intervals);
@@ -51,10 +51,10 @@ fn table_error(intervals: usize) -> TableError {
     TableError { intervals, largest_deg, parts, bits: parts.log2() }
 }
 
-/// Interpolates an entered pair of voltages, free of offset, by a table of this number of intervals.
+/// Interpolates an entered pair of offset-free voltages with a table of the given number of intervals.
 ///
 /// # Errors
-/// Why the entries are invalid: not a number, or both are zero.
+/// Returns why the entries are invalid: an entry is not a number, or both are zero.
 pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<Interpolated, Text> {
     let (sine, cosine) = (forms::number(sine)?, forms::number(cosine)?);
     let both = arctan::exact(sine, cosine).zip(OctantTable::new(intervals).phase(sine, cosine));

@@ -24,23 +24,23 @@ use crate::sim::sine_cosine::{Quantity, References, Settings};
 pub enum SourceAction {
     Start,
     StartAdapter,
-    /// Set another link to an adapter, as entered; a running one keeps its own.
+    /// Sets the entered link to an adapter; a running adapter keeps its own.
     SetLink(String),
-    /// Sets the requested sample rate of an adapter; a running one keeps its own.
+    /// Sets the requested sample rate of an adapter; a running adapter keeps its own.
     SetSampleRate(u32),
-    /// Supply an encoder of this family from the adapter, or none; a running one keeps its own.
+    /// Supplies an encoder of the given family from the adapter, or none; a running adapter keeps its supply.
     SetSupply(Option<Family>),
-    /// Stop; the last measurement stays.
+    /// Stops the source; the last measurement stays.
     Stop,
-    /// Hold the display while it continues, or release it.
+    /// Freezes the display while the source continues, or releases it.
     Hold(bool),
-    /// Set another value of the virtual encoder; one out of range is refused with a message.
+    /// Sets a value of the virtual encoder; a value out of range is refused with a message.
     Set(Quantity, f64),
     SetOpenWire(Option<Wire>),
-    /// Set or remove the resistor between the wires of a pair.
+    /// Sets whether a resistor connects the wires of each pair.
     SetTerminated(bool),
     SetReferences(References),
-    /// Measure the newest samples of this many milliseconds, 10 to 10 000.
+    /// Measures the newest samples of the given length in milliseconds, 10 to 10 000.
     SetWindow(u32),
     Reset,
 }
@@ -52,22 +52,23 @@ pub enum SourceKind {
     Adapter,
 }
 
-/// The source, running or not.
+/// The sample source, running or not.
 pub struct Source {
     /// The last valid settings of the virtual encoder.
     settings: Settings,
     problem: Option<Text>,
-    /// The link to the adapter, as typed.
+    /// The adapter link, as typed.
     link: String,
     sample_hz: u32,
-    /// Never stored in the settings: another encoder may be connected at the next start.
+    /// Family of the encoder supplied by the adapter. Never stored in the settings, since another encoder may be
+    /// connected at the next start.
     supply: Option<Family>,
     adapter_problem: Option<Text>,
-    /// The kind that was started last.
+    /// The kind of source started last.
     kind: SourceKind,
     window_ms: u32,
     runs: u32,
-    /// Samples that were lost, but for those that the stream counts while it runs.
+    /// Number of lost samples, not counting those that a running stream counts itself.
     lost: u64,
     live: Option<Live>,
 }
@@ -77,13 +78,13 @@ struct Live {
     recent: Recent,
     held: bool,
     measuring: bool,
-    /// The last sample of the latest measurement.
+    /// Time of the last sample in the latest measurement.
     measured: Option<Time>,
 }
 
-/// Windows that can be measured, in milliseconds.
+/// Range of window lengths that can be measured, in milliseconds.
 const WINDOWS: std::ops::RangeInclusive<u32> = 10..=10_000;
-/// The virtual adapter, whose shaft turns slowly enough to see a period.
+/// Link to the virtual adapter, whose shaft turns slowly enough for a period to be visible.
 pub const VIRTUAL_ADAPTER: &str = "sim:?bridge=on&rpm=6";
 
 impl Default for Source {
@@ -105,7 +106,7 @@ impl Default for Source {
 }
 
 impl Source {
-    /// Creates the state with the link of the adapter used last.
+    /// Creates the state with the link of the last adapter used.
     pub(super) fn at(link: Option<&String>) -> Self {
         let usual = Source::default();
         Source { link: link.cloned().unwrap_or(usual.link), ..Source::default() }
@@ -115,47 +116,47 @@ impl Source {
         &self.settings
     }
 
-    /// Returns why the last setting was refused.
+    /// Returns why the last setting was refused, if it was.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
 
-    /// Returns the link to the adapter, as typed.
+    /// Returns the adapter link, as typed.
     pub fn link(&self) -> &str {
         &self.link
     }
 
-    /// Returns the samples per second that are requested from an adapter.
+    /// Returns the sample rate requested from an adapter, in samples per second.
     pub fn sample_hz(&self) -> u32 {
         self.sample_hz
     }
 
-    /// Returns the family of the encoder that the adapter supplies; `None` for an external supply.
+    /// Returns the family of the encoder supplied by the adapter, or `None` for an external supply.
     pub fn supply(&self) -> Option<Family> {
         self.supply
     }
 
-    /// Returns why the adapter stopped sampling, or could not start.
+    /// Returns why the adapter stopped sampling or could not start.
     pub fn adapter_problem(&self) -> Option<&Text> {
         self.adapter_problem.as_ref()
     }
 
-    /// Returns the kind of source that was started last.
+    /// Returns the kind of source started last.
     pub fn kind(&self) -> SourceKind {
         self.kind
     }
 
-    /// Returns the running adapter and its sampling; `None` until it is identified.
+    /// Returns the running adapter and its sampling, or `None` until the adapter has been identified.
     pub fn streaming(&self) -> Option<&Streaming> {
         self.live.as_ref().and_then(|live| live.feed.streaming())
     }
 
-    /// Returns whether the source that runs lives in this process.
+    /// Returns whether the running source is part of this process.
     pub fn is_virtual(&self) -> bool {
         self.live.as_ref().is_some_and(|live| live.feed.is_virtual())
     }
 
-    /// Returns the length of the measured window of newest samples, in milliseconds.
+    /// Returns the length of the measured window in milliseconds.
     pub fn window_ms(&self) -> u32 {
         self.window_ms
     }
@@ -169,7 +170,7 @@ impl Source {
         self.live.as_ref().is_some_and(|live| live.held)
     }
 
-    /// Returns the measured milliseconds if the maximum number of samples is shorter than the setting.
+    /// Returns the measured length in milliseconds if the maximum number of samples makes it shorter than the setting.
     pub fn shortened_ms(&self) -> Option<f64> {
         let period_ns = match self.kind {
             SourceKind::Encoder => self.settings.period_ns(),
@@ -179,7 +180,7 @@ impl Source {
         (longest_ms < f64::from(self.window_ms)).then_some(longest_ms)
     }
 
-    /// Returns the samples lost since the last start: in transit, not read in time, or not displayable.
+    /// Returns the number of samples lost since the last start: in transit, not read in time, or not displayable.
     pub fn lost(&self) -> u64 {
         self.lost + self.live.as_ref().map_or(0, |live| live.feed.lost())
     }
@@ -228,17 +229,17 @@ impl Source {
         }
     }
 
-    /// Returns the link of the adapter; `None` if it is not valid.
+    /// Returns the parsed adapter link, or `None` if the entry is invalid.
     pub(crate) fn adapter_url(&self) -> Option<LinkUrl> {
         self.link.parse().ok()
     }
 
-    /// Reports that no request to the adapter is possible now.
+    /// Reports why no request to the adapter is possible at present.
     pub(crate) fn refuse(&mut self, why: Text) {
         self.adapter_problem = Some(why);
     }
 
-    /// Releases the adapter if an encoder is searched on its connection.
+    /// Releases the adapter if an encoder search needs its connection.
     pub(crate) fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
         let holds = |live: &Live| matches!(&live.feed, Feed::Adapter { url: own, .. } if same_wire(own, url));
         if self.live.as_ref().is_some_and(holds) {
@@ -247,7 +248,7 @@ impl Source {
         }
     }
 
-    /// Starts the adapter; returns whether it is being opened. A wrong link is reported beside its entry.
+    /// Starts the adapter; returns whether it is being opened. An invalid link is reported beside its entry.
     fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) -> bool {
         let link = match AdapterLink::read(&self.link) {
             Ok(link) => link,
@@ -281,7 +282,7 @@ impl Source {
 }
 
 impl Live {
-    /// Returns the origin of the samples; `None` until an adapter has identified itself.
+    /// Returns the origin of the samples, or `None` until an adapter has identified itself.
     fn origin(&self) -> Option<Origin> {
         match &self.feed {
             Feed::Virtual(_) => Some(Origin::Virtual),
@@ -342,7 +343,7 @@ impl Signals {
         }
     }
 
-    /// Starts sampling with the adapter of the link, after the previous user of its connection has ended.
+    /// Starts sampling with the linked adapter after the previous user of its connection has ended.
     pub(crate) fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) {
         if self.source.start_adapter(earlier, services) {
             self.forget_reading();
@@ -350,7 +351,8 @@ impl Signals {
         }
     }
 
-    /// Sets other settings of the virtual encoder; its periods per revolution, if set, also apply to the displayed capture.
+    /// Changes the virtual encoder's settings. If the periods per revolution are set, they also apply to the displayed
+    /// capture.
     fn set_source(&mut self, settings: Settings, with_periods: bool, services: &mut Services) {
         let own = self.source.kind == SourceKind::Encoder;
         if self.source.change(settings) && with_periods && own {
@@ -358,7 +360,7 @@ impl Signals {
         }
     }
 
-    /// Takes the received samples, and starts a measurement if it is due.
+    /// Takes the received samples and starts a measurement if one is due.
     pub(crate) fn pump(&mut self, services: &mut Services) {
         let (number, window_ms) = (self.source.runs, self.source.window_ms);
         let judge = self.judge();
@@ -411,7 +413,7 @@ impl Signals {
         }
     }
 
-    /// Handles a failed measurement of the newest samples: it is not retried four times per second.
+    /// Handles a failed measurement of the newest samples, so that it is not retried four times per second.
     pub(super) fn not_measured(&mut self, number: u32, services: &mut Services) -> bool {
         let current = self.source.runs == number && self.source.is_running();
         if current {

@@ -18,7 +18,6 @@ use crate::analysis::spectrum::SpectrumError;
 use crate::app::{Language, Text, explain};
 use crate::signals::state::TEXTS;
 
-/// The origin of a capture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     Table(TableSource),
@@ -33,7 +32,7 @@ pub enum TableSource {
 }
 
 impl Origin {
-    /// Returns its short name: without folders.
+    /// Returns the short name, without folders.
     pub fn name(&self) -> Text {
         match self {
             Origin::Virtual => TEXTS.text("signals.virtual"),
@@ -45,7 +44,7 @@ impl Origin {
 }
 
 impl TableSource {
-    /// Returns the name of the file, without folders.
+    /// Returns the file name without folders.
     pub fn name(&self) -> Text {
         let path = self.path();
         let name = path.file_name().unwrap_or(path.as_os_str());
@@ -66,28 +65,29 @@ pub struct Measurement {
     results: Arc<Results>,
 }
 
-/// The results of a capture; its samples are no longer needed.
+/// The results of a capture, which no longer need its samples.
 #[derive(Clone, Debug)]
 pub struct Results {
     pub origin: Origin,
-    /// Rows of its table that were left out because they have no value.
+    /// Number of table rows omitted because they contain no value.
     pub rows_left_out: u64,
-    /// The analysis, or why there is none.
+    /// The analysis, or why it failed.
     pub analysis: Result<Analysis, AnalysisError>,
     pub diagnosis: Diagnosis,
     pub judge: Judge,
-    /// Mean level of REFSIN and of REFCOS in volts, if they were recorded.
+    /// Mean levels of REFSIN and REFCOS in volts, if recorded.
     pub levels_v: Option<(f64, f64)>,
-    /// Amplitudes over frequency, or why there are none.
+    /// Amplitudes over frequency, or why they cannot be determined.
     pub spectra: Result<Spectra, SpectrumError>,
     /// DNL and INL, or why they cannot be determined; `None` without a reference angle, an ellipse or the number of
     /// periods.
     pub nonlinearities: Option<Result<Nonlinearities, RevolutionError>>,
-    /// Lead of the absolute position over the analogue one, or why it cannot be determined; `None` without one.
+    /// Lead of the absolute position over the analogue position, or why it cannot be determined; `None` without an
+    /// absolute position.
     pub absolute_offset: Option<Result<AbsoluteOffset, NoOffset>>,
-    /// All samples as a picture, sine over cosine; `None` if they are too large for one.
+    /// Image of all samples, sine over cosine; `None` if the values are too large for an image.
     pub raw: Option<Density>,
-    /// All samples after the correction of the ellipse; `None` without one.
+    /// Image of all samples after the ellipse correction; `None` without an ellipse.
     pub corrected: Option<Density>,
 }
 
@@ -95,20 +95,20 @@ pub struct Results {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Judge {
     pub family: Family,
-    /// Signal periods per revolution; `None` if not known.
+    /// Signal periods per revolution, or `None` if unknown.
     pub periods: Option<u32>,
 }
 
-/// Cells per side of a picture: with few samples each must be visible.
+/// Cells per side of an image with many samples; with few samples, each one must be visible.
 const CELLS: usize = 240;
 const CELLS_OF_FEW: usize = 120;
-/// Samples that are few.
+/// Number of samples up to which an image uses larger cells.
 const FEW: usize = 2_000;
-/// Minimum volts from the middle to the edge, so that all rings fit.
+/// Minimum voltage from the centre of the image to its edge, so that all rings fit.
 const LEAST_HALF_V: f64 = 0.75;
 
 impl Measurement {
-    /// Measures a capture; takes about 100 ms for a million samples.
+    /// Measures a capture, which takes about 100 ms for a million samples.
     pub fn of(origin: Origin, capture: Arc<Capture>, judge: Judge) -> Self {
         let samples = samples(&capture);
         let analysis = Analysis::of(samples);
@@ -129,12 +129,12 @@ impl Measurement {
         Measurement { capture, results: Arc::new(results) }
     }
 
-    /// Returns the results, without the samples.
+    /// Returns the results without the samples.
     pub fn results(&self) -> &Arc<Results> {
         &self.results
     }
 
-    /// Returns the same, judged by other criteria.
+    /// Returns the measurement judged by other criteria.
     #[must_use]
     pub fn judged(&self, judge: Judge) -> Self {
         let results = Results {
@@ -156,7 +156,7 @@ impl Deref for Measurement {
 }
 
 impl Results {
-    /// Returns why there is no analysis, as text.
+    /// Returns why the capture could not be analysed, if it could not.
     pub fn refusal(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;
         Some(explain::signal::analysis(Path::new(&self.origin.name().words(language)), error))
@@ -181,9 +181,9 @@ fn beside_reference(
     reference_comparison::nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
 }
 
-/// Returns a picture of all samples, around zero, corrected or as they are.
+/// Returns an image of all samples centred on zero, with or without correction.
 fn density(samples: Samples<'_>, correction: Option<Correction>) -> Option<Density> {
-    /// Samples that are corrected at once.
+    /// Number of samples corrected at a time.
     const PORTION: usize = 1 << 14;
     let Samples { sine_v, cosine_v, .. } = samples;
     let most = sine_v.iter().chain(cosine_v).fold(0.0, |most: f64, volts| most.max(volts.abs()));

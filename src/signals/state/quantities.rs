@@ -6,32 +6,32 @@ use crate::analysis::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
 use crate::analysis::quality::{Family, Verdict};
 use crate::analysis::signal_analysis::{Analysis, LEAST_OCTANTS};
 
-/// A number that was measured.
+/// A measured number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
     pub word: &'static str,
     pub value: f64,
-    /// Decimals that mean something.
+    /// Number of significant decimals.
     pub decimals: usize,
     pub unit: Unit,
     pub also: Option<(f64, usize, Unit)>,
     pub bound: Option<Bound>,
-    /// Whether it is within the limit; `None` without a limit.
+    /// Whether the value is within its limit; `None` without a limit.
     pub verdict: Option<Verdict>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
-    /// None.
+    /// A number without a unit.
     One,
     Volts,
     Millivolts,
-    /// Decibels above one volt rms.
+    /// Decibels relative to one volt rms.
     DecibelVolts,
     Percent,
     /// Degrees, electrical or mechanical.
     Degrees,
-    /// Mechanical seconds of arc.
+    /// Mechanical arcseconds.
     ArcSeconds,
     Kilohertz,
     /// Revolutions per minute.
@@ -39,21 +39,21 @@ pub enum Unit {
     Milliseconds,
 }
 
-/// A limit, in the unit of the quantity.
+/// A limit in the unit of its quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// From the first to the second.
+    /// Between the given minimum and maximum.
     Between(f64, f64),
-    /// No further from zero than this.
+    /// Within plus or minus the given value.
     Within(f64),
-    /// No more than this.
+    /// No more than the given value.
     AtMost(f64),
-    /// No less than this.
+    /// No less than the given value.
     AtLeast(f64),
 }
 
 impl Unit {
-    /// Returns its sign; empty if there is none.
+    /// Returns the unit symbol, or an empty string if there is no unit.
     pub fn sign(self) -> &'static str {
         match self {
             Unit::One => "",
@@ -71,9 +71,9 @@ impl Unit {
 }
 
 impl Bound {
-    /// Returns whether a value is within the limit; a value on the limit is.
+    /// Returns whether a value is within the limit, including the limit itself.
     pub fn holds(self, value: f64) -> bool {
-        /// Rounding must not turn a value on the limit into one beyond it.
+        /// Tolerance that keeps rounding from turning a value on the limit into one beyond it.
         const SLACK: f64 = 1e-9;
         match self {
             Bound::Between(least, most) => value >= least - SLACK && value <= most + SLACK,
@@ -94,7 +94,8 @@ impl Quantity {
         self
     }
 
-    /// Returns the quantity judged by a limit beyond which the position is still right.
+    /// Judges the quantity by a limit beyond which the position is still correct, so that exceeding it is only a
+    /// warning.
     fn bounded(mut self, bound: Bound) -> Self {
         self.bound = Some(bound);
         self.verdict = Some(if bound.holds(self.value) { Verdict::Ok } else { Verdict::Warn });
@@ -107,8 +108,8 @@ impl Quantity {
     }
 }
 
-/// Returns the quantities, judged by the limits of a family; `periods` per revolution turn the frequency into a speed.
-/// Empty without an ellipse.
+/// Returns the quantities judged by the limits of a family. `periods` per revolution convert the frequency into a
+/// speed. Without an ellipse, the list is empty.
 pub fn quantities(measurement: &Results, family: Family, periods: Option<u32>) -> Vec<Quantity> {
     let Ok(analysis) = &measurement.analysis else { return Vec::new() };
     let mut list = of_ellipse(analysis, family);
@@ -169,10 +170,10 @@ fn of_ellipse(analysis: &Analysis, family: Family) -> Vec<Quantity> {
     ]
 }
 
-/// Returns the position error inside a period, before and after the correction; `periods` per revolution convert electrical
-/// degrees to mechanical seconds of arc, which are left out without them.
+/// Returns the position error within a period, before and after the correction. `periods` per revolution convert
+/// electrical degrees to mechanical arcseconds, which are otherwise omitted.
 pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quantity> {
-    /// Seconds of arc in an electrical degree of one period a revolution.
+    /// Arcseconds per electrical degree at one period per revolution.
     const ARC_SECONDS: f64 = 3600.0;
     let a_degree = periods.map(|periods| ARC_SECONDS / f64::from(periods.max(1)));
     let peak_to_peak = |word, degrees: f64| {

@@ -12,7 +12,7 @@ use crate::store::{ReadCaptureError, capture_head, read_capture};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Example {
     Healthy,
-    /// One with offsets, unequal amplitudes and a phase error.
+    /// A capture with offsets, unequal amplitudes and a phase error.
     WithErrors,
 }
 
@@ -41,17 +41,16 @@ impl Example {
     }
 }
 
-/// A capture that is being read.
 #[derive(Debug)]
 pub struct Reading {
     pub(super) number: u32,
     pub place: TableSource,
-    /// The previous table, restored if this reading is cancelled.
+    /// The previous table, which is restored if the reading is cancelled.
     pub(super) settled: Option<Table>,
     progress: Arc<Progress>,
 }
 
-/// The progress, shared between the task and the window.
+/// Progress shared between the task and the window.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
     done: AtomicU64,
@@ -65,7 +64,7 @@ impl Reading {
         (Reading { number, place, settled, progress: progress.clone() }, progress)
     }
 
-    /// Returns the share that has been read, 0 to 1; `None` if the total is not known.
+    /// Returns the fraction read, 0 to 1, or `None` if the total is unknown.
     pub fn share(&self) -> Option<f64> {
         let (done, total) = (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
         (total > 0).then(|| (done as f64 / total as f64).min(1.0))
@@ -80,14 +79,14 @@ impl Reading {
     }
 }
 
-/// A dropped reading is cancelled.
+/// Cancels the reading.
 impl Drop for Reading {
     fn drop(&mut self) {
         self.cancel();
     }
 }
 
-/// Reads and measures; the time depends on the size of the file.
+/// Reads and measures a capture; the duration depends on the file size.
 pub(super) fn read(place: TableSource, hints: TableHints, judge: Judge, progress: &Progress) -> Read {
     let (head, result) = match &place {
         TableSource::Example(example) => {

@@ -10,27 +10,27 @@ use crate::analysis::capture::Capture;
 use crate::analysis::wiring::Wires;
 use crate::worker::stream::Batch;
 
-/// The newest samples without a gap.
+/// The newest samples, without gaps.
 #[derive(Default)]
 pub(super) struct Recent {
     chunks: VecDeque<Arc<Channels>>,
     count: usize,
-    /// Time of the last of them.
+    /// Time of the newest sample.
     newest: Option<Time>,
     period_ns: i64,
 }
 
-/// The newest samples of some milliseconds.
+/// The newest samples spanning a given number of milliseconds.
 pub(super) struct Window {
     chunks: Vec<Arc<Channels>>,
-    /// Samples of the first chunk that are too old.
+    /// Number of samples in the first chunk that are too old.
     skip: usize,
     period_ns: i64,
 }
 
-/// Most samples that are measured at once.
+/// Maximum number of samples measured at once.
 pub(super) const MOST: usize = 500_000;
-/// Interval of measurements, in nanoseconds.
+/// Interval between measurements in nanoseconds.
 const EVERY_NS: i64 = 250_000_000;
 
 impl Recent {
@@ -56,7 +56,7 @@ impl Recent {
         self.newest
     }
 
-    /// Returns whether enough is new since the last measurement.
+    /// Returns whether enough samples have arrived since the last measurement.
     pub(super) fn is_due(&self, measured: Option<Time>) -> bool {
         match (self.newest, measured) {
             (Some(newest), Some(measured)) => newest.nanoseconds_since(measured) >= EVERY_NS,
@@ -65,7 +65,7 @@ impl Recent {
         }
     }
 
-    /// Returns the newest samples of this many milliseconds, at most [`MOST`]; `None` while there are fewer.
+    /// Returns the newest samples of the given length, at most [`MOST`], or `None` while there are too few.
     pub(super) fn window(&self, milliseconds: u32) -> Option<Window> {
         let wanted = i64::from(milliseconds) * 1_000_000 / self.period_ns.max(1);
         let count = usize::try_from(wanted).unwrap_or(MOST).clamp(1, MOST);

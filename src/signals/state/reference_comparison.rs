@@ -13,50 +13,49 @@ use crate::analysis::synchronise::{STEPS, measure_offset};
 use crate::app::Text;
 use crate::signals::state::TEXTS;
 
-/// DNL and INL, as measured and corrected.
+/// DNL and INL, raw and corrected.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nonlinearities {
-    /// As measured.
+    /// Raw values, as measured.
     pub raw: Part,
-    /// With offsets, gain ratio and phase error corrected.
+    /// Values with offsets, gain ratio and phase error corrected.
     pub corrected: Part,
-    /// Revolutions of the reference that the samples cover; INL is valid for a whole one only from 1 on.
+    /// Number of reference revolutions that the samples cover; from 1 on, the INL is valid for a whole revolution.
     pub revolutions: f64,
 }
 
-/// DNL and INL of one of both.
+/// DNL and INL of either the raw or the corrected signals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// DNL: ± mechanical degrees.
+    /// DNL as ± mechanical degrees.
     pub differential_deg: f64,
-    /// INL: ± mechanical degrees.
+    /// INL as ± mechanical degrees.
     pub integral_deg: f64,
-    /// Reference angle and the whole deviation in mechanical degrees: minimum and maximum of each section.
+    /// Points of reference angle and total deviation in mechanical degrees: minimum and maximum of each section.
     pub deviation: Vec<(f64, f64)>,
-    /// Reference angle and the mean over a period, likewise.
+    /// Points of reference angle and mean deviation over a period, both in mechanical degrees.
     pub mean: Vec<(f64, f64)>,
 }
 
-/// The offset of an absolute position against the analogue one.
+/// The offset of an absolute position relative to the analogue position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AbsoluteOffset {
-    /// Average lead of the absolute position, in 1/32 period.
+    /// Average lead of the absolute position in 1/32 period.
     pub offset_steps: f64,
-    /// Largest distance of a sample from it, in 1/32 period.
+    /// Largest distance of a sample from the average lead, in 1/32 period.
     pub farthest_steps: f64,
     pub samples: usize,
 }
 
-/// Why it cannot be determined.
+/// The reason why an absolute offset cannot be determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoOffset {
-    /// There is no sample with a signal.
+    /// No sample contains a signal.
     NoSignal,
     Scattered,
 }
 
 impl NoOffset {
-    /// Returns the reason as text.
     pub fn text(self) -> Text {
         TEXTS.text(match self {
             NoOffset::NoSignal => "synchronise.no_signal",
@@ -65,10 +64,10 @@ impl NoOffset {
     }
 }
 
-/// Stretches that a curve is drawn of.
+/// Number of sections of a drawn curve.
 const STRETCHES: usize = 512;
 
-/// Returns DNL and INL of a capture; `None` without a reference angle.
+/// Returns DNL and INL of a capture, or `None` without a reference angle.
 pub(super) fn nonlinearities(
     capture: &Capture,
     analysis: &Analysis,
@@ -102,7 +101,7 @@ impl Part {
 
 /// Returns DNL and INL as ± values.
 pub fn nonlinearity_quantities(nonlinearities: &Nonlinearities) -> Vec<Quantity> {
-    /// Seconds of arc in a degree.
+    /// Arcseconds per degree.
     const ARC_SECONDS: f64 = 3600.0;
     let plus_minus = |word, degrees: f64| {
         Quantity::new(word, degrees, 5, Unit::Degrees).also(degrees * ARC_SECONDS, 2, Unit::ArcSeconds)
@@ -116,8 +115,8 @@ pub fn nonlinearity_quantities(nonlinearities: &Nonlinearities) -> Vec<Quantity>
     ]
 }
 
-/// Returns the lead of a capture's absolute position; `None` without one. Samples that were left out of the ellipse do
-/// not count.
+/// Returns the lead of a capture's absolute position, or `None` without an absolute position. Samples excluded from the
+/// ellipse are ignored.
 pub(super) fn absolute_offset(
     capture: &Capture,
     analysis: Option<&Analysis>,

@@ -10,36 +10,36 @@ use crate::app::recorder::{self, GroupId, Recorder, SAMPLE, Scale, Series};
 use crate::signals::state::TEXTS;
 use crate::worker::stream::Batch;
 
-/// A recorder with the signals.
+/// A recorder of the signals.
 #[derive(Debug)]
 pub struct Scope {
     pub recorder: Recorder,
-    /// Why there is nothing to draw.
+    /// The reason why nothing can be drawn, if any.
     pub refused: Option<TimeAxisError>,
     group: GroupId,
 }
 
-/// Why the times of a capture cannot be an axis.
+/// The reason why a capture's times cannot serve as an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeAxisError {
     GoBack,
-    /// They are beyond the range of nanoseconds, 292 years from zero, such as milliseconds read as seconds.
+    /// The times exceed the range of nanoseconds, 292 years from zero; milliseconds may have been read as seconds.
     TooFar,
 }
 
-/// Seconds beyond which nanoseconds cannot be counted.
+/// Time in seconds beyond which nanoseconds overflow.
 const FARTHEST_S: f64 = 9.2e9;
 
-/// Maximum number of samples of a running source: five seconds at 100 kHz.
+/// Maximum number of samples kept from a running source: five seconds at 100 kHz.
 const KEPT: usize = 500_000;
-/// Nanoseconds of them that are shown initially.
+/// Initially displayed time span in nanoseconds.
 const SPAN: i64 = 10_000_000;
-/// Samples that are handed over at once.
+/// Number of samples handed over at a time.
 const PORTION: usize = 1 << 16;
 
-/// Differential columns, in volts: names and headings.
+/// Names and headings of the differential columns, in volts.
 const DIFFERENCES: [(&str, &str); 3] = [("scope.sine", "sine"), ("scope.cosine", "cosine"), ("scope.vector", "vector")];
-/// The wires, likewise.
+/// Names and headings of the wire columns, in volts.
 const WIRES: [(&str, &str); 4] =
     [("scope.sin", "SIN"), ("scope.refsin", "REFSIN"), ("scope.cos", "COS"), ("scope.refcos", "REFCOS")];
 
@@ -103,12 +103,12 @@ impl Scope {
         self.append(&times, &sine, &cosine, wires.as_ref())
     }
 
-    /// Marks a gap: the following samples do not continue the previous ones.
+    /// Marks a gap between the previous samples and those that follow.
     pub(super) fn interrupt(&mut self) {
         self.recorder.break_before_next(self.group);
     }
 
-    /// Adds received samples; returns how many of them could not be taken.
+    /// Adds received samples; returns how many of them could not be stored.
     pub(super) fn add(&mut self, batch: &Batch<Channels>) -> u64 {
         if batch.lost > 0 {
             self.interrupt();

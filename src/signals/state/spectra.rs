@@ -3,41 +3,42 @@
 use crate::analysis::position_error::Samples;
 use crate::analysis::spectrum::{SpectralLine, Spectrum, SpectrumError, sample_rate_hz};
 
-/// Both spectra.
+/// The spectra of both signals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectra {
     pub sine: ChannelSpectrum,
     pub cosine: ChannelSpectrum,
-    /// Distance of two lines in hertz.
+    /// Spacing of the spectral lines in hertz.
     pub spacing_hz: f64,
-    /// Number of samples used: the last ones, if there are more than a transform takes at once.
+    /// Number of samples used; if there are more than one transform takes, only the last ones.
     pub samples: usize,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelSpectrum {
-    /// (hertz, peak amplitude in volts), growing in frequency.
+    /// Frequency in hertz and peak amplitude in volts, in order of frequency.
     pub lines: Vec<(f64, f64)>,
-    /// The highest peaks, the highest first.
+    /// The highest peaks, highest first.
     pub peaks: Vec<SpectralLine>,
 }
 
-/// Most samples of a transform.
+/// Maximum number of samples per transform.
 const MOST: usize = 1 << 20;
-/// Lines of a picture.
+/// Number of lines in a plot.
 const LINES: usize = 1_000;
-/// Peaks that are named.
+/// Number of labelled peaks.
 const PEAKS: usize = 6;
-/// A peak below this share of the highest is not worth a name.
+/// Fraction of the highest peak below which a peak is not labelled.
 const LEAST_PEAK: f64 = 1e-4;
-/// Factor of the median of all lines below which a peak is noise: of a million lines of noise the highest has 4.5.
+/// Multiple of the median of all lines below which a peak is noise; in a million lines of noise, the highest reaches
+/// 4.5.
 const NOISE: f64 = 6.0;
 
 impl Spectra {
-    /// Creates the spectra of a capture.
+    /// Calculates the spectra of a capture.
     ///
     /// # Errors
-    /// [`SpectrumError`]: there are no times, they are uneven, or there are too few samples.
+    /// Returns a [`SpectrumError`] if there are no times, the times are uneven, or there are too few samples.
     pub(super) fn of(samples: Samples<'_>) -> Result<Self, SpectrumError> {
         let Samples { time_s, sine_v, cosine_v } = samples;
         let count = sine_v.len().min(cosine_v.len()).min(time_s.len());
@@ -76,9 +77,9 @@ fn median(values: &[f64]) -> f64 {
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// Returns an amplitude as a level: decibels of its rms value above one volt.
+/// Converts a peak amplitude to a level: its rms value in decibels relative to one volt.
 pub fn dbv(peak_v: f64) -> f64 {
-    /// Smallest level in dB that a double can distinguish from zero beside one volt.
+    /// Lowest level in dB that a double can distinguish from zero next to one volt.
     const LEAST: f64 = -160.0;
     (20.0 * (peak_v / std::f64::consts::SQRT_2).log10()).max(LEAST)
 }

@@ -12,11 +12,11 @@ use crate::signals::state::TEXTS;
 #[derive(Clone, Debug, PartialEq)]
 pub enum SynchroniseAction {
     Edit(Box<Form>),
-    /// Take the offset over that is measured from readings.
+    /// Uses the offset measured from the readings.
     UseOffset,
-    /// Take an offset over that a capture gives, in 1/32 period and without the half step.
+    /// Uses the offset found in a capture, in 1/32 period and without the half step.
     UseCaptured(f64),
-    /// Forget the readings that the offset is measured from.
+    /// Discards the readings from which the offset is measured.
     Forget,
 }
 
@@ -26,7 +26,7 @@ pub struct Form {
     /// The absolute position in steps: decimal, or hexadecimal with `0x` or `h`.
     pub absolute: String,
     pub phase_input: PhaseInput,
-    /// The phase, in periods or degrees.
+    /// Phase in periods or degrees.
     pub phase: String,
     /// Sine in volts.
     pub sine_v: String,
@@ -35,58 +35,58 @@ pub struct Form {
     /// Signal periods per revolution.
     pub periods: String,
     pub turns: String,
-    /// Lead of the absolute position when both are right, in 1/32 period.
+    /// Lead of the absolute position when both positions are correct, in 1/32 period.
     pub offset: String,
-    /// The absolute position means the middle of its step.
+    /// Whether the absolute position refers to the middle of its step.
     pub half_step: bool,
-    /// A quadrature counter, in quarters of a period; empty: none.
+    /// Quadrature counter in quarters of a period; empty without a counter.
     pub quarters: String,
-    /// Uncertainty of the time of a check without latch, in milliseconds.
+    /// Timing uncertainty of a check without latch, in milliseconds.
     pub jitter_ms: String,
 }
 
 /// How the analogue position is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhaseInput {
-    /// A part of a period, 0 to 1.
+    /// As a fraction of a period, 0 to 1.
     Periods,
-    /// Electrical degrees, 0 to 360.
+    /// In electrical degrees, 0 to 360.
     Degrees,
-    /// Sine and cosine in volts, free of their mean.
+    /// As sine and cosine in volts, with their mean removed.
     Volts,
 }
 
 #[derive(Debug, Default)]
 pub struct Synchronise {
     pub form: Form,
-    /// Why the last reading of an encoder failed.
+    /// The reason why the last reading of an encoder failed, if it did.
     pub problem: Option<Text>,
     readings: Vec<(u64, Phase)>,
     origin: Option<SineCosineOrigin>,
 }
 
-/// The result of the entries.
+/// The position calculated from the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchronisation {
     pub absolute: u64,
     pub phase: Phase,
     pub period: u64,
-    /// Its place in the period, 0 to 31.
+    /// Step within the period, 0 to 31.
     pub step: u64,
-    /// Lead over the analogue position within the period, in 1/32 period; offset and half step apply to the result only.
+    /// Lead over the analogue position within the period, in 1/32 period; offset and half step affect only the result.
     pub difference_steps: f64,
-    /// The fine position, or that there is none.
+    /// The fine position, or why it cannot be determined.
     pub result: Result<Synchronised, Unsynchronisable>,
     /// Signal periods per revolution.
     pub periods: u32,
 }
 
-/// Minimum number of readings for an offset.
+/// Minimum number of readings for an offset measurement.
 const LEAST_READINGS: usize = 2;
 const MOST_TURNS: u32 = 65_536;
 
 impl Default for Form {
-    /// Creates the second row of the reference's table.
+    /// Creates entries with the values from the second row of the reference's table.
     fn default() -> Self {
         let typed = |text: &str| text.to_owned();
         Form {
@@ -106,10 +106,10 @@ impl Default for Form {
 }
 
 impl Form {
-    /// Brings both together.
+    /// Combines the absolute and analogue positions.
     ///
     /// # Errors
-    /// Why the first invalid entry is invalid.
+    /// Returns why the first invalid entry is invalid.
     pub fn synchronisation(&self) -> Result<Synchronisation, Text> {
         let (periods, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
@@ -127,10 +127,10 @@ impl Form {
         })
     }
 
-    /// Returns the fine position from the quadrature counter; `None` without one.
+    /// Returns the fine position from the quadrature counter, or `None` without a counter.
     ///
     /// # Errors
-    /// Why the first invalid entry is invalid.
+    /// Returns why the first invalid entry is invalid.
     pub fn quadrature(&self) -> Result<Option<f64>, Text> {
         if self.quarters.trim().is_empty() {
             return Ok(None);
@@ -142,11 +142,11 @@ impl Form {
         Ok(Some(period as f64 + phase.periods()))
     }
 
-    /// Returns the speed in revolutions per minute below which a check without latch is certain: the shaft moves by less
-    /// than half a period while the moment is uncertain.
+    /// Returns the speed in revolutions per minute below which a check without latch is reliable: the shaft then moves
+    /// less than half a period within the timing uncertainty.
     ///
     /// # Errors
-    /// Why the first invalid entry is invalid.
+    /// Returns why the first invalid entry is invalid.
     pub fn unlatched_rpm(&self) -> Result<f64, Text> {
         let (periods, _) = self.synchroniser()?;
         let jitter_ms = within(TEXTS.text("synchronise.jitter"), &self.jitter_ms, 0.001, 10_000.0)?;
@@ -181,7 +181,7 @@ impl Form {
 }
 
 impl Synchronisation {
-    /// Returns the fine position in degrees of the shaft within a revolution, if there is one.
+    /// Returns the fine position in degrees of the shaft within a revolution, if known.
     pub fn degrees(&self) -> Option<f64> {
         let fine = self.result.ok()?;
         Some(fine.periods().rem_euclid(f64::from(self.periods)) / f64::from(self.periods) * 360.0)
@@ -221,7 +221,7 @@ impl Synchronise {
         }
     }
 
-    /// Takes the readings of an encoder at rest since the last time.
+    /// Takes the readings of an encoder at rest since the previous call.
     pub(crate) fn follow(&mut self, source: &mut dyn SineCosineSource) {
         match source.take_reading() {
             Some(Ok(reading)) => self.take(reading, source.origin()),
@@ -264,8 +264,8 @@ impl Synchronise {
         self.readings.len()
     }
 
-    /// Returns the lead of the absolute position in the readings, in 1/32 period, as it must be entered; a selected half
-    /// step is added.
+    /// Returns the lead of the absolute position in the readings, in 1/32 period, as it must be entered, including a
+    /// selected half step.
     pub fn measured(&self) -> Option<f64> {
         if self.readings.len() < LEAST_READINGS {
             return None;
@@ -273,7 +273,7 @@ impl Synchronise {
         measure_offset(self.readings.iter().copied()).map(|offset| self.with_half_step(offset))
     }
 
-    /// Returns an offset as it must be entered.
+    /// Returns an offset as it must be entered, including a selected half step.
     pub fn with_half_step(&self, offset: f64) -> f64 {
         offset + if self.form.half_step { 0.5 } else { 0.0 }
     }

@@ -3,16 +3,16 @@
 use super::TableSource;
 use crate::analysis::capture::{Columns, Delimiter, Layout, TableHints, decode_head};
 
-/// Beginning of a table, with its format.
+/// The beginning of a table, with its format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     pub place: TableSource,
-    /// Its first lines as text; long ones are truncated.
+    /// First lines of the table; long lines are truncated.
     pub head: Vec<String>,
     pub hints: TableHints,
-    /// Format of the table; `None` if it cannot be detected.
+    /// Format of the table, or `None` if it cannot be detected.
     pub layout: Option<Layout>,
-    /// REFSIN and REFCOS while only one of them is selected.
+    /// The REFSIN and REFCOS columns while only one of them is selected.
     pub half_chosen: (Option<usize>, Option<usize>),
 }
 
@@ -23,20 +23,20 @@ pub enum Column {
     Cosine,
     RefSine,
     RefCosine,
-    /// The shaft's angle by a reference encoder.
+    /// Shaft angle according to a reference encoder.
     ReferenceAngle,
     Absolute,
 }
 
-/// Lines that are shown.
+/// Number of lines shown.
 const LINES: usize = 6;
 /// Maximum number of characters shown per line.
 const WIDTH: usize = 160;
-/// Most columns that are offered.
+/// Maximum number of columns offered for selection.
 const MOST_COLUMNS: usize = 64;
 
 impl Table {
-    /// Creates it from the first bytes of a table.
+    /// Creates a table from the first bytes of its file.
     pub(super) fn of(place: TableSource, head: &[u8], hints: TableHints) -> Self {
         let text = decode_head(head);
         let shown = |line: &[u8]| {
@@ -57,7 +57,7 @@ impl Table {
         self.hints.columns.or(self.layout.as_ref().map(|layout| layout.columns))
     }
 
-    /// Returns the column that is taken for something, from 1.
+    /// Returns the number of the column used for the given quantity, counted from 1.
     pub fn column(&self, column: Column) -> Option<usize> {
         let columns = self.columns()?;
         match column {
@@ -87,7 +87,7 @@ impl Table {
         Some(name.as_str()).filter(|name| !name.is_empty())
     }
 
-    /// Selects another column. Returns false if the table cannot be read differently yet, because the other reference is
+    /// Selects another column. Returns `false` if the table cannot be reread yet because the other reference column is
     /// missing.
     pub(super) fn choose(&mut self, column: Column, number: Option<usize>) -> bool {
         let mut columns = self.columns().unwrap_or(Columns::PLAIN);

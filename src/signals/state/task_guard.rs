@@ -5,14 +5,14 @@ use super::{Done, TAB};
 use crate::app::action::{Action, Done as StudioDone};
 use crate::app::tasks::{Mailbox, Tasks};
 
-/// Sent if the task does not return by itself.
+/// A message that is sent if the task ends without returning.
 struct Promise {
     mailbox: Mailbox,
     failed: Option<Done>,
 }
 
 impl Promise {
-    /// Marks the task as returned.
+    /// Marks the task as completed.
     fn task_returned(mut self) {
         self.failed = None;
     }
@@ -30,7 +30,7 @@ fn action(done: Done) -> Action {
     Action::Done(StudioDone::tool(TAB, done))
 }
 
-/// Runs a task on a thread; `failed` is returned if it gives no result.
+/// Runs a task on a thread and returns `failed` if the task gives no result.
 pub(super) fn run(tasks: &Tasks, name: &str, failed: Done, task: impl FnOnce() -> Done + Send + 'static) {
     let promise = Promise { mailbox: tasks.mailbox(), failed: Some(failed) };
     tasks.run(name, move || {
@@ -40,7 +40,7 @@ pub(super) fn run(tasks: &Tasks, name: &str, failed: Done, task: impl FnOnce() -
     });
 }
 
-/// Drops a large value on a thread: releasing its memory takes a while.
+/// Drops a large value on a separate thread, since releasing its memory takes a while.
 pub(super) fn let_go(tasks: &Tasks, large: impl Send + 'static) {
     tasks.run("let go", move || {
         drop(large);

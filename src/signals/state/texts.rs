@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// Texts of the Signals tab; other names are those of common texts.
+/// Messages of the Signals tab; any other name refers to a common message.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../assets/texts/signals.ron"));

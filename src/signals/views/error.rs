@@ -54,7 +54,7 @@ pub(super) fn page_ui(
     octant::card_ui(ui, theme, &mut view.octant);
 }
 
-/// Returns the text of the basis of the corrected error.
+/// Returns the message for the basis of the corrected error.
 fn basis(basis: Basis) -> Text {
     match basis {
         Basis::Motion { noise_deg } => TEXTS.text("error.basis_motion").with_number("noise", noise_deg, 3),
@@ -62,7 +62,7 @@ fn basis(basis: Basis) -> Text {
     }
 }
 
-/// Returns the error of the compared capture, if it has one.
+/// Returns the error of the compared capture, if any.
 fn other(compared: Option<&Results>) -> Option<&PositionError> {
     compared.and_then(|own| own.analysis.as_ref().ok()).map(|own| &own.error)
 }
@@ -120,7 +120,7 @@ fn bars(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Res
     });
 }
 
-/// Returns the raw and corrected traces, of one capture or of both.
+/// Returns the raw and corrected traces of the capture and, if given, the compared one.
 fn series(
     error: &PositionError,
     compared: Option<&PositionError>,

@@ -11,9 +11,8 @@ use crate::ui::controls::{card, labelled_entry, paragraph, problem_below, row, s
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, icons};
 
-/// Width of an entry.
 const ENTRY: f32 = 80.0;
-/// Rows of the table, and points of the curves.
+/// Number of table rows and of curve points.
 const ROWS: u32 = 10;
 const POINTS: u32 = 100;
 /// Height of the curves in points.

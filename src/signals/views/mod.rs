@@ -21,14 +21,14 @@ use crate::signals::state::{Signals, SignalsKind, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, ToolPages, ToolView, infos, page_at};
 use crate::ui::{Theme, icons, page};
 
-/// A page of the tab.
+/// A page of the Signals tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
     Scope,
-    /// The Lissajous figure and the numbers with their limits.
+    /// The Lissajous figure and the measured values with their limits.
     #[default]
     Quality,
-    /// The position error inside a period.
+    /// The position error within a period.
     Error,
     Synchronise,
     InputCircuit,
@@ -44,10 +44,10 @@ impl TabPage for Page {
     ];
 }
 
-/// Entered text that does not take effect yet, with the reason if it cannot.
+/// An entered string that has not taken effect yet, and the reason if it is invalid.
 type Draft = Option<(String, Option<Text>)>;
 
-/// State of the tab between frames: text buffers and selections.
+/// UI state of the tab between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct SignalsUiState {
     page: Page,
@@ -60,7 +60,6 @@ pub(crate) struct SignalsUiState {
     input_circuit: Circuit,
 }
 
-/// The view of the Signals tab.
 pub(crate) struct SignalsView;
 
 impl ToolView for SignalsView {
@@ -97,7 +96,7 @@ impl ToolPages for SignalsUiState {
     }
 }
 
-/// Draws the open page; `device` is one that is shown in its own tab, and can be read.
+/// Draws the open page. `device` is a readable device shown in its own tab.
 fn page_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -133,7 +132,7 @@ fn page_ui(
     });
 }
 
-/// Returns a text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a message from this folder's catalogue or the common one, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

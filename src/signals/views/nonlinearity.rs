@@ -10,7 +10,7 @@ use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, problem};
 use crate::ui::widgets::{Chart, Trace, chart};
 
-/// Draws the card; with the values of a compared capture if there is one.
+/// Draws the card, including the values of a compared capture if given.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, measurement: &Results, compared: Option<&Results>) {
     card(ui, theme, TEXTS.text("nonlinearity.title"), |ui| match &measurement.nonlinearities {
         Some(Ok(nonlinearities)) => {

@@ -7,14 +7,14 @@ use crate::signals::state::{Bound, Quantity, Unit};
 use crate::signals::views::say;
 use crate::ui::{Theme, controls};
 
-/// Width from which a value is also shown in its second unit; below, that is its tooltip.
+/// Width from which a value is also shown in its second unit; in narrower windows, the second unit is in the tooltip.
 const WIDE: f32 = 390.0;
-/// Width from which limits have a column; below, they are the tooltips of the marks.
+/// Width from which limits have a column; in narrower windows, they are tooltips of the verdict icons.
 const LEAST: f32 = 350.0;
-/// Width that the column of limits takes.
+/// Width of the limits column.
 const LIMITS: f32 = 110.0;
 
-/// Draws the rows; with a second list also its values, and the differences.
+/// Draws the rows; if a second list is given, also its values and the differences.
 pub(super) fn rows_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -88,7 +88,7 @@ pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) 
     unit_behind(theme.number(rounded(value, decimals), decimals), unit)
 }
 
-/// Rounds to the decimals shown; a value shown as zero has no sign.
+/// Rounds to the displayed decimals; a value displayed as zero has no sign.
 fn rounded(value: f64, decimals: usize) -> f64 {
     let scale = 10_f64.powi(decimals as i32);
     if (value * scale).abs() < 0.5 { 0.0 } else { value }
@@ -113,7 +113,7 @@ fn unit_behind(words: String, unit: Unit) -> String {
     }
 }
 
-/// Draws an icon in its colour, with its text for screen readers, and the limit as tooltip.
+/// Draws a verdict icon in its colour, with a label for screen readers and the limit as a tooltip.
 fn mark(ui: &mut Ui, theme: &Theme, verdict: Verdict, limit: &str) {
     let (icon, colour) = controls::verdict(theme, verdict);
     let id = match verdict {

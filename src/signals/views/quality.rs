@@ -18,9 +18,9 @@ use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, probl
 use crate::ui::widgets::{Figure, Lissajous, lissajous, phosphor, series};
 use crate::ui::{Theme, icons};
 
-/// Usual numbers of periods per revolution.
+/// Common numbers of periods per revolution.
 const USUAL_PERIODS: [u32; 11] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 65_536];
-/// Points of a fitted ellipse.
+/// Number of points on a fitted ellipse.
 const CURVE: usize = 180;
 
 pub(super) fn page_ui(
@@ -97,7 +97,7 @@ fn figure(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Measu
     });
 }
 
-/// The samples of a capture as a texture, kept until they or the colour are others.
+/// The samples of a capture as a texture, kept until the samples or the colour change.
 #[derive(Default)]
 pub(super) struct Picture(Option<(Arc<Results>, bool, Color32, TextureHandle)>);
 
@@ -139,7 +139,7 @@ fn figure_of(
     Figure { picture, curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(), colour, dashed }
 }
 
-/// Draws why a capture cannot be measured, and its findings.
+/// Draws the reason why a capture cannot be measured, along with its findings.
 pub(super) fn refused_ui(ui: &mut Ui, theme: &Theme, measurement: &Results) {
     let Some(why) = measurement.refusal(theme.language) else { return };
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
@@ -186,7 +186,8 @@ fn verdict(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurem
     });
 }
 
-/// Draws the changes since another capture. That nothing became worse is shown only if everything could be compared.
+/// Draws the changes since another capture. A note that nothing has become worse appears only if everything could be
+/// compared.
 fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &Changes) {
     let under = |ui: &mut Ui, id| {
         ui.add_space(theme.space.inside);
@@ -235,7 +236,7 @@ fn values(
     });
 }
 
-/// Draws the signal periods in a revolution, typed or chosen.
+/// Draws the signal periods per revolution, which can be typed or selected.
 pub(super) fn periods_ui(
     ui: &mut Ui,
     theme: &Theme,

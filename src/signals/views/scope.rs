@@ -11,15 +11,15 @@ use crate::ui::controls::{card, card_with, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, plot};
 
-/// Least height of the trace in points, and the height of the spectrum.
+/// Minimum height of the trace and height of the spectrum, in points.
 const TRACE: f32 = 300.0;
 const SPECTRUM: f32 = 200.0;
 
-/// The state of the page between frames.
+/// UI state of the page between frames.
 #[derive(Default)]
 pub(super) struct ScopeView {
     plot: plot::PlotUiState,
-    /// The spectrum is shown in volts instead of decibels.
+    /// Whether the spectrum is shown in volts instead of decibels.
     volts: bool,
 }
 
@@ -134,7 +134,7 @@ fn lines(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra>, 
     paragraph(ui, theme.caption(theme.words(&text)));
 }
 
-/// Draws the highest peaks of both channels, and their relation to the signal.
+/// Draws the highest peaks of both channels and their relation to the signal.
 fn peaks(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measurement) {
     let signal_hz = measurement.analysis.as_ref().ok().and_then(|own| own.frequency_hz()).map(f64::abs);
     ui.add_space(theme.space.inside);

@@ -13,7 +13,7 @@ use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name
 use crate::ui::widgets::series;
 use crate::ui::{Theme, icons};
 
-/// The state of the source between frames.
+/// UI state of the source between frames.
 #[derive(Default)]
 pub(super) struct SourceUiState {
     table: table::TableUiState,
@@ -21,7 +21,7 @@ pub(super) struct SourceUiState {
     adapter: bool,
 }
 
-/// Draws it. Returns true if there is a capture to show below.
+/// Draws the source. Returns `true` if a capture can be shown below.
 pub(super) fn source_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -54,7 +54,7 @@ pub(super) fn source_ui(
     shown
 }
 
-/// Draws the virtual encoder's settings, if they are open. A page draws them where their effect is visible.
+/// Draws the virtual encoder's settings if they are open. Each page draws them where their effect is visible.
 pub(super) fn settings_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -68,7 +68,7 @@ pub(super) fn settings_ui(
     }
 }
 
-/// Returns the displayed source, or the one to be displayed; `None`: a table is.
+/// Returns the source that is or will be displayed, or `None` if a table is displayed.
 fn live(signals: &Signals) -> Option<SourceKind> {
     if signals.source().is_running() {
         return Some(signals.source().kind());
@@ -80,7 +80,7 @@ fn live(signals: &Signals) -> Option<SourceKind> {
     }
 }
 
-/// Draws the reading in progress, with the button that stops it.
+/// Draws the reading in progress with its cancel button.
 fn reading(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(reading) = signals.reading() else { return };
     ui.horizontal(|ui| {
@@ -97,7 +97,7 @@ fn reading(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Acti
     ui.add_space(theme.space.between);
 }
 
-/// Draws why a capture could not be read; other pages show it as well.
+/// Draws the reason why a capture could not be read, which other pages show as well.
 pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let Some(problem) = signals.problem() else { return };
     ui.horizontal_top(|ui| {
@@ -113,7 +113,7 @@ pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     ui.add_space(theme.space.between);
 }
 
-/// Draws the displayed capture in one line, with its actions.
+/// Draws the displayed capture on one line, with its actions.
 fn present(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     theme.card().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
         fill(ui);
@@ -146,7 +146,7 @@ fn title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     ui.add_space(theme.space.between);
 }
 
-/// Draws the kind of source, whether it runs, and the lost samples.
+/// Draws the kind of source, whether it is running, and the number of lost samples.
 fn live_title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let palette = theme.palette;
     let source = signals.source();
@@ -193,7 +193,7 @@ fn live_title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     }
 }
 
-/// Draws the buttons to start, hold and stop the source, and for its settings.
+/// Draws the buttons that start, hold and stop the source, and the settings button.
 fn source_buttons(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     let source = signals.source();
     let mut ask = |action| actions.push(Action::tool(Signals_::Source(action)));
@@ -220,7 +220,7 @@ fn source_buttons(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut Sour
     toggle(ui, icons::SLIDERS, &say(theme, "virtual.settings"), open);
 }
 
-/// Draws a button that shows something, or hides it.
+/// Draws a button that shows or hides something.
 fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
     let button = egui::Button::selectable(*open, format!("{icon}  {word}")).frame_when_inactive(true);
     if name(ui.add(button), true, word).clicked() {
@@ -228,7 +228,7 @@ fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
     }
 }
 
-/// Draws the button that stores the capture for comparison, and the stored one.
+/// Draws the button that keeps the capture for comparison, and the kept capture.
 fn keep_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let word = say(theme, "compare.keep");
     let same =
@@ -238,7 +238,7 @@ fn keep_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Acti
     }
 }
 
-/// Draws the capture that this one is compared with.
+/// Draws the capture used for comparison.
 fn compared(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(kept) = signals.comparison() else { return };
     ui.horizontal(|ui| {
@@ -283,7 +283,7 @@ fn source_menu(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions: &m
     name(menu.response, true, &word);
 }
 
-/// Draws an empty state, with the buttons that fill it.
+/// Draws an empty state with the buttons that load or start something.
 fn nothing(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     if signals.reading().is_some() {
         return;

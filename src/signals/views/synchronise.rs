@@ -13,11 +13,10 @@ use crate::ui::controls::{
 use crate::ui::widgets::{StepRing, series, step_ring};
 use crate::ui::{Theme, controls, icons};
 
-/// Width of an entry.
 const ENTRY: f32 = 112.0;
-/// Side of the ring.
+/// Side length of the ring in points.
 const RING: f32 = 200.0;
-/// Share of the left column, and the least width for two.
+/// Fraction taken by the left column, and minimum width for two columns.
 const COLUMNS: (f32, f32) = (0.42, 620.0);
 
 pub(super) fn page_ui(
@@ -134,7 +133,7 @@ fn measured(ui: &mut Ui, theme: &Theme, state: &Synchronise, actions: &mut Vec<A
     }
 }
 
-/// Draws the offset over a capture with an absolute position.
+/// Draws the offset measured over a capture that has an absolute position.
 fn captured(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("synchronise.captured"), |ui| {
         let measurement = signals.measurement();

@@ -10,7 +10,7 @@ use crate::signals::views::say;
 use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
 use crate::ui::{Theme, icons};
 
-/// The state of the card between frames.
+/// UI state of the card between frames.
 #[derive(Default)]
 pub(super) struct TableUiState {
     pub(super) is_open: bool,
@@ -71,7 +71,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
     }
 }
 
-/// Draws the first lines as in the file.
+/// Draws the first lines as they are in the file.
 fn lines(ui: &mut Ui, theme: &Theme, table: &Table) {
     let first = table.layout.as_ref().map_or(0, |layout| layout.first_row);
     theme.sunken().show(ui, |ui| {

@@ -10,12 +10,12 @@ use crate::sim::sine_cosine::{Quantity, References, Settings};
 use crate::ui::controls::{button, card_with, choice, entry, label_width, paragraph, problem_below, two_columns};
 use crate::ui::{Theme, icons};
 
-/// Setting with a slider: the end of its slider (more can be entered), and its decimals.
+/// A setting with a slider: the ends of the slider (values beyond them can be typed) and the number of decimals.
 struct SliderSpec {
     quantity: Quantity,
     ends: (f64, f64),
     decimals: usize,
-    /// Small values have as much room as large ones.
+    /// Whether the slider scale is logarithmic, giving small values as much room as large ones.
     logarithmic: bool,
 }
 
@@ -48,7 +48,7 @@ const DISTURBANCES: [SliderSpec; 8] = [
     slider_spec(Quantity::Modulation, 0.0, 20.0, 1),
     wide(Quantity::Eccentricity, 0.0, 3600.0, 1),
 ];
-/// Windows to choose from, in milliseconds.
+/// Selectable window lengths in milliseconds.
 const WINDOWS: [u32; 5] = [20, 50, 200, 1000, 5000];
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) {
@@ -81,7 +81,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
 }
 
 fn sliders(ui: &mut Ui, theme: &Theme, settings: &Settings, list: &[SliderSpec], ask: &mut impl FnMut(SourceAction)) {
-    /// Width of the number beside a slider.
+    /// Width of the number field beside a slider.
     const NUMBER: f32 = 96.0;
     let label = label_width(ui);
     let rail = (ui.available_width() - label - NUMBER - 3.0 * theme.space.between).clamp(40.0, 220.0);

@@ -24,28 +24,28 @@ pub use settings::{Checked, Quantity, References, SettingError, Settings};
 use crate::analysis::Time;
 use crate::analysis::wiring::{Wire, Wires};
 
-/// Parts of a turn, chosen so that 0.001 rev/min for a nanosecond is one part.
+/// Parts per turn, chosen so that 0.001 rev/min corresponds to one part per nanosecond.
 const TURN: u64 = 60_000 * 1_000_000_000;
-/// Parts of a period of an interference: 0.001 Hz for a nanosecond is one.
+/// Parts per interference period, chosen so that 0.001 Hz corresponds to one part per nanosecond.
 const CYCLE: u64 = 1_000 * 1_000_000_000;
-/// Changes that are remembered.
+/// Maximum number of setting changes remembered.
 const REMEMBERED: usize = 64;
 
 /// The analogue source. Its samples are numbered from 0.
 #[derive(Clone, Debug)]
 pub struct Source {
     start: Time,
-    /// Never empty; the latest last.
+    /// Segments in order of time, never empty.
     segments: VecDeque<Segment>,
 }
 
 #[derive(Clone, Debug)]
 struct Segment {
-    /// The first sample of the segment.
+    /// Index of the segment's first sample.
     from: u64,
-    /// Nanoseconds from the start to that.
+    /// Nanoseconds from the start to the first sample of the segment.
     elapsed: u64,
-    /// Position of the shaft at that moment, in parts of a turn.
+    /// Shaft position at the first sample of the segment, in parts of a turn.
     turn: u64,
     checked: Checked,
 }
@@ -113,7 +113,7 @@ impl Segment {
         self.elapsed.saturating_add(index.saturating_sub(self.from).saturating_mul(self.period()))
     }
 
-    /// Parts of a turn from one sample to the next, modulo a turn.
+    /// Returns the parts of a turn between samples, modulo a turn.
     fn step(&self) -> u64 {
         let speed = (self.checked.settings().speed_rpm * 1_000.0).round() as i128;
         remainder(speed * i128::from(self.period()), TURN)
@@ -152,7 +152,7 @@ impl Segment {
     }
 }
 
-/// Something that turns by equal steps, in whole parts.
+/// A rotation in equal steps of whole parts.
 #[derive(Clone, Copy)]
 struct Wheel {
     at: u64,
@@ -166,7 +166,7 @@ impl Wheel {
         self.at -= if self.at >= self.whole { self.whole } else { 0 };
     }
 
-    /// Returns the position in the turn, 0 to below 1.
+    /// Returns the position within the turn, at least 0 and below 1.
     fn share(self) -> f64 {
         self.at as f64 / self.whole as f64
     }
@@ -176,15 +176,15 @@ impl Wheel {
     }
 }
 
-/// The settings as they are used for each sample.
+/// The settings in the form used to calculate each sample.
 struct Model<'a> {
     settings: &'a Settings,
     periods: u64,
-    /// Radians of the signal that the eccentricity shifts by.
+    /// Amplitude of the signal's phase shift due to eccentricity, in radians.
     eccentricity: f64,
     phase_error: f64,
     third: f64,
-    /// Noise of each wire, so that a difference has the set noise.
+    /// Noise of each wire, such that a difference has the configured noise.
     noise: f64,
 }
 
@@ -200,7 +200,7 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Returns the sine and cosine channel in volts, without disturbances.
+    /// Returns the sine and cosine channels in volts, without disturbances.
     fn channels(&self, shaft: Wheel) -> (f64, f64) {
         let settings = self.settings;
         let (once_sine, once_cosine) = shaft.angle().sin_cos();
@@ -247,7 +247,7 @@ fn remainder(number: i128, whole: u64) -> u64 {
     u64::try_from(number.rem_euclid(i128::from(whole))).unwrap_or(0)
 }
 
-/// Returns two independent numbers of the normal distribution, the same for the same place (Box and Muller 1958).
+/// Returns two independent, normally distributed numbers that depend only on `seed` and `place` (Box and Muller 1958).
 fn gaussian(seed: u64, place: u64) -> [f64; 2] {
     let first = scramble(seed ^ scramble(place));
     let second = scramble(first ^ seed);
@@ -258,7 +258,7 @@ fn gaussian(seed: u64, place: u64) -> [f64; 2] {
     [length * sine, length * cosine]
 }
 
-/// Returns a hash by SplitMix64 (Steele, Lea, Flood 2014): neighbouring numbers become unrelated ones.
+/// Returns a SplitMix64 hash (Steele, Lea, Flood 2014), which turns adjacent numbers into unrelated ones.
 fn scramble(number: u64) -> u64 {
     let mixed = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);

@@ -243,8 +243,8 @@ impl Checked {
 }
 
 impl Default for Settings {
-    /// Returns a good HIPERFACE encoder of 1024 periods at 60 rev/min, sampled with 100 kHz: 0.5 V, 0.5 mV of noise.
-    /// Interference has its usual frequencies: a drive's 8 kHz, mains of 50 Hz.
+    /// Returns the settings of a good HIPERFACE encoder with 1024 periods at 60 rev/min, sampled at 100 kHz: 0.5 V, 0.5
+    /// mV of noise. Interference has its usual frequencies: 8 kHz from a drive and 50 Hz from the mains.
     fn default() -> Self {
         Settings {
             periods: 1024.0,

@@ -15,40 +15,40 @@ pub struct LogbookError {
     pub problem: LogbookProblem,
 }
 
-/// The obstacle to using the logbook.
+/// The reason why the logbook cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LogbookProblem {
     /// The folder cannot be created.
     #[error(transparent)]
     Folder(FileError),
-    /// The file cannot be opened: a folder with its name, or no permission.
+    /// The file cannot be opened: a folder has its name, or permission is missing.
     #[error("cannot be opened")]
     NoAccess,
     /// The file can be read but not written.
     #[error("is write-protected")]
     WriteProtected,
-    /// Another program kept it locked for longer than the time limit.
+    /// Another program kept the file locked for longer than the time limit.
     #[error("is in use by another program")]
     Locked,
     #[error("the disk is full")]
     DiskFull,
-    /// The file is not a database, or a damaged one.
+    /// The file is damaged or not a database.
     #[error("is damaged: {what}")]
     Damaged { what: String },
-    /// A newer version of the program created it. It is unchanged.
+    /// A newer version of the program created the file, which is left unchanged.
     #[error("has schema {found}, written by a newer version; this version supports schemas up to {known}")]
     Newer {
         found: i64,
-        /// The last one this version knows.
+        /// The latest schema that this version knows.
         known: i64,
     },
-    /// The entry to conclude does not exist, or is concluded.
+    /// The entry to conclude does not exist or has already been concluded.
     #[error("entry {entry} is not open")]
     NotOpen { entry: EntryId },
-    /// Any other error, as named by the database.
+    /// Any other error reported by the database.
     #[error("{what}")]
     Database {
-        /// SQLite's extended result code; `None` if the value was refused before it reached SQLite.
+        /// SQLite's extended result code, or `None` if the value was refused before it reached SQLite.
         code: Option<i32>,
         what: String,
     },

@@ -17,10 +17,10 @@ use rusqlite::{Connection, Row, named_params};
 
 pub use error::{LogbookError, LogbookProblem};
 
-/// Time to wait for another window that is writing.
+/// Maximum time to wait for another window that is writing.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// An open logbook. Opening and reading may wait for another window, so they must not run on the thread of the window.
+/// An open logbook. Opening and reading may wait for another window, so do neither on the UI thread.
 #[derive(Debug)]
 pub struct Logbook {
     path: PathBuf,
@@ -30,12 +30,13 @@ pub struct Logbook {
 /// The device that an entry is about.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct DeviceKey {
-    /// Kind of device: `hiperface`.
+    /// Kind of device, such as `hiperface`.
     pub kind: String,
-    /// Type within the kind, as its manual writes it: `37h`. Serial numbers are unique within a type only.
+    /// Device type within the kind, as written in its manual, such as `37h`. Serial numbers are unique only within a
+    /// type.
     pub device_type: String,
     pub serial_number: String,
-    /// Whether the device is simulated; it never shares a count with a real one.
+    /// Whether the device is simulated; a simulated device never shares a count with a real one.
     pub is_virtual: bool,
 }
 
@@ -46,7 +47,7 @@ impl DeviceKey {
     }
 }
 
-/// Identifies an entry of the logbook.
+/// Identifier of a logbook entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EntryId(i64);
 
@@ -56,54 +57,54 @@ impl fmt::Display for EntryId {
     }
 }
 
-/// The end of a write.
+/// The outcome of a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     Done,
-    /// Failure, with the reason as a text.
+    /// The write failed for the given reason.
     Failed(String),
     Cancelled,
 }
 
-/// One write, as it was intended and as it ended.
+/// A write, with its plan and its outcome.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Number of the entry; a later entry has a greater one.
+    /// Identifier of the entry; later entries have greater ones.
     pub id: EntryId,
-    /// Time just before the write.
+    /// Time directly before the write.
     pub at: Timestamp,
-    /// The planned write, as text.
+    /// Description of the planned write.
     pub description: String,
     pub planned_cycles: u64,
-    /// The backup taken before; characters of its path that are not Unicode are replaced.
+    /// Path of the backup taken before the write; invalid Unicode in the path is replaced.
     pub backup: Option<PathBuf>,
-    /// The end of the write; `None` while it runs, and permanently if the program died meanwhile.
+    /// Conclusion of the write; `None` while it runs, and permanently if the program died in the meantime.
     pub conclusion: Option<Conclusion>,
 }
 
-/// The end of a write and its time.
+/// The outcome of a write, with its time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Conclusion {
     pub at: Timestamp,
     pub outcome: Outcome,
-    /// Write cycles that were spent; not zero for a write that failed half-way.
+    /// Number of write cycles spent; not zero for a write that failed half-way.
     pub cycles_spent: u64,
 }
 
-/// Status codes that reading removed from a device.
+/// Status codes that were cleared from a device by reading them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatusEntry {
     pub at: Timestamp,
-    /// The codes, as text, in the device's order.
+    /// The formatted codes in the device's order.
     pub codes: String,
 }
 
 impl Logbook {
-    /// Opens the logbook, creating it and its folder if they are missing.
+    /// Opens the logbook, creating it and its folder if missing.
     ///
     /// # Errors
-    /// Returns an error if the file is not a database, a damaged one, in use for longer than two seconds, not writable, or
-    /// created by a newer version of the program; the file is then unchanged.
+    /// Returns an error if the file is damaged, not a database, in use for longer than two seconds, not writable, or
+    /// created by a newer version of the program; the file is then left unchanged.
     pub fn open(path: &Path) -> Result<Self, LogbookError> {
         Self::open_patiently(path, PATIENCE)
     }
@@ -113,7 +114,7 @@ impl Logbook {
         Ok(Logbook { path: path.to_owned(), database })
     }
 
-    /// Records that a device is about to be written. The record is on disk when this returns.
+    /// Records that a device is about to be written. The record is on disk when this function returns.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be written.
@@ -144,8 +145,8 @@ impl Logbook {
     /// Records how an intended write ended.
     ///
     /// # Errors
-    /// [`LogbookProblem::NotOpen`] if there is no such intent or it is concluded; otherwise if the logbook cannot be
-    /// written.
+    /// Returns [`LogbookProblem::NotOpen`] if the intent does not exist or is already concluded, or another error if
+    /// the logbook cannot be written.
     pub fn conclude(
         &mut self,
         id: EntryId,
@@ -174,9 +175,9 @@ impl Logbook {
         }
     }
 
-    /// Returns the write cycles that this program has spent on a device. An intent without a conclusion counts as planned,
-    /// as it is not known whether the program died before or after the last byte. Writes by other programs are not
-    /// included: "at least".
+    /// Returns the write cycles that this program has spent on a device. An intent without a conclusion counts as
+    /// planned, since the program may have died before or after the last byte. Writes by other programs are not
+    /// included, so the count is a minimum.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -205,7 +206,7 @@ impl Logbook {
         self.database.prepare(sql)?.query_map(key, read_entry)?.collect()
     }
 
-    /// Records status codes that were read from a device. They are on disk when this returns.
+    /// Records status codes that were read from a device. The record is on disk when this function returns.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be written.
@@ -217,7 +218,7 @@ impl Logbook {
         self.database.execute(sql, row).map(drop).map_err(|error| self.failed(error))
     }
 
-    /// Returns the last `limit` readings of status codes from a device, newest first.
+    /// Returns the last `limit` status readings from a device, newest first.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -242,7 +243,8 @@ impl Logbook {
     }
 }
 
-/// Limits the cycles of one entry: with 32 bits no sum of entries overflows, and no EEPROM survives a thousandth of them.
+/// Limits the cycles of an entry to 32 bits, so that no sum of entries overflows; no EEPROM survives a thousandth of
+/// that number.
 fn countable(cycles: u64) -> u32 {
     u32::try_from(cycles).unwrap_or(u32::MAX)
 }

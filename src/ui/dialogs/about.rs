@@ -9,7 +9,7 @@ use crate::ui::{Theme, icons};
 const FONT_LICENCES: &str = include_str!("../../../assets/fonts/LICENCES.txt");
 const CRATES: &str = include_str!("../../../assets/crates.txt");
 
-/// Draws the dialog. Returns true when it is closed.
+/// Draws the dialog. Returns `true` when it is closed.
 pub(in crate::ui) fn about_ui(ctx: &egui::Context, theme: &Theme) -> bool {
     let mut done = false;
     modal(ctx, theme, "about", 560.0, |ui| {
@@ -38,7 +38,7 @@ pub(in crate::ui) fn about_ui(ctx: &egui::Context, theme: &Theme) -> bool {
     done
 }
 
-/// Draws the name and the help of the open page. Returns true when it is closed.
+/// Draws the name and help of the open page. Returns `true` when the help is closed.
 pub(in crate::ui) fn help_ui(ctx: &egui::Context, theme: &Theme, (page, help): (&'static str, &'static str)) -> bool {
     let mut open = true;
     let title = format!("{}  {}", icons::BOOK_OPEN_TEXT, theme.say(page));

@@ -7,9 +7,9 @@ use crate::profile::Comparison;
 use crate::ui::controls::{at_the_right, button, modal, paragraph, primary};
 use crate::ui::{Theme, icons};
 
-/// Height of the list, so that a long one leaves the buttons in sight.
+/// Maximum height of the list in points, so that a long list leaves the buttons visible.
 const LIST: f32 = 340.0;
-/// Most characters of a value in one line; the tooltip has the rest.
+/// Maximum number of characters of a value on one line; the tooltip shows the rest.
 const SHOWN: usize = 40;
 
 pub(in crate::ui) fn comparison_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {

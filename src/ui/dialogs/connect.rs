@@ -19,20 +19,20 @@ use crate::ui::{TabViews, Theme, icons};
 pub use form::ConnectForm;
 pub use form::TypedConnectForm;
 
-/// The state of the dialog between frames.
+/// UI state of the dialog between frames.
 #[derive(Default)]
 pub(in crate::ui) struct ConnectView {
     forms: HashMap<Tab, Box<dyn ConnectForm>>,
     more: bool,
 }
 
-/// Links offered that were used before.
+/// Number of previously used links offered.
 const LINKS: usize = 5;
 const WIDTH: f32 = 600.0;
-/// Height of two lines for the reason why it cannot continue.
+/// Height of the two lines reserved for the reason why the dialog cannot continue.
 const WHY: f32 = 40.0;
 
-/// Draws the dialog, if it is open.
+/// Draws the dialog if it is open.
 pub(in crate::ui) fn connect_ui(
     ctx: &egui::Context,
     theme: &Theme,
@@ -103,7 +103,7 @@ fn used_before(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut Vec<A
     ui.add_space(theme.space.between);
 }
 
-/// Draws the link as the command line takes it: it follows the form, and the form follows it.
+/// Draws the link as used on the command line. The link and the form update each other.
 fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
     let hint = Text::new("connect.link_hint").with("link", dialog.example());
     let (word, hint) = (theme.say("connect.link"), theme.words(&hint));
@@ -121,7 +121,8 @@ fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, a
     });
 }
 
-/// Draws why the dialog cannot continue. Two lines are reserved for it, so that the buttons do not move under the pointer.
+/// Draws the reason why the dialog cannot continue. Two lines are reserved, so that the buttons do not move under the
+/// pointer.
 fn why_ui(ui: &mut Ui, theme: &Theme, why: Option<&Text>) {
     let top = ui.cursor().top();
     match why {

@@ -8,12 +8,12 @@ use crate::profile::Changed;
 use crate::ui::controls::{at_the_right, button, enabled_button, modal, options, paragraph, primary, problem};
 use crate::ui::{Theme, icons};
 
-/// Height of the list, so that a long one leaves the buttons visible.
+/// Maximum height of the list in points, so that a long list leaves the buttons visible.
 const LIST: f32 = 320.0;
-/// Maximum number of characters of a value displayed: a memory has thousands.
+/// Maximum number of displayed characters of a value, since a memory has thousands.
 const SHOWN: usize = 60;
 
-/// Draws the dialog, if there is something to decide.
+/// Draws the dialog if there is something to decide.
 pub(in crate::ui) fn diverged_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     // A resulting question is shown before it.
     let Some(diverged) = studio.diverged.as_ref().filter(|_| studio.question.is_none()) else { return };
@@ -63,7 +63,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, at: usize, row: &Row, actions: &mut Vec<Ac
     ui.add_space(theme.space.between);
 }
 
-/// Returns the beginning of a value on one line.
+/// Shortens a value to its beginning on one line.
 fn shortened(value: &str) -> String {
     let words: Vec<&str> = value.split_whitespace().collect();
     let line = words.join(" ");

@@ -13,15 +13,15 @@ use crate::ui::{Theme, icons};
 pub(in crate::ui) struct FileView {
     question: FileQuestion,
     path: String,
-    /// Base of a relative path.
+    /// Folder from which a relative path starts.
     working: Option<PathBuf>,
     fresh: bool,
 }
 
-/// A user does not close a dialog this fast: there was none.
+/// Time below which a dialog without an answer is taken never to have opened, since no user closes one so fast.
 const TOO_FAST: Duration = Duration::from_millis(250);
 
-/// Asks the question. The answer arrives as an action; if the system has no dialogs, [`file_ui`] asks.
+/// Asks for a file. The answer arrives as an action; if the system has no file dialogs, [`file_ui`] asks instead.
 pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox) {
     let filter = theme.words(&kind(&question));
     if !has_dialogs() {
@@ -61,12 +61,12 @@ pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox
     }
 }
 
-/// Returns whether there are dialogs: on Linux they come from a portal on the session's bus.
+/// Returns whether the system has file dialogs; on Linux, they come from a portal on the session bus.
 fn has_dialogs() -> bool {
     !cfg!(target_os = "linux") || std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some()
 }
 
-/// Returns the name of such files for the system's dialog.
+/// Returns the name of the file type for the system's dialog.
 fn kind(question: &FileQuestion) -> Text {
     match question {
         FileQuestion::Open | FileQuestion::Restore(_) | FileQuestion::Compare(_) | FileQuestion::Save { .. } => {
@@ -95,7 +95,7 @@ fn title(question: &FileQuestion) -> Text {
 }
 
 impl FileView {
-    /// Asks for a path to be typed, starting at the user's home unless the question gives a folder.
+    /// Creates the state for typing a path, starting at the user's home unless the question gives a folder.
     pub(in crate::ui) fn new(question: FileQuestion, folders: &Folders) -> Self {
         let home = folders.home().unwrap_or(Path::new(""));
         let path = home.join(question.suggested().unwrap_or(Path::new("")));
@@ -104,7 +104,7 @@ impl FileView {
     }
 }
 
-/// Draws the dialog in which a path is typed. Returns true when it is closed.
+/// Draws the dialog in which a path is typed. Returns `true` when it is closed.
 pub(in crate::ui) fn file_ui(
     ctx: &egui::Context,
     theme: &Theme,

@@ -10,17 +10,17 @@ use crate::ui::entries::text_entry;
 
 const WIDTH: f32 = 560.0;
 const ROW: f32 = 28.0;
-/// Rows that are visible at a time.
+/// Number of rows visible at a time.
 const ROWS: usize = 11;
 
-/// The text that is being typed, and the row that Enter chooses.
+/// The text being typed, and the row that Enter selects.
 #[derive(Default)]
 pub(in crate::ui) struct PaletteUiState {
     typed: String,
     selected: usize,
 }
 
-/// Draws the palette. Returns the effect of the command that was chosen.
+/// Draws the palette. Returns the effect of the selected command.
 pub(in crate::ui) fn palette_ui(
     ctx: &egui::Context,
     theme: &Theme,
@@ -54,7 +54,7 @@ pub(in crate::ui) fn palette_ui(
     })
 }
 
-/// The commands that fit the typed text, best first; those that cannot be carried out now come last.
+/// Returns the commands that match the typed text, best match first; unavailable commands come last.
 fn matching(typed: &str, commands: Vec<Command>) -> Vec<Command> {
     let fitting = commands.into_iter().filter_map(|command| {
         let fit = fit(typed, &command.name)
@@ -66,7 +66,7 @@ fn matching(typed: &str, commands: Vec<Command>) -> Vec<Command> {
     fitting.into_iter().map(|(_, _, command)| command).collect()
 }
 
-/// Draws the commands. Returns the place of the one that was clicked.
+/// Draws the commands. Returns the index of the clicked one.
 fn rows_ui(ui: &mut Ui, theme: &Theme, commands: &[Command], state: &PaletteUiState, scroll: bool) -> Option<usize> {
     if commands.is_empty() {
         paragraph(ui, theme.label(theme.say("palette.none")));

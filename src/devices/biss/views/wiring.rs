@@ -73,6 +73,6 @@ mod tests {
                 ("8 VCC", &["4.75…12.5 V (00B)", "15 V (01B, 03B)"]),
             ],
         );
-        check_notes(&TEXTS, &NOTES, &["BM08B-GHS", "Point to point"]);
+        check_notes(&TEXTS, &NOTES, &["BM08B-GHS", "Point-to-point"]);
     }
 }

@@ -151,6 +151,6 @@ mod tests {
         check_notes(&TEXTS, &WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);
         check_notes(&TEXTS, &WIRING, &["control 1 +24 V, 3 GND (5-pin, A-coded)", "M6"]);
         check_notes(&TEXTS, &WIRING, &["1 RS-485 + white", "2 RS-485 − green", "3 +24 V orange", "4 GND black"]);
-        check_notes(&TEXTS, &WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub must be at 0"]);
+        check_notes(&TEXTS, &WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub must be set to 0"]);
     }
 }

@@ -261,10 +261,10 @@ mod tests {
         let cases = [
             (
                 ChangeKind::Restore,
-                "Restore the profile again to complete the write",
-                "Restore the profile again to complete the write",
+                "To complete the write, restore the profile again",
+                "To complete the write, restore the profile again",
             ),
-            (ChangeKind::Bytes, "remain as edits", "Run the command again to complete the write"),
+            (ChangeKind::Bytes, "remain as edits", "To complete the write, run the command again"),
             (ChangeKind::Single, "repeat the change", "run the command again if necessary"),
         ];
         for (kind, part, terminal) in cases {

@@ -65,7 +65,7 @@ mod tests {
         check_notes(
             &TEXTS,
             &NOTES,
-            &["BUS version (up to 8 encoders): no 130 Ω built in", "farthest from the controller"],
+            &["BUS version (up to 8 encoders): no built-in 130 Ω resistor", "farthest from the controller"],
         );
         check_notes(&TEXTS, &NOTES, &["overall screen and four twisted pairs"]);
     }

@@ -122,8 +122,8 @@ enum Disturbs {
 }
 
 impl Disturbs {
-    /// Announces the disturbance before it happens. Switching live outputs needs a confirmation on a terminal, unless a
-    /// write was consented to or the encoder is virtual; without a terminal it continues.
+    /// Announces the disturbance in advance. Switching live outputs requires a confirmation on a terminal, unless a
+    /// write was consented to or the encoder is virtual; without a terminal, the command continues.
     fn begin(self, common: &Common, output: &Output, consent: Option<&Consenting>) -> Result<()> {
         self.announce(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == Scheme::Sim);
@@ -137,7 +137,6 @@ impl Disturbs {
         Err(Failure::Failed(vec!["Not confirmed; no cam program was selected.".to_owned()]))
     }
 
-    /// Announces the disturbance before it happens.
     fn announce(self, output: &Output) {
         let id = match self {
             Disturbs::Reading => "ib_disturbs.reading",

@@ -16,7 +16,7 @@ use crate::devices::interbus::state::explain as words;
 use crate::profile::Operation as _;
 use crate::result_of;
 
-/// Makes a plan for a change. Writes nothing.
+/// Plans a change without writing anything.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let reads_all = match &change {
         Change::Restore { profile, .. } => programs_needed(profile).len() == ProgramNumber::COUNT,
@@ -65,13 +65,13 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// Returns the plan as text and JSON: each item old → new, and the cost.
+/// Returns the plan as text and JSON: each item as old → new, and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
-/// Returns the operations as JSON; items that are stored together have no cost of their own.
+/// Returns the operations as JSON; items stored together have no cost of their own.
 pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }

@@ -14,7 +14,8 @@ use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 use crate::result_of;
 
-/// Reads positions. The encoder is identified once, since a position needs its gear; then only the IN word is read.
+/// Reads positions. The encoder is identified once, since a position depends on the gear; after that, only the IN word
+/// is read.
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     Disturbs::Reading.announce(output);

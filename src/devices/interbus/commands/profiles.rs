@@ -47,8 +47,8 @@ impl ProfileCommands for InterbusCommands {
         write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
     }
 
-    /// Reads the encoder for a comparison: all of it, or as much as the profile contains. Reading a program switches the
-    /// encoder's outputs.
+    /// Reads the encoder for a comparison: everything, or only what the profile contains. Reading a cam program
+    /// switches the encoder's outputs.
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
         let profile = match profile.and_then(Body::get::<InterbusProfile>) {
             None => saved(common, output)?,
@@ -57,7 +57,8 @@ impl ProfileCommands for InterbusCommands {
         Ok(Body::new(profile))
     }
 
-    /// Returns a message if two profiles are not of the same encoder. One without a serial number matches none.
+    /// Returns a message if two profiles belong to different encoders. A profile without a serial number matches no
+    /// encoder.
     fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
         let error =
             profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity)

@@ -12,7 +12,6 @@ use crate::devices::interbus::state::explain as words;
 use crate::result_of;
 use crate::worker::Session;
 
-/// A session with an INTERBUS encoder on its thread.
 pub(super) type Runner = runner::Runner<Interbus>;
 
 // Steps of the handshake are shown in the window only; a recording has their bytes.

@@ -13,48 +13,48 @@ use crate::devices::interbus::protocol::{
 };
 use crate::store::DeviceKey;
 
-/// Number of stores from which the user is warned of wear (reference 3: some 200, at most 500).
+/// Store count from which the user is warned of wear (reference 3: some 200, at most 500).
 pub const WEAR_WARNING: u64 = 150;
-/// Number of stores beyond which the user has to confirm once more.
+/// Store count beyond which the user has to confirm once more.
 pub const WEAR_ASK: u64 = NOMINAL_STORES as u64;
-/// Stores that the maker guarantees at the very most.
+/// Maximum number of stores that the manufacturer guarantees.
 pub const WEAR_LAST: u64 = GUARANTEED_STORES as u64;
-/// Stores at which the EEPROM counts as worn.
+/// Store count at which the EEPROM is considered worn.
 pub const WEAR_LIMIT: u64 = 450;
 
-/// Returns the number of stores after a plan from which it is refused, unless forced: at the limit the EEPROM is already
-/// worn, and a plan that stores nothing causes no wear.
+/// Returns the store limit for a plan with the given cost, unless forced. The EEPROM is already worn at the limit, and
+/// a plan that stores nothing causes no wear.
 pub const fn wear_limit(cost: u64) -> u64 {
     if cost == 0 { u64::MAX } else { WEAR_LIMIT - 1 }
 }
 
-/// Job of a session with an INTERBUS encoder. All but the first and [`Position`](Self::Position) replace the position for a
-/// moment and make cam outputs invalid; reading a cam program selects it. Afterwards the encoder is in its earlier mode,
-/// unless it is sent into another one.
+/// A job for an INTERBUS encoder's session. All jobs but the first and [`Position`](Self::Position) briefly replace the
+/// position and make cam outputs invalid; reading a cam program selects it. Afterwards the encoder returns to its
+/// previous mode, unless the job selects another one.
 #[derive(Debug)]
 pub enum InterbusJob {
-    /// Reads the IN word, without sending anything to the encoder: for a window, after connecting.
+    /// Reads the IN word for a window that has just connected, without sending anything to the encoder.
     Hello,
     /// Everything that can be read without selecting a cam program.
     Survey,
-    /// These cam programs, and the shift of the window.
+    /// Reads the given cam programs and the window shift.
     Programs(Vec<ProgramNumber>),
     Identify,
-    /// Reads its mode, its error and its temperature.
+    /// Reads the encoder's mode, error and temperature.
     Status,
     /// Checks gateway and encoder, with a verdict a line.
     Check,
-    /// Reads the IN word once; nothing is sent to the encoder.
+    /// Reads the IN word once, without sending anything to the encoder.
     Position,
     Read(Item),
     /// Anything that can be read out, a register of the chip as well.
     ReadOut(ReadOut),
-    /// Selects another mode: position, speed, or a cam program; the encoder stays in it.
+    /// Selects another mode (position, speed, or a cam program), in which the encoder stays.
     Select(StartupMode),
     Save {
         programs: bool,
     },
-    /// Makes a plan; writes nothing.
+    /// Plans a change without writing anything.
     Prepare(Change),
     /// Carries a plan out.
     Commit(Box<Commit>),
@@ -69,23 +69,23 @@ pub enum Change {
         profile: Box<InterbusProfile>,
         options: RestoreOptions,
     },
-    /// Writes these values; items that are not in the image stay as they are, and are not read.
+    /// Writes the values in the image; items not in the image are left unchanged and are not read.
     Write(Box<Image>),
-    /// Gives one item this value; the others stay as they are.
+    /// Sets one item and leaves the others unchanged.
     Item(Item, ItemValue),
-    /// Stores this preset, and sets the shaft's position to it; at standstill.
+    /// Stores the preset and sets the current shaft position to it; only at standstill.
     Preset {
         value: u32,
     },
-    /// Restores the factory settings: experimental (reference 6.10).
+    /// Restores the factory settings; experimental (reference 6.10).
     Default,
 }
 
-/// Kind of change, by how an interrupted one is completed.
+/// Kind of change, which determines how an interrupted change is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edits: those not yet written remain edits.
+    /// Edits; any not yet written remain edits.
     Edits,
     Preset,
     Default,
@@ -109,34 +109,34 @@ pub struct Prepared {
     pub identity: Identity,
     /// Parameters of the position, as read for the plan.
     pub parameters: Parameters,
-    /// Number of stores of the encoder recorded on this computer; `None` if the logbook has no record.
+    /// Number of stores recorded for the encoder on this computer, or `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
-    /// Items that are as they should be already.
+    /// Number of items that already have the desired value.
     pub unchanged: u64,
     /// Items of a profile that the encoder does not have.
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<Item>,
     pub other_type: Option<OtherType>,
-    /// Values of another device's mounting that are written: they must be set up again.
+    /// Mounting values that are written although they come from another device; they must be set up again.
     pub mounting_written: Vec<Item>,
 }
 
 /// The used life of an EEPROM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wear {
-    /// Number of stores after this: the user should know that they are limited.
+    /// Store count after the plan; the user should be told that stores are limited.
     Known(u64),
-    /// Number of stores after this: more than the manufacturer specifies.
+    /// Store count after the plan, more than the manufacturer specifies.
     Ask(u64),
-    /// Number of stores after this: refused unless forced.
+    /// Store count after the plan, which is refused unless forced.
     Worn(u64),
-    /// The number of earlier stores is not known: refused unless forced.
+    /// The number of earlier stores is unknown; the plan is refused unless forced.
     Unknown,
 }
 
 impl Wear {
-    /// Returns the wear after this many stores; `None` if it needs no mention.
+    /// Returns the wear after the given number of stores, or `None` if it needs no mention.
     pub const fn of(stores: u64) -> Option<Self> {
         match stores {
             WEAR_LIMIT.. => Some(Wear::Worn(stores)),
@@ -148,7 +148,7 @@ impl Wear {
 }
 
 impl Prepared {
-    /// Returns the wear after the plan; `None` if it needs no mention.
+    /// Returns the wear after the plan, or `None` if it needs no mention.
     pub fn wear(&self) -> Option<Wear> {
         let cost = self.plan.write_cycles();
         let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(Wear::Unknown) };
@@ -168,12 +168,12 @@ pub enum DeviceMessage {
     Handshake(Handshake),
 }
 
-/// Step of a running job. Its text is that of the command line.
+/// Step of a running job, displayed as on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
     ReadOut(ReadOut),
     Program(ProgramNumber),
-    /// Operation of a plan, with the item it changes.
+    /// An operation of a plan, with the item it changes.
     Operation(String),
 }
 
@@ -218,7 +218,8 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// Returns the key of an encoder for backups and the logbook: there is one manufacturer, and one type.
+/// Returns the key that identifies an encoder in backups and the logbook. The manufacturer and type are always the
+/// same.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     key_of(&identity.serial_number, is_virtual)
 }

@@ -11,10 +11,9 @@ use crate::store::{DeviceKey, Drafts, EntryId, Logbook, LogbookError, Outcome, S
 
 use super::job::key_of;
 
-/// Text of the logbook entry.
+/// Description in the logbook entry.
 const WHAT: &str = "cam programs read, each of which may be stored when it is left";
 
-/// The notes of one job.
 pub(super) struct Notes {
     store: Store,
     is_virtual: bool,
@@ -30,7 +29,7 @@ impl Notes {
         self.store.excursions()
     }
 
-    /// A virtual encoder may have the serial number of a real one.
+    /// Returns the name for the notes. A virtual encoder is marked, since it may have the serial number of a real one.
     fn name(&self, serial_number: &str) -> String {
         format!("{serial_number}{}", if self.is_virtual { " (virtual)" } else { "" })
     }
@@ -88,7 +87,8 @@ impl Journal for Notes {
     }
 }
 
-/// Returns the mode in which the encoder was found, then the modes that it was switched to, with the numbers of read-out 9.
+/// Formats an excursion: the mode in which the encoder was found, then the modes it was switched to, with the numbers
+/// of read-out 9.
 fn emit(excursion: &Excursion) -> String {
     let modes: Vec<u32> =
         std::iter::once(excursion.found).chain(excursion.sent.iter().copied()).map(StartupMode::emit).collect();

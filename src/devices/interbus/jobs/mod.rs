@@ -29,7 +29,6 @@ use crate::store::Store;
 use crate::worker::commit::cycles_seen;
 use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
-/// An INTERBUS encoder behind its gateway.
 pub struct Interbus {
     wire: Box<dyn ByteLink>,
     station: Station,
@@ -46,7 +45,7 @@ impl fmt::Debug for Interbus {
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Interbus {
-    /// Returns the host's side of the process data; each step of the handshake is reported.
+    /// Returns the host side of the process data, which reports each step of the handshake.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext, on_step: impl FnMut(Handshake) + 'a) -> Master<'a> {
         let notes = Notes::of(context.store.clone(), context.is_virtual);
         Master::new(context.ctx(&mut *self.wire), &mut self.station).telling(on_step).noting(notes)
@@ -54,8 +53,8 @@ impl Interbus {
 }
 
 impl Session<Interbus> {
-    /// Creates a session on an open connection. With a motor the encoder is a virtual one in this process, and its stores
-    /// are counted separately.
+    /// Creates a session on an open connection. If a motor is given, the encoder is a virtual one in this process, and
+    /// its stores are counted separately.
     pub fn to_gateway(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -71,7 +70,7 @@ impl Session<Interbus> {
         &self.device.station
     }
 
-    /// Returns the motor of the shaft, if the encoder is in this process.
+    /// Returns the motor on the shaft, or `None` if the encoder is not in this process.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }
@@ -83,7 +82,7 @@ impl Device for Interbus {
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
     type Sample = WordReading;
-    /// No value can be watched: every other value replaces the position.
+    /// Values that can be watched: none, since reading any other value replaces the position.
     type Watch = Infallible;
     type JobStep = JobStep;
 
@@ -155,12 +154,12 @@ impl Device for Interbus {
     }
 }
 
-/// Progress callback: the present step, the number of steps, and its name.
+/// Progress callback, given the current step, the number of steps, and the step's name.
 type Steps<'s> = &'s mut dyn FnMut(u64, u64, JobStep);
 
 impl Interbus {
-    /// Runs jobs that only read, or return the encoder to its mode. All of them replace the position for a moment, except
-    /// reading the IN word.
+    /// Runs jobs that only read, or that return the encoder to its mode. All of them briefly replace the position,
+    /// except reading the IN word.
     fn ask(
         &mut self,
         context: &mut SessionContext,

@@ -12,7 +12,7 @@ use crate::store::Store;
 use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, read_recording, simulated};
 use crate::worker::{OpenError, Session};
 
-/// Checks a link to an INTERBUS encoder without opening it.
+/// Checks a link URL for an INTERBUS encoder without opening the link.
 ///
 /// # Errors
 /// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
@@ -20,7 +20,8 @@ pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to an INTERBUS encoder: `modbus:` to its gateway, `sim:` to a virtual one, `replay:` to a recording of one.
+/// Opens a link to an INTERBUS encoder: `modbus:` to its gateway, `sim:` to a virtual encoder, `replay:` to a
+/// recording.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
@@ -42,7 +43,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
     Ok(Session::to_gateway(wire, clock, station, store, motor))
 }
 
-/// Reads the settings of the gateway, and of the virtual one. The latter apply to a link to it only.
+/// Reads the settings of the gateway and of the virtual encoder. The latter apply only to a link to a virtual encoder.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Modbus | Scheme::Replay) {
         return Err(leads_elsewhere(url.scheme, "sim:, modbus:, replay:"));
@@ -53,7 +54,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     Ok((station, config))
 }
 
-/// Removes the numbers of requests, which differ each time, so that a recording answers any.
+/// Removes the request number, which differs each time, so that a recording can answer any request.
 fn without_number(entry: TraceEntry) -> TraceEntry {
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
     TraceEntry { bytes: MaskedBytes::masked(&bytes, &[0, 1]), ..entry }

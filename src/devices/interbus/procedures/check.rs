@@ -11,36 +11,35 @@ use crate::devices::interbus::protocol::{ErrorWord, ReadOut, Reply, StartupMode}
 
 pub use crate::analysis::check::{Verdict, Wear};
 
-/// One line of the check.
 pub type InterbusStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
     Gateway,
-    /// The order of the two halves of a word.
+    /// The order of a word's two halves.
     WordOrder,
     /// The IN word before any request: a position, cam outputs, or an error.
     InputWord,
     /// Identity, and whether steps and turns are plausible.
     Identity,
-    /// Read-outs: OUT reaches the encoder, and IN comes back.
+    /// Read-outs, which show that OUT reaches the encoder and IN comes back.
     Handshake,
     Temperature,
     Wear,
 }
 
-/// One fact that the check found.
+/// A single finding of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
-    /// Number of readings of the IN word, and the longest reply time.
+    /// Number of IN word readings, and the longest reply time.
     Replies {
         requested: u32,
         /// The longest, in milliseconds.
         slowest_ms: u64,
     },
-    /// Words make sense as they are.
+    /// Words make sense in the configured order.
     OrderFits,
-    /// Words make sense with their halves exchanged only.
+    /// Words make sense only with their halves exchanged.
     OrderSwapped {
         input: u32,
         swapped: u32,
@@ -62,10 +61,9 @@ pub enum CheckFinding {
     Implausible(Implausible),
     PresetBeyond {
         preset: u32,
-        /// The last position.
         last: u32,
     },
-    /// It reports its steps minus one.
+    /// The encoder reports its steps minus one.
     StepsMinusOne,
     Mode(StartupMode),
     ReadOuts {
@@ -84,12 +82,13 @@ pub enum CheckFinding {
     },
 }
 
-/// Number of readings of the IN word for measuring the gateway.
+/// Number of IN word readings for measuring the gateway's reply time.
 const LOOKS: u32 = 20;
-/// Tenths of a degree Celsius allowed for electronics in a housing (`U`: the manual gives no limits).
+/// Permissible temperature of electronics in a housing, in tenths of a degree Celsius (`U`: the manual gives no
+/// limits).
 const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;
 
-/// Runs the check. It ends early only if the gateway fails. `wear` is called once the encoder is identified.
+/// Runs the check, ending early only if the gateway fails. `wear` is called once the encoder is identified.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -124,7 +123,7 @@ pub fn check(
     Ok(lines)
 }
 
-/// Reads only the IN word, repeatedly; returns whether more can be requested.
+/// Reads only the IN word, repeatedly, and returns whether further requests are possible.
 fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Error> {
     let (mut slowest, mut word) = (Duration::ZERO, 0);
     for _ in 0..LOOKS {
@@ -158,7 +157,7 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Erro
     Ok((lines, fits && free))
 }
 
-/// Returns a result with the worst verdict of its findings.
+/// Returns the identity result, with the worst verdict among its findings.
 fn identity(survey: &Survey) -> InterbusStepResult {
     let identity = &survey.identity;
     let mut findings = vec![

@@ -5,21 +5,21 @@ use std::time::Duration;
 use super::Error;
 use crate::units::Moment;
 
-/// The process data of one encoder, and their time.
+/// Cyclic process data of one encoder, with a clock.
 pub trait ProcessData {
-    /// Carries out one cycle: sends this OUT word, and returns the IN word read after it.
+    /// Carries out one cycle: sends the OUT word and returns the IN word read after it.
     ///
     /// # Errors
     /// Errors of the exchange, or cancellation.
     fn cycle(&mut self, out: u32) -> Result<u32, Error>;
 
-    /// Reads the IN word; OUT is not changed.
+    /// Reads the IN word without changing OUT.
     ///
     /// # Errors
     /// As [`cycle`](Self::cycle).
     fn input(&mut self) -> Result<u32, Error>;
 
-    /// Reads the present OUT word; `None` if that is not possible.
+    /// Reads the current OUT word, or returns `None` if it cannot be read.
     ///
     /// # Errors
     /// As [`cycle`](Self::cycle).

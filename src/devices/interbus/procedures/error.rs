@@ -11,19 +11,19 @@ use crate::profile::DeviceError;
 /// A request to a gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequestedItem {
-    /// The IN word: two input registers, function 4.
+    /// Read the IN word: two input registers, function 4.
     Input {
-        /// First of them.
+        /// First of the two registers.
         register: u16,
     },
-    /// The OUT word stored in the gateway: two holding registers, function 3.
+    /// Read the OUT word stored in the gateway: two holding registers, function 3.
     Output {
-        /// First of them.
+        /// First of the two registers.
         register: u16,
     },
     /// Write an OUT word: two holding registers, function 16.
     Write {
-        /// First of them.
+        /// First of the two registers.
         register: u16,
         word: u32,
     },
@@ -88,7 +88,7 @@ impl Exception {
         }
     }
 
-    /// Returns the most likely cause, and what to do.
+    /// Returns the most likely cause and a remedy.
     pub const fn cause(self) -> &'static str {
         match self.0 {
             0x01 => "the gateway does not have this function: check that its outputs are holding registers",
@@ -114,7 +114,7 @@ impl Exception {
 /// The damage of a gateway's reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    /// Bytes that are no frame of Modbus/TCP.
+    /// The received bytes are not a Modbus/TCP frame.
     #[error("{bytes} bytes that are not a Modbus/TCP frame")]
     NoFrame {
         /// Number of bytes.
@@ -124,7 +124,7 @@ pub enum Damage {
     Unit { requested: u8, got: u8 },
     #[error("a reply to function {got} instead of {requested}")]
     Function { requested: u8, got: u8 },
-    /// Other registers than requested, or another number of them.
+    /// The reply covers different registers than requested, or a different number of them.
     #[error("not the registers that were requested")]
     Registers,
 }
@@ -134,7 +134,7 @@ pub enum Damage {
 pub enum Awaited {
     Echo,
     Value,
-    /// The encoder runs: a position, a speed, or cam outputs.
+    /// A running word: a position, a speed, or cam outputs.
     Run,
     /// The preset is shown as position.
     Preset,
@@ -176,7 +176,7 @@ pub enum Error {
     Damaged {
         requested: RequestedItem,
         tries: u32,
-        /// Damage of the last reply.
+        /// Damage of the last reply received.
         cause: Damage,
     },
     /// Bytes keep arriving during the required silence.
@@ -186,53 +186,50 @@ pub enum Error {
     Exception { requested: RequestedItem, exception: Exception },
     #[error("cancelled")]
     Cancelled,
-    /// In its mode, the encoder would interpret the word as another command: it was not sent.
+    /// The word was not sent, because the encoder would interpret it as another command in its present mode.
     #[error(transparent)]
     Illegal(#[from] Refused),
-    /// The encoder has no such read-out.
+    /// The encoder refused the command with an error word.
     #[error("the encoder refuses {:08X} ({}): {:08X}, {}; {}", sent.emit(), sent.name(), word(*error), error.meaning(), error.remedy())]
     Refused { sent: Command, error: ErrorWord },
-    /// It has nothing to read out there.
+    /// The encoder has no value for the read-out.
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]
     UnknownReadOut { command: Command },
-    /// No reaction to a word within the time of the handshake.
+    /// The encoder did not react to a word within the handshake time.
     #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", other_echo(*input))]
     TimeOut {
         awaited: Awaited,
         sent: u32,
-        /// The last IN word.
         input: u32,
         /// Time waited, in milliseconds.
         milliseconds: u64,
     },
     #[error("another master writes to the encoder: OUT is {output:08X}, but {sent:08X} was written")]
-    OtherMaster {
-        /// The OUT word written last.
-        sent: u32,
-        output: u32,
-    },
-    /// The encoder is being parameterised, and not by this program: a write was interrupted, or another master is active.
+    OtherMaster { sent: u32, output: u32 },
+    /// The encoder is being parameterised, but not by this program: a write was interrupted, or another master is
+    /// active.
     #[error("the encoder is being parameterised: IN is {input:08X}")]
     NotRunning { input: u32 },
-    /// IN words make sense with their halves exchanged only.
+    /// IN words make sense only with their halves exchanged.
     #[error("IN {input:08X} makes sense as {swapped:08X} only: the word order may be swapped")]
     WordOrder {
-        /// The word as it was read.
+        /// The word in the order received.
         input: u32,
         swapped: u32,
     },
     #[error("the encoder reports implausible data: {0}")]
     Implausible(#[from] Implausible),
-    /// It does not go into a mode.
+    /// The encoder does not enter the requested mode.
     #[error("the encoder stays in mode {} instead of changing to {}", is.emit(), wanted.emit())]
     NoMode { wanted: StartupMode, is: StartupMode },
     /// A mode that cannot be selected.
     #[error("mode {} cannot be selected", mode.emit())]
     NotSelectable { mode: StartupMode },
-    /// It is in a mode that the manual does not define: the effect of any word but a read-out is not known.
+    /// The encoder is in a mode that the manual does not define: the effect of any word other than a read-out is
+    /// unknown.
     #[error("the encoder is in the unknown mode {}: values were read and nothing else was sent", mode.emit())]
     UnknownMode { mode: StartupMode },
-    /// The shaft turns but must stand still.
+    /// The shaft is turning but must stand still.
     #[error("the shaft is moving: from position {from} to {to}")]
     Moving {
         /// The first position.
@@ -247,7 +244,8 @@ pub enum Error {
     /// Something ended early, and the encoder could not be led back.
     #[error("{cause}; the encoder could not be returned to operation: {standing}")]
     NotLedBack {
-        /// The error of the work; if it did not fail, why the encoder could not be returned to its mode.
+        /// The error of the work, or the reason why the encoder could not be returned to its mode if the work
+        /// succeeded.
         cause: Box<Error>,
         standing: LeftState,
     },
@@ -282,7 +280,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the gateway can no longer be reached, so that further attempts are useless.
+    /// Returns whether the gateway can no longer be reached, which makes further attempts useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent => true,

@@ -20,34 +20,34 @@ use crate::link::Ctx;
 use crate::link::line::{LineState, SerialLine};
 use crate::units::Moment;
 
-/// Number of attempts without a reply before a gateway counts as lost; each may take its full time.
+/// Number of unanswered attempts before a gateway counts as lost; each may take its full time.
 const SILENCES: u32 = 3;
 /// Number of attempts with invalid replies.
 const TRIES: u32 = 5;
-/// Before a gateway that is busy is asked again.
+/// Pause before a request to a busy gateway is repeated.
 const BUSY_PAUSE: Duration = Duration::from_millis(200);
 /// Pause after bytes that are not a frame; the next bytes start a new frame.
 const QUIET: Duration = Duration::from_millis(50);
 /// Interval of checking for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
-/// Bytes of a frame before its function: number, protocol, length, unit.
+/// Number of bytes before a frame's function code: number, protocol, length, unit.
 const HEADER: usize = 7;
-/// The shortest frame: a refusal.
+/// Length of the shortest frame, a refusal.
 const SHORTEST: usize = HEADER + 2;
 /// Set in the function of a refusal.
 const REFUSED: u8 = 0x80;
 
-/// Gateway with the encoder at its registers, for one job.
+/// Gateway for one job, with the encoder at its registers.
 pub struct Gateway<'a> {
     line: SerialLine<'a>,
     link: LinkParameters,
     recorded: bool,
     state: State<'a>,
-    /// The OUT word that this job has written last.
+    /// The last OUT word written in this job, if any.
     written: Option<u32>,
 }
 
-/// State that is kept between jobs.
+/// State kept between jobs.
 struct State<'a> {
     line: &'a mut LineState,
     next: &'a mut u16,
@@ -62,11 +62,11 @@ enum ExchangeError {
     Exception(Exception),
 }
 
-/// A whole frame, or bytes that are none.
+/// A complete frame, or bytes that do not form one, with their damage.
 type Whole = Result<Vec<u8>, (Damage, Vec<u8>)>;
 
 impl<'a> Gateway<'a> {
-    /// Creates the gateway of a station; also returns the known state of the encoder behind it.
+    /// Creates the gateway for a station, and returns it with the known state of the encoder behind it.
     pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut KnownState) {
         let Station { link, recorded, line, next, waiting, silent, known } = station;
         let (link, recorded) = (*link, *recorded);
@@ -77,7 +77,7 @@ impl<'a> Gateway<'a> {
         (gateway, known)
     }
 
-    /// Sends a request, and repeats it if that may help.
+    /// Sends a request and repeats it if a retry may help.
     fn ask(&mut self, requested: RequestedItem) -> Result<Vec<u16>, Error> {
         let mut tries = 0;
         loop {
@@ -166,7 +166,8 @@ impl<'a> Gateway<'a> {
         request(requested, self.link.unit, number, self.link.order)
     }
 
-    /// Takes the next complete frame from the received bytes; an error if they are not a frame, which discards all of them.
+    /// Takes the next complete frame from the received bytes. If the bytes are not a frame, discards all of them and
+    /// returns an error.
     fn next_frame(&mut self) -> Option<Whole> {
         let waiting = &mut *self.state.waiting;
         if waiting.len() < HEADER {
@@ -208,13 +209,13 @@ fn request(requested: RequestedItem, unit: u8, number: u16, order: WordOrder) ->
 /// The fault of a received frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// It is not a reply to the request.
+    /// The frame is not a reply to the request.
     Broken(Damage),
     Refused(Exception),
 }
 
-/// Returns the fault of a frame in the trace that was received after this request; `None` if it is a reply to it, or to an
-/// earlier one by its number.
+/// Returns the fault of a traced frame received after the given request, or `None` if the frame answers that request
+/// or, by its number, an earlier one.
 pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     let broken = |damage| Some(Fault::Broken(damage));
     let length = guess_response_frame_len(received, ModbusProto::TcpUdp).map(usize::from);
@@ -230,7 +231,7 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     }
 }
 
-/// Parses the request of a frame in the trace, with its number and its unit.
+/// Parses the request in a traced frame, with its number and unit.
 fn requested_item(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
     let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
     let register = u16::from_be_bytes([high, low]);
@@ -311,14 +312,14 @@ impl ProcessData for Gateway<'_> {
     }
 }
 
-/// The word that a frame carries.
+/// The process data word in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     Out(u32),
     In(u32),
 }
 
-/// Returns the word in a frame of the trace, sent or received; `None` if it has none.
+/// Returns the process data word in a traced frame, sent or received, or `None` if the frame contains none.
 pub fn carried(sent: bool, frame: &[u8], order: WordOrder) -> Option<Carried> {
     match (sent, frame.get(HEADER..)?) {
         (true, [16, _, _, 0, 2, 4, a, b, c, d]) => Some(Carried::Out(word(order, [*a, *b, *c, *d]))),

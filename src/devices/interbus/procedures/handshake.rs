@@ -5,7 +5,7 @@ use std::fmt;
 use crate::devices::interbus::protocol::{Command, ErrorWord, Reply, StartupMode, Value};
 use crate::units::Moment;
 
-/// Step of the handshake: the present OUT word, the IN word received, and its meaning.
+/// A step of the handshake: the current OUT word, the received IN word, and its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Handshake {
     pub at: Moment,
@@ -16,23 +16,22 @@ pub struct Handshake {
     pub reply: WordReply,
 }
 
-/// The answer of an IN word to an OUT word.
+/// Meaning of an IN word as the reply to an OUT word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WordReply {
-    /// It runs: a position, a speed or cam outputs.
+    /// A running word: a position, a speed or cam outputs.
     Runs,
     Busy,
     Echoed,
-    /// The echo of another word: an old one, unless it stays.
+    /// The echo of a different word, which is out of date unless it persists.
     OldEcho,
     Value(Value),
     Error(ErrorWord),
-    /// A word that the manual does not define.
     Unknown,
 }
 
-/// Returns whether it is the exact echo; that of a parameter may have the manufacturer's bit (reference 2). In that of a
-/// cam, this bit selects the edge.
+/// Returns whether `input` is the exact echo of the command. The echo of a parameter may contain the manufacturer's bit
+/// (reference 2); in the echo of a cam, this bit selects the edge.
 pub(super) fn is_echo(command: Command, input: u32) -> bool {
     const MANUFACTURER: u32 = 1 << 29;
     let echo = Reply::echo_of(command).emit();
@@ -59,13 +58,13 @@ impl WordReply {
 /// Possible state of an encoder that could not be returned to its mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeftState {
-    /// The OUT word sent last, which stays until another one is written.
+    /// The last OUT word sent, which stays until another one is written.
     pub out: u32,
-    /// Parameters or cams were being set: the encoder sends no position until it receives `80000000`.
+    /// Whether parameters or cams were being set; if so, the encoder sends no position until it receives `80000000`.
     pub parameterising: bool,
-    /// The mode in which the encoder was found; `None` if it was never read.
+    /// The mode in which the encoder was found, or `None` if it was never read.
     pub found: Option<StartupMode>,
-    /// The present mode, as far as known.
+    /// The present mode, if known.
     pub is: Option<StartupMode>,
 }
 

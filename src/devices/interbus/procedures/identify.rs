@@ -10,9 +10,9 @@ use crate::devices::interbus::protocol::{
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// Its serial number, decimal.
+    /// Serial number in decimal.
     pub serial_number: String,
-    /// Steps over all programmed turns, as they are read out.
+    /// Number of steps over all programmed turns, as read out.
     pub steps: u32,
     /// Turns until the position starts again.
     pub revolutions: u32,
@@ -23,8 +23,8 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Returns the gear given by steps and turns. In steps−1 mode steps are reported minus one, as by older encoders (`U`:
-    /// the manual says no more about it).
+    /// Returns the gear given by steps and turns. In steps−1 mode, the encoder reports its steps minus one, as older
+    /// encoders do (`U`: the manual says no more about it).
     ///
     /// # Errors
     /// [`Implausible::Gear`].
@@ -33,7 +33,7 @@ impl Identity {
     }
 }
 
-/// An encoder as it was found.
+/// The encoder's data and state as found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
     pub identity: Identity,
@@ -58,7 +58,7 @@ impl Survey {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     pub reading: WordReading,
-    /// The error that it sends instead of a position.
+    /// The error sent in place of a position, if any.
     pub error: Option<ErrorWord>,
     pub mode: StartupMode,
     pub flags: Flags,
@@ -105,7 +105,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     })
 }
 
-/// Reads one value of the table of read-outs, or a register of the chip.
+/// Reads one value from the table of read-outs, or a register of the chip.
 ///
 /// # Errors
 /// [`Error::UnknownReadOut`]; as [`identify`].
@@ -113,8 +113,7 @@ pub fn read_one(master: &mut Master<'_>, read_out: ReadOut) -> Result<Value, Err
     master.guarded(|master| master.read_out(read_out))
 }
 
-/// Reads cam programs and the shift of the window. Each program is selected for that, which switches the encoder's outputs
-/// meanwhile.
+/// Reads cam programs and the window shift. Each program is selected for reading, which switches the encoder's outputs.
 ///
 /// # Errors
 /// [`Error::NoMode`]; errors of the handshake and the exchange.
@@ -126,7 +125,7 @@ pub fn read_programs(
     master.guarded(|master| programs(master, wanted, progress))
 }
 
-/// Sends the encoder into a mode, in which it stays.
+/// Switches the encoder to the given mode, in which it stays.
 ///
 /// # Errors
 /// [`Error::NoMode`], [`Error::NotSelectable`]; errors of the handshake and the exchange.
@@ -216,7 +215,7 @@ fn gear(steps: u32, revolutions: u32, flags: Flags) -> Result<Gear, Implausible>
     Ok(Gear::new(steps.saturating_add(u32::from(flags.steps_minus_one())), revolutions)?)
 }
 
-/// Reads the parameters of the position that the identity does not contain; both are of one job.
+/// Reads the position parameters that are not part of the identity, which must have been read in the current job.
 pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity) -> Result<Parameters, Error> {
     let Identity { steps, revolutions, direction, .. } = *identity;
     let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOut::new(number))?.get());
@@ -231,7 +230,7 @@ pub(super) fn read_parameters(master: &mut Master<'_>) -> Result<Parameters, Err
     Ok(Parameters { steps, revolutions, direction: direction_of(direction)?, preset, zero_shift })
 }
 
-/// Reads all that can be restored, with these programs.
+/// Reads everything that can be restored, including the given programs.
 pub(super) fn read_image(
     master: &mut Master<'_>,
     parameters: Parameters,
@@ -285,7 +284,7 @@ pub(super) fn read_program(master: &mut Master<'_>) -> Result<Program, Error> {
     Ok(program)
 }
 
-/// Reads a cam of the program that is selected.
+/// Reads a cam of the selected program.
 pub(super) fn read_cam(master: &mut Master<'_>, cam: CamNumber) -> Result<Cam, Error> {
     let start = master.ask(Command::ReadCamStart(cam))?;
     Ok(Cam { start, stop: master.ask(Command::ReadCamStop(cam))? })
@@ -325,8 +324,8 @@ fn tenths(value: Value) -> i32 {
     }
 }
 
-/// Returns the direction for the parameter's numbers, or for the complement as a flag (`U`: the manual calls the read-out
-/// so).
+/// Returns the direction for a code: the parameter's own number, or its complement as a flag (`U`: the manual calls the
+/// read-out a flag).
 pub(super) fn direction_of(code: u32) -> Result<Direction, Implausible> {
     let flag = match code {
         0 => Some(Direction::Clockwise),

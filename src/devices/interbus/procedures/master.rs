@@ -23,45 +23,43 @@ use crate::units::Moment;
 /// Receives each step.
 type StepListener<'a> = Box<dyn FnMut(Handshake) + 'a>;
 
-/// The host's side of the process data of one encoder, for one job.
+/// Host side of the process data of one encoder, for one job.
 pub struct Master<'a> {
     data: Box<dyn ProcessData + 'a>,
     known: &'a mut KnownState,
     patience: Duration,
     recorded: bool,
     tell: Option<StepListener<'a>>,
-    /// The mode, as read in this job.
+    /// The encoder's mode, if read in this job.
     is: Option<StartupMode>,
-    /// It was sent into another mode and has not confirmed it yet.
+    /// Whether the encoder was switched to another mode and has not confirmed it yet.
     unsure: bool,
-    /// It was sent into other modes in this job.
+    /// Whether the encoder was switched to other modes in this job.
     switched: bool,
-    /// The mode before this job.
+    /// The encoder's mode before this job, if known.
     found: Option<StartupMode>,
-    /// The error that it already had: it sends no position in any case.
+    /// The error found before this job; the encoder sends no position in any case.
     found_error: Option<u32>,
     parameterising: bool,
-    /// The last command of this job.
     out: Option<Command>,
-    /// It is not known whether it was received.
+    /// Whether it is uncertain that the last command was received.
     lost: bool,
-    /// The last IN word.
     input: u32,
-    /// When it was last seen in its state before this job, with no request to it.
+    /// Time at which the encoder was last seen in its state before this job, with no request pending.
     rested: Option<Moment>,
     reported: Option<(u32, WordReply)>,
     notes: Notes<'a>,
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master over a station's gateway, for one job.
+    /// Creates a master for one job, over a station's gateway.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         let (patience, recorded) = (station.link.handshake, station.recorded);
         let (gateway, known) = Gateway::new(ctx, station);
         Master { recorded, ..Master::with(Box::new(gateway), known, patience) }
     }
 
-    /// Creates a master over other process data, for one job.
+    /// Creates a master for one job, over the given process data.
     pub fn over(data: impl ProcessData + 'a, station: &'a mut Station) -> Self {
         let patience = station.link.handshake;
         Master::with(Box::new(data), &mut station.known, patience)
@@ -100,22 +98,22 @@ impl<'a> Master<'a> {
         self.data.now()
     }
 
-    /// Returns the mode that was read last.
+    /// Returns the last known mode, if any.
     pub fn mode(&self) -> Option<StartupMode> {
         self.is.or(self.known.mode)
     }
 
-    /// Returns the mode as read in this job.
+    /// Returns the mode as read in this job, or `None` if not read or not confirmed.
     pub(super) const fn said_mode(&self) -> Option<StartupMode> {
         if self.unsure { None } else { self.is }
     }
 
-    /// Sets the gear in force from now on, as far as this session knows.
+    /// Sets the gear now in force, as far as this session knows.
     pub(super) fn learn_gear(&mut self, gear: Option<Gear>) {
         self.known.gear = gear;
     }
 
-    /// Returns the gear that was read last.
+    /// Returns the last known gear, if any.
     pub(super) fn gear(&self) -> Option<Gear> {
         self.known.gear
     }
@@ -124,7 +122,7 @@ impl<'a> Master<'a> {
         self.known.shift = Some(shift);
     }
 
-    /// Reads the IN word; nothing is sent to the encoder.
+    /// Reads the IN word without sending anything to the encoder.
     ///
     /// # Errors
     /// Errors of the exchange.
@@ -152,8 +150,8 @@ impl<'a> Master<'a> {
         self.data.wait(duration)
     }
 
-    /// Requests a value, and waits until it is stable. The value of the previous request must be gone by then, since values
-    /// look the same. The late echo of any word may arrive: it is neither a value nor a sign of another master.
+    /// Requests a value and waits until it is stable. The previous value must be gone by then, since values look alike.
+    /// The late echo of any word may arrive; it is neither a value nor a sign of another master.
     ///
     /// # Errors
     /// As [`set`](Self::set); [`Error::UnknownReadOut`].
@@ -210,11 +208,11 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Sends `40000000` until the position is the preset, then removes it. Once for each preset that was set. The word is
-    /// sent for a minimum time in any case: the old position may already have this value.
+    /// Sends `40000000` until the position is the preset, then removes it. Call this once for each preset that was set.
+    /// The word is sent for a minimum time in any case, because the old position may already equal the preset.
     ///
     /// # Errors
-    /// [`Error::TimeOut`] if the position does not get this value; otherwise as [`set`](Self::set).
+    /// [`Error::TimeOut`] if the position does not reach the preset; otherwise as [`set`](Self::set).
     pub(super) fn fire(&mut self, is_there: impl Fn(u32) -> bool) -> Result<(), Error> {
         self.normal()?;
         self.ensure_legal(Command::Preset)?;
@@ -227,8 +225,8 @@ impl<'a> Master<'a> {
         self.shielded(Self::normal).and(fired)
     }
 
-    /// Sends `out` cycle by cycle, until `judge` returns a result for the IN word and the time it has been unchanged. The
-    /// time for which the encoder is busy is recorded.
+    /// Sends `out` in every cycle until `judge` returns a result for the IN word and the time for which it has been
+    /// unchanged. Records how long the encoder is busy.
     fn until<T>(
         &mut self,
         command: Command,
@@ -284,7 +282,7 @@ impl<'a> Master<'a> {
         Ok(input)
     }
 
-    /// Returns the IN word with swapped halves, if nothing else explains it: OUT requests nothing.
+    /// Returns the IN word with its halves exchanged if nothing else explains it, since OUT requests nothing.
     ///
     /// # Errors
     /// Errors of the exchange.
@@ -295,7 +293,7 @@ impl<'a> Master<'a> {
         Ok(swapped_unexplained(input))
     }
 
-    /// Returns why there was no reply, as far as known.
+    /// Returns the most likely reason for a missing reply.
     fn too_late(&mut self, command: Command, awaited: Awaited, input: u32, patience: Duration) -> Error {
         let sent = command.emit();
         match self.shielded(|master| master.data.output()) {
@@ -317,7 +315,8 @@ impl<'a> Master<'a> {
         Ok(command.ensure_legal(self.taken_in())?)
     }
 
-    /// Returns the mode in which the encoder interprets a word; a read-out is ended before any other word is sent.
+    /// Returns the mode in which the encoder will interpret the next word; any read-out is ended before another word is
+    /// sent.
     fn taken_in(&self) -> Mode {
         match self.is {
             Some(StartupMode::Cams(_)) => Mode::Cam,
@@ -332,7 +331,8 @@ impl<'a> Master<'a> {
     }
 }
 
-/// Returns whether the gateway refuses the word itself: it was not written. After any other exception it may have been.
+/// Returns whether the gateway refused the word itself, so that it was not written. After any other exception, it may
+/// have been written.
 fn is_unwritten(error: &Error) -> bool {
     matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.passes())
 }

@@ -3,21 +3,21 @@
 use crate::devices::interbus::protocol::{CamOutput, Gear, Reply, StartupMode, Value, WindowShift};
 use crate::units::Moment;
 
-/// IN word, with the session's known facts about the encoder.
+/// An IN word, with the facts about the encoder known to the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordReading {
     pub at: Moment,
     /// As received.
     pub word: u32,
-    /// The mode; `None` if not read yet: a running word is then taken for a position.
+    /// The mode, or `None` if not read yet; a running word is then taken for a position.
     pub mode: Option<StartupMode>,
-    /// Its steps and turns, if they were read.
+    /// Gear of steps and turns, if read.
     pub gear: Option<Gear>,
     /// Shift of the position in cam mode, if read.
     pub shift: Option<WindowShift>,
 }
 
-/// A place within the programmed turns.
+/// A position within the programmed turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnPosition {
     /// Whole turns, from 0.
@@ -33,12 +33,13 @@ impl WordReading {
         Reply::parse(self.word)
     }
 
-    /// Returns whether the encoder runs: the word is a valid position, speed or cam output.
+    /// Returns whether the encoder runs, so that the word is a valid position, speed or cam output.
     pub fn is_valid(&self) -> bool {
         matches!(self.reply(), Reply::Run { .. })
     }
 
-    /// Returns the position in steps; `None` if the word contains none. In cam mode only if the window shows all of it.
+    /// Returns the position in steps, or `None` if the word contains none. In cam mode, the position is available only
+    /// if the window shows all of it.
     pub fn position(&self) -> Option<u32> {
         match (self.mode, self.reply()) {
             (Some(StartupMode::Velocity), _) => None,
@@ -53,7 +54,7 @@ impl WordReading {
         }
     }
 
-    /// Returns the speed in revolutions per minute, in velocity mode; with its sign in 25 bits (`U`, reference 6.13).
+    /// Returns the speed in revolutions per minute in velocity mode, as a signed 25-bit value (`U`, reference 6.13).
     pub fn rpm(&self) -> Option<i32> {
         match (self.mode, self.reply()) {
             (Some(StartupMode::Velocity), Reply::Run { value, .. }) => {
@@ -71,7 +72,7 @@ impl WordReading {
         }
     }
 
-    /// Returns the bits that should be 0 in a word that runs.
+    /// Returns the bits of a running word that should be 0.
     pub fn stray(&self) -> u8 {
         match self.reply() {
             Reply::Run { stray, .. } => stray,
@@ -79,8 +80,8 @@ impl WordReading {
         }
     }
 
-    /// Returns the position within the programmed turns; `None` without a position or a gear, and beyond the measuring
-    /// range.
+    /// Returns the position within the programmed turns, or `None` without a position or a gear, or beyond the
+    /// measuring range.
     pub fn place(&self) -> Option<TurnPosition> {
         let (position, gear) = (u64::from(self.position()?), self.gear?);
         let (all, turns) = (u64::from(gear.steps()), u64::from(gear.turns()));
@@ -95,7 +96,8 @@ impl WordReading {
     }
 }
 
-/// Returns the word with its halves exchanged, if that makes it a position and it was none: its bits 30..25 should be 0.
+/// Returns the word with its halves exchanged if only the exchanged word is a valid position, whose bits 30..25 should
+/// be 0.
 pub(super) fn swapped(word: u32) -> Option<u32> {
     let other = word.rotate_left(16);
     let strays = |word| matches!(Reply::parse(word), Reply::Run { stray, .. } if stray != 0);
@@ -103,8 +105,8 @@ pub(super) fn swapped(word: u32) -> Option<u32> {
     (strays(word) && runs(other)).then_some(other)
 }
 
-/// Returns the same for a word that is not a position and has no other explanation, if it is one with its halves exchanged.
-/// An error word without other bits is just an error.
+/// Returns the word with its halves exchanged if only the exchanged word is a valid position, including for words other
+/// than positions that have no other explanation. An error word without other bits is just an error.
 pub(super) fn swapped_unexplained(word: u32) -> Option<u32> {
     match Reply::parse(word) {
         Reply::Run { .. } => swapped(word),

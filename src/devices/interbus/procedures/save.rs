@@ -14,7 +14,7 @@ impl Identity {
 }
 
 impl Survey {
-    /// Returns the recorded part of a profile, without what can be restored.
+    /// Returns the recorded part of a profile, which excludes everything that can be restored.
     pub fn recorded(&self) -> Recorded {
         Recorded {
             software_version: Some(self.identity.software_version),
@@ -52,7 +52,7 @@ pub enum SaveStep {
     Program(ProgramNumber),
 }
 
-/// Reads what a plan needs of an encoder that was identified in this job: its parameters, and these programs.
+/// Reads what a plan requires from an encoder identified in the same job: its parameters and the given programs.
 ///
 /// # Errors
 /// [`Error::Implausible`] if steps and turns are not a gear; errors of the handshake and the exchange.
@@ -70,7 +70,7 @@ pub fn read_state(
     })
 }
 
-/// Reads an item. If it is in a cam program, that is selected.
+/// Reads an item. If the item is in a cam program, the program is selected.
 ///
 /// # Errors
 /// Errors of the handshake and the exchange.

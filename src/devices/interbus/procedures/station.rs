@@ -10,36 +10,36 @@ use crate::parameter::{Milliseconds, Parameters};
 use crate::parameters;
 
 parameters! {
-    /// Parameters of the gateway and the registers behind it in a link.
+    /// Link parameters for the gateway and its registers.
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
         pub unit: u8 = 1, "unit" => UNIT, "connect.unit";
-        /// The first of the two input registers with the IN word.
+        /// First of the two input registers with the IN word.
         pub input: u16 = 0, "input" => INPUT, "connect.input";
-        /// The first of the two holding registers with the OUT word.
+        /// First of the two holding registers with the OUT word.
         pub output: u16 = 0, "output" => OUTPUT, "connect.output";
-        /// Order of the halves of a word.
+        /// Order of a word's halves.
         pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
         /// Time limit for an echo, a value or a position (reference 4, `U`).
         pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
-        /// Interval of reading the IN word: about a gateway's own cycle.
+        /// Interval at which the IN word is read, about a gateway's own cycle.
         pub cycle: Duration = Duration::from_millis(5), "cycle" => Milliseconds(1..=1000);
-        /// Time limit for a gateway's reply, besides the margin of the line.
+        /// Time limit for a gateway's reply, not counting the line's margin.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=2000);
     }
 }
 
-/// The state of a gateway and the encoder behind it.
+/// State of a gateway and the encoder behind it.
 #[derive(Clone, Debug)]
 pub struct Station {
     pub link: LinkParameters,
-    /// A recording replies: its replies have the recorded request numbers.
+    /// Whether a recording replies, with the recorded request numbers.
     pub recorded: bool,
     pub(super) line: LineState,
     pub(super) next: u16,
     /// Bytes received and not used yet.
     pub(super) waiting: Vec<u8>,
-    /// The gateway was silent when it was asked last.
+    /// Whether the gateway failed to answer the most recent request.
     pub(super) silent: bool,
     pub(super) known: KnownState,
 }
@@ -47,19 +47,19 @@ pub struct Station {
 /// The known state of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct KnownState {
-    /// Its mode, as last reported.
+    /// Operating mode as last reported.
     pub(super) mode: Option<StartupMode>,
     pub(super) gear: Option<Gear>,
     pub(super) shift: Option<WindowShift>,
-    /// The OUT word that keeps this mode, if normal running does not.
+    /// OUT word that keeps the encoder in its current mode, if normal running does not.
     pub(super) hold: Option<(StartupMode, Command)>,
     pub(super) kept: Option<StartupMode>,
-    /// The longest that it was seen at work on a word.
+    /// Longest observed processing time of a single word.
     pub(super) processing: Duration,
 }
 
 impl Station {
-    /// Creates the state of an unused gateway, with an encoder at its first registers.
+    /// Creates the state of an unused gateway whose encoder occupies the first registers.
     pub fn new(margin: Duration) -> Self {
         Station {
             link: LinkParameters::default(),
@@ -72,10 +72,10 @@ impl Station {
         }
     }
 
-    /// Creates the gateway from the parameters of its link.
+    /// Creates the gateway from its link parameters, ignoring those that do not concern the connection.
     ///
     /// # Errors
-    /// A value that cannot be used, with the allowed ones. Parameters that do not concern the connection are ignored.
+    /// A parameter value is invalid; the error lists the allowed values.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
         Ok(Station { link: LinkParameters::read(query.pairs())?, ..Station::new(margin) })
     }

@@ -23,9 +23,9 @@ pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>
 /// State in which an encoder was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EndState {
-    /// In the mode in which it was found, running.
+    /// Running in its original mode.
     AsFound,
-    /// It could not be returned to its mode: its known state.
+    /// The encoder could not be returned to its original mode; contains what is known of its state.
     Unknown(LeftState),
 }
 
@@ -131,7 +131,7 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
     Ok(())
 }
 
-/// Sets all parameters in one parameterisation, which `80000000` stores.
+/// Sets all parameters in one parameterisation and stores them with `80000000`.
 fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut Written) -> Result<(), Error> {
     master.go(StartupMode::K3)?;
     done.write_cycles += 1;
@@ -152,7 +152,7 @@ fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut
     if changes.iter().any(of_gear) { refresh_gear(master) } else { Ok(()) }
 }
 
-/// Reads a parameter back; a direction as the code with which it is set.
+/// Reads back a parameter; a direction is returned as the code that sets it.
 fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
     let value = read_parameter(master, parameter)?;
     match parameter {
@@ -178,7 +178,7 @@ fn check(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result<(), E
     if reads == wanted { Ok(()) } else { Err(Error::NotTaken { item: item(), wanted, reads }) }
 }
 
-/// Selects a program and sets it; `80000000` stores it, and it is read back.
+/// Selects a cam program, sets it, stores it with `80000000` and reads it back.
 fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) -> Result<(), Error> {
     let number = change.program;
     master.go(StartupMode::Cams(number))?;
@@ -231,7 +231,8 @@ fn fire(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     master.fire(|position| apart(position, value, gear) <= 1)
 }
 
-/// Watches the position for a moment; the encoder sends it from then on.
+/// Watches the position briefly to make sure that the shaft is at rest. The encoder keeps sending its position
+/// afterwards.
 ///
 /// # Errors
 /// [`Error::Moving`]; [`Error::NotRunning`] without a position; errors of the handshake and the exchange.
@@ -256,14 +257,14 @@ fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Returns whether two positions of a shaft at rest are equal: they may differ by one step, or by a third of a degree
-/// with fine steps.
+/// Returns whether two positions may belong to the same shaft at rest: they may differ by one step, or by a third of a
+/// degree if the steps are fine.
 fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
     let most = gear.map_or(1, |gear| (gear.steps() / gear.turns() / 1000).max(1));
     apart(position, other, gear) <= most
 }
 
-/// Returns the steps from one position to another, the shorter way round.
+/// Returns the distance between two positions in steps, along the shorter way round.
 fn apart(position: u32, other: u32, gear: Option<Gear>) -> u32 {
     let apart = position.abs_diff(other);
     gear.map_or(apart, |gear| apart.min(gear.steps().saturating_sub(apart)))

@@ -72,7 +72,7 @@ pub fn plan_default(device: &Parameters) -> InterbusPlan {
     InterbusPlan { base: Base { parameters: Some(*device), ..Base::default() }, ops: vec![Op::Default] }
 }
 
-/// Returns the differences, in an order in which each number is within its limits when it is sent.
+/// Returns the parameter changes, ordered so that each number is within its limits when it is sent.
 fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<ParameterChange>, PlanError> {
     if device == wanted {
         return Ok(Vec::new());

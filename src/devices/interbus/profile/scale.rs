@@ -17,7 +17,7 @@ pub enum Unit {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     unit: Unit,
-    /// Steps in one unit.
+    /// Number of steps per unit.
     steps: f64,
     /// The encoder's position at the machine's 0.
     zero: u32,
@@ -49,9 +49,9 @@ pub struct Outside {
 #[error("steps in a unit are a number above 0")]
 pub struct ScaleError;
 
-/// Most decimals that are useful.
+/// Maximum number of useful decimals.
 const MOST_DECIMALS: usize = 6;
-/// Two numbers that were reckoned are the same.
+/// Tolerance below which two computed numbers count as equal.
 const SAME: f64 = 1e-9;
 /// More than any scale has in a unit, or any unit in a range.
 const MOST: f64 = 1e12;

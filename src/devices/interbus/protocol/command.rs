@@ -178,7 +178,7 @@ impl Command {
         }
     }
 
-    /// Parses a word while no cam program is selected.
+    /// Parses an OUT word received while no cam program is selected.
     fn outside_cams(word: u32) -> Option<Command> {
         let low = word as u16;
         match word {
@@ -196,7 +196,7 @@ impl Command {
         }
     }
 
-    /// Parses a word while a cam program is selected.
+    /// Parses an OUT word received while a cam program is selected.
     fn of_cams(word: u32) -> Option<Command> {
         let low = word as u16;
         let cam = || CamNumber::new(Code::of_word(word).get());

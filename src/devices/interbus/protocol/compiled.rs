@@ -7,9 +7,9 @@ use super::value::Value;
 /// Programs as a list of sections with constant outputs. A preview evaluates them for millions of positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Compiled {
-    /// Starts of the sections, in ascending order. The outputs before the first of them are in `before`.
+    /// Section starts in ascending order. The outputs before the first section are in `before`.
     starts: Vec<u32>,
-    /// Outputs of each section: a byte per program, the first lowest.
+    /// Outputs of each section, one byte per program with the first program lowest.
     outputs: Vec<u64>,
     before: u64,
 }

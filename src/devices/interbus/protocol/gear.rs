@@ -51,7 +51,8 @@ impl Gear {
         Ok(Gear { steps, turns })
     }
 
-    /// Returns the largest number of steps over this number of turns. All 4096 turns have one step more than 25 bits hold.
+    /// Returns the maximum number of steps over the given number of turns. With all 4096 turns, the count exceeds the
+    /// largest 25-bit value by one.
     pub(super) const fn most_steps(turns: u32) -> u32 {
         let all = STEPS_PER_TURN * turns;
         if all > Value::MAX.get() { Value::MAX.get() } else { all }

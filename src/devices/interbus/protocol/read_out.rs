@@ -125,8 +125,8 @@ impl ReadOut {
     }
 }
 
-/// Returns a number with a sign in 25 bits; if bit 24 is clear and it is above 7FFFh, in 16 (`U`: the manual has −10 °C in
-/// neither form).
+/// Returns the value as a signed 25-bit number, or as a signed 16-bit number if bit 24 is clear and the value is above
+/// 7FFFh (`U`: the manual has −10 °C in neither form).
 const fn signed(value: Value) -> i32 {
     let number = value.get();
     if number >> (Value::BITS - 1) == 0 && number > 0x7FFF { number as u16 as i16 as i32 } else { value.signed() }

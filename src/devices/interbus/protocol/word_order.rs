@@ -9,7 +9,7 @@ pub const UNIT: Whole<u8> = Whole(Quantity::Unit, 0..=255);
 pub const INPUT: Whole<u16> = Whole(Quantity::InputRegister, 0..=LAST);
 /// Valid addresses of the first holding register of an OUT word.
 pub const OUTPUT: Whole<u16> = Whole(Quantity::HoldingRegister, 0..=LAST);
-/// The last register that is followed by another.
+/// Last register address that still has a successor.
 const LAST: u16 = u16::MAX - 1;
 
 /// The half of a word that is in the first of its two registers.

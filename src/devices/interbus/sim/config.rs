@@ -13,8 +13,8 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
 
 parameters! {
-    /// The settings of a virtual gateway and the encoders behind it. The default is one K3 encoder with factory
-    /// settings, at rest, without faults; a gateway with unit 1, registers from 0 and the high word first.
+    /// Settings of a virtual gateway and its encoders. The default is one K3 encoder with factory settings, at rest and
+    /// without faults, behind a gateway with unit 1, registers from 0 and the high word first.
     pub struct Config: ConfigError {
         // The gear, and the values that must fit into it: checked together, and put into the memory.
         steps: Option<String> = None, "steps" => Maybe(ANY);
@@ -25,7 +25,7 @@ parameters! {
         preset: Option<String> = None, "preset" => Maybe(ANY);
         zero_shift: u32 = 0, "zero-shift" => VALUE;
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
-        /// Position of the shaft at the start, in steps of the disc.
+        /// Initial shaft position, in steps of the disc.
         pub(super) position: u32 = 0x12_3456, "position" => Whole(Quantity::PlaceOfDisc, 0..=PLACES - 1);
         pub(super) serial_number: u32 = 7_101_234, "serial" => VALUE;
         /// Tens of minutes.
@@ -33,19 +33,19 @@ parameters! {
         pub(super) celsius: f64 = 25.3, "temperature" => Decimal(Quantity::Celsius, -273.0..=1000.0);
         /// A negative temperature has 16 bits and not 25 (reference 3, `U`).
         pub(super) narrow_temperature: bool = false, "temperature-bits" => Words(&[("25", false), ("16", true)]);
-        /// Read-out 3 gives 0 or 1 and not a code (`U`).
+        /// Whether read-out 3 returns 0 or 1 instead of a code (`U`).
         pub(super) complement_bit: bool = false, "complement" => Words(&[("code", false), ("bit", true)]);
         /// The running cam program, else normal running.
         pub(super) mode: StartupMode = StartupMode::K3, "program" => Checked(Expected::Program, mode);
-        /// If set, there are programs with cams.
+        /// Whether the encoder starts with demonstration cam programs.
         demonstration: bool = false, "cams" => Words(&[("demo", true), ("none", false)]);
         pub(super) stores: u32 = 3, "stores" => Checked(Expected::Stores, number::<u32>);
-        /// If set, steps are reported minus one, as by older encoders.
+        /// Whether step counts are reported minus one, as by older encoders.
         pub(super) steps_minus_one: bool = false, "steps-minus-one" => SWITCH;
         pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
-        /// Number of cycles for which the old IN word stays after a new OUT word.
+        /// Number of cycles for which the old IN word persists after a new OUT word.
         pub(super) stale: u32 = 1, "stale" => Whole(Quantity::Cycles, 0..=1000);
-        /// A selected program is acknowledged before its output (`U`).
+        /// Whether a program selection is acknowledged before the program's outputs are sent (`U`).
         pub(super) acknowledges_selection: bool = true, "selection" => Words(&[("echo", true), ("output", false)]);
         pub(super) class: Class = Class::K3, "class" => Words(&[("K1", Class::K1), ("K2", Class::K2), ("K3", Class::K3)]);
         /// Each has two registers from `input` and `output` on.
@@ -54,23 +54,24 @@ parameters! {
         pub(super) input: u16 = 0, "input" => INPUT;
         pub(super) output: u16 = 0, "output" => OUTPUT;
         pub(super) order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
-        /// The share of requests that is answered with exception 0Bh and not carried out.
+        /// Share of requests that are answered with exception 0Bh and not carried out.
         pub(super) exceptions: f64 = 0.0, "exception" => Decimal(Quantity::RefusedRequests, 0.0..=1.0);
         pub(super) seed: u64 = 0, "seed" => SEED;
-        /// `drop`, `flip`, `garbage`: share of replies lost, with a bit inverted, replaced by random bytes.
+        /// Shares of replies that are lost (`drop`), have one bit inverted (`flip`) or are replaced by random bytes
+        /// (`garbage`).
         pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
 
-/// A number that a word has room for.
+/// Range of numbers that fit into a word.
 const VALUE: Whole<u32> = Whole(Quantity::Number, 0..=Value::MAX.get());
 
 impl Config {
-    /// Parses keys and values, already percent-decoded. Of a key given twice the last one counts. Numbers are decimal or
+    /// Parses percent-decoded keys and values. If a key is repeated, its last value counts. Numbers are decimal or
     /// `0x…`.
     ///
     /// # Errors
-    /// A sentence that names the key and the allowed values.
+    /// A setting is invalid; the message names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let mut config: Config = setting::read(VirtualDevice::EncoderOf("INTERBUS"), pairs)?;
         config.fill_memory()?;
@@ -82,7 +83,7 @@ impl Config {
         (self.celsius * 10.0).round() as i32
     }
 
-    /// Completes a gear of which only one half is given with the largest possible other half.
+    /// Completes a partially specified gear with the largest possible value for the missing half.
     fn fill_memory(&mut self) -> Result<(), ConfigError> {
         let memory = &mut self.memory;
         if let Some(turns) = self.revolutions.take() {

@@ -31,7 +31,7 @@ pub struct Encoder {
     identity: Identity,
     motor: Motor,
     shaft: Shaft,
-    /// Steps of the disc between the shaft's place and the position's zero.
+    /// Offset between the shaft position and the zero of the reported position, in steps of the disc.
     offset: i64,
     mode: StartupMode,
     activity: Activity,
@@ -39,10 +39,10 @@ pub struct Encoder {
     eeprom: Eeprom,
     unstored: Option<Stored>,
     power: bool,
-    /// The OUT word of its master; it stays until the master changes it.
+    /// OUT word sent by the master; remains in effect until the master changes it.
     out: u32,
     content: InWordContent,
-    /// The IN word that is still read after a new OUT word.
+    /// Previous IN word, which is still returned for some time after a new OUT word.
     old: Old,
     busy_until: Moment,
     busy: Duration,
@@ -50,7 +50,6 @@ pub struct Encoder {
     acknowledges_selection: bool,
 }
 
-/// The identity that it reports.
 #[derive(Clone, Copy, Debug)]
 struct Identity {
     serial_number: u32,
@@ -64,29 +63,29 @@ struct Identity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Activity {
     Running,
-    /// A parameter or a cam word was the last: position and cam outputs are invalid.
+    /// The last word set a parameter or a cam, so position and cam outputs are invalid.
     Setting,
     ReadingOut,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum InWordContent {
-    /// Position, speed or cam output, as they are at the moment.
+    /// Live position, speed or cam outputs.
     Live,
     Word(u32),
 }
 
-/// The IN word before the OUT word changed. Every reading of the IN word is a cycle; without readings cycles continue by
-/// themselves.
+/// IN word from before the last change of the OUT word. Every reading of the IN word counts as a cycle; without
+/// readings, cycles elapse by themselves.
 #[derive(Clone, Copy, Debug, Default)]
 struct Old {
     word: u32,
-    /// Number of cycles in which it is still returned.
+    /// Remaining number of cycles for which the old word is returned.
     cycles: u32,
     until: Moment,
 }
 
-/// Why a word is refused (reference 2).
+/// Reason for refusing a word (reference 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fault {
     WrongData,
@@ -94,11 +93,11 @@ enum Fault {
     BeyondRange,
 }
 
-/// A position or cam value that does not count.
+/// Marks a position or cam value as invalid.
 const INVALID: u32 = 0x8000_0000;
 const LOST: u32 = 0x8600_0000;
 const BUSY: u32 = 0xC000_0000;
-/// Over a word that was received.
+/// Base of the word that echoes a received word.
 const ECHO: u32 = 0xC000_0000;
 
 impl Fault {
@@ -112,13 +111,13 @@ impl Fault {
 }
 
 impl Encoder {
-    /// Chosen: duration of a cycle without readings.
+    /// Duration of a cycle without readings (chosen for the simulation).
     const CYCLE: Duration = Duration::from_millis(5);
     /// Chosen; read-out 7.
     const SOFTWARE_VERSION: u32 = 204;
 
-    /// Creates an encoder from `config`; of several behind a gateway this one, counted from 0. It has been powered for a
-    /// long time.
+    /// Creates the encoder with the given number, counted from 0 along the gateway, from `config`. The encoder counts
+    /// as powered for a long time.
     pub(super) fn new(config: &Config, number: u8) -> Self {
         let memory = config.memory.clone();
         Encoder {
@@ -154,7 +153,7 @@ impl Encoder {
         self.motor.clone()
     }
 
-    /// Puts the shaft at a place in steps of the disc, of which a turn has 8192.
+    /// Sets the shaft position in steps of the disc, which has 8192 per turn.
     pub fn put_shaft(&mut self, now: Moment, place: i32) {
         self.settle(now);
         self.shaft.put(now, place);
@@ -174,12 +173,12 @@ impl Encoder {
         self.eeprom.stores()
     }
 
-    /// Returns the mode that read-out 9 gives.
+    /// Returns the mode reported by read-out 9.
     pub const fn startup_mode(&self) -> StartupMode {
         self.mode
     }
 
-    /// Returns the mode in which it interprets a word.
+    /// Returns the mode in which the next word is interpreted.
     pub const fn mode(&self) -> Mode {
         match (self.mode, self.activity) {
             (StartupMode::Cams(_), _) => Mode::Cam,
@@ -194,22 +193,22 @@ impl Encoder {
         self.out
     }
 
-    /// Sets its temperature in tenths of a degree Celsius.
+    /// Sets the encoder temperature in tenths of a degree Celsius.
     pub const fn set_temperature(&mut self, tenths: i32) {
         self.identity.temperature = tenths;
     }
 
-    /// Replaces the faults of its EEPROM; stores keep their count.
+    /// Replaces the EEPROM faults without resetting the store count.
     pub(super) fn set_faults(&mut self, faults: &Faults) {
         self.eeprom.set_die_in_store(faults.die_in_store());
     }
 
-    /// Returns whether it has power; without it, it has no words.
+    /// Returns whether the encoder is powered; an unpowered encoder has no words.
     pub const fn has_power(&self) -> bool {
         self.power
     }
 
-    /// Removes the power: values that were not stored are lost.
+    /// Removes the power; values that have not been stored are lost.
     pub fn disconnect(&mut self) {
         self.power = false;
         self.memory = self.eeprom.kept.clone();
@@ -217,7 +216,7 @@ impl Encoder {
         (self.content, self.old) = (InWordContent::Live, Old::default());
     }
 
-    /// Restores the power of an encoder that has lost it. The present word of its master counts as a new one.
+    /// Restores the power of an encoder that has lost it. The master's present OUT word is treated as new.
     pub fn connect(&mut self, now: Moment) {
         if !self.power {
             self.power = true;
@@ -226,7 +225,7 @@ impl Encoder {
         }
     }
 
-    /// Sets the OUT word from `now` on.
+    /// Changes the OUT word as of `now`.
     pub fn write(&mut self, now: Moment, word: u32) {
         self.settle(now);
         let before = std::mem::replace(&mut self.out, word);
@@ -240,7 +239,7 @@ impl Encoder {
         }
     }
 
-    /// Returns the IN word at `now`; `None` without power.
+    /// Returns the IN word at `now`, or `None` without power.
     pub fn read(&mut self, now: Moment) -> Option<u32> {
         self.settle(now);
         if !self.power {
@@ -286,8 +285,8 @@ impl Encoder {
         }
     }
 
-    /// Handles a word without a meaning in its mode. One that looks like a parameter, an edge, a shift or a read-out gets
-    /// the error of its kind.
+    /// Handles a word that is meaningless in the current mode. A word that resembles a parameter, an edge, a shift or a
+    /// read-out gets the corresponding error.
     fn wonder(&mut self, now: Moment, word: u32) {
         let of_cams = matches!(self.mode, StartupMode::Cams(_));
         match (word >> 29, word >> 16) {
@@ -299,7 +298,7 @@ impl Encoder {
         }
     }
 
-    /// Ends a setting: the IN word is its echo, or an error.
+    /// Finishes a set command: the IN word becomes its echo, or an error.
     fn set(&mut self, now: Moment, taken: Result<Stored, Fault>) {
         let word = match taken {
             Ok(_) => self.out | ECHO,
@@ -330,7 +329,7 @@ impl Encoder {
         Ok(())
     }
 
-    /// Handles the edge of run: back to position, speed or cam output.
+    /// Handles the rising edge of the run command by returning to position, speed or cam output.
     fn run(&mut self) {
         self.store();
         self.turn_to(Activity::Running, InWordContent::Live);
@@ -346,7 +345,6 @@ impl Encoder {
         }
     }
 
-    /// Returns the IN word at `now`.
     fn shown(&self, now: Moment) -> u32 {
         let old = &self.old;
         match self.content {
@@ -357,7 +355,7 @@ impl Encoder {
         }
     }
 
-    /// Changes the activity from now on, without busy words.
+    /// Switches to another activity immediately, without busy words.
     const fn turn_to(&mut self, activity: Activity, content: InWordContent) {
         (self.activity, self.content, self.busy_until) = (activity, content, Moment::START);
     }
@@ -369,7 +367,7 @@ impl Encoder {
         }
     }
 
-    /// Selects cam mode with this program, or position mode. A changed program is stored before.
+    /// Selects cam mode with the given program, or position mode for `None`. A changed program is stored first.
     fn select(&mut self, now: Moment, program: Option<ProgramNumber>) {
         self.store();
         if !self.power {

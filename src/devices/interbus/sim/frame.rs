@@ -5,14 +5,14 @@ use rmodbus::ModbusProto;
 use rmodbus::consts::ModbusFunction;
 use rmodbus::server::{ModbusFrame, Read};
 
-/// Why a request is refused: the codes of exceptions.
+/// Reason for refusing a request, as a Modbus exception code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Exception {
     Function = 0x01,
     Address = 0x02,
-    /// A length or a count that cannot be.
+    /// The length or count in the request is invalid.
     Value = 0x03,
-    /// The device behind the gateway does not reply: another unit, or one without power.
+    /// The device behind the gateway does not reply, because the unit is wrong or the device has no power.
     NoAnswer = 0x0B,
 }
 
@@ -23,13 +23,14 @@ pub(super) trait Registers {
     fn write(&mut self, first: u16, values: &[u16]) -> Result<(), Exception>;
 }
 
-/// Bytes in front of the unit: transaction, protocol, length.
+/// Length of the header before the unit: transaction, protocol and length.
 const PREFIX: usize = 6;
-/// A frame's length counts from the unit on: at least unit and function, and a PDU of up to 253 bytes.
+/// Valid lengths in the frame header. The length counts from the unit on: at least unit and function, and a PDU of up
+/// to 253 bytes.
 const LENGTHS: std::ops::RangeInclusive<usize> = 2..=254;
 
-/// Takes a complete frame from the received bytes; `None` if it is not complete. Bytes that are not Modbus are dropped,
-/// since the stream does not show where the next frame begins.
+/// Removes the next complete frame from the received bytes, or returns `None` if the frame is incomplete. Bytes that
+/// are not Modbus are dropped, since the stream does not show where the next frame begins.
 pub(super) fn next(received: &mut Vec<u8>) -> Option<Vec<u8>> {
     let [_, _, protocol_high, protocol_low, high, low, ..] = *received.as_slice() else { return None };
     let length = usize::from(u16::from_be_bytes([high, low]));
@@ -76,7 +77,7 @@ fn carry_out(request: &[u8], unit: u8, registers: &mut impl Registers) -> Result
     Ok(reply)
 }
 
-/// Checks the length of the data after the function, and parses the values that it writes.
+/// Checks the length of the data after the function code and parses the values to write.
 fn check(function: ModbusFunction, rest: &[u8]) -> Result<Vec<u16>, Exception> {
     let words = |bytes: &[u8]| bytes.as_chunks().0.iter().copied().map(u16::from_be_bytes).collect();
     match (function, rest) {

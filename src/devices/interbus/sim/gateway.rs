@@ -15,12 +15,12 @@ use crate::sim::line::Queue;
 use crate::sim::{ByteDevice, Faults, Motor};
 use crate::units::Moment;
 
-/// A client's connection to a virtual gateway. Created from a [`Config`]; [`connection`](Self::connection) gives another
-/// client's.
+/// Client connection to a virtual gateway, created from a [`Config`]. Use [`connection`](Self::connection) to add
+/// another client.
 #[derive(Clone)]
 pub struct Gateway {
     shared: Arc<Mutex<Shared>>,
-    /// Bytes of a frame that is not whole yet.
+    /// Received bytes of an incomplete frame.
     received: Vec<u8>,
     to_host: Queue<Vec<u8>>,
 }
@@ -40,7 +40,7 @@ struct Shared {
 impl Gateway {
     const REPLY: Duration = Duration::from_millis(2);
 
-    /// Creates the virtual gateway from `config`, with its encoders.
+    /// Creates the virtual gateway and its encoders from `config`.
     pub fn new(config: &Config) -> Self {
         let shared = Shared {
             unit: config.unit,
@@ -55,7 +55,7 @@ impl Gateway {
         Gateway { shared: Arc::new(Mutex::new(shared)), received: Vec::new(), to_host: Queue::default() }
     }
 
-    /// Returns another client's connection to the same gateway and encoders.
+    /// Returns a connection to the same gateway and encoders for another client.
     pub fn connection(&self) -> Self {
         Gateway { shared: self.shared.clone(), received: Vec::new(), to_host: Queue::default() }
     }
@@ -65,12 +65,12 @@ impl Gateway {
         self.with_encoder(|encoder| encoder.motor())
     }
 
-    /// Reads the first encoder, or changes it in a way that no bus can.
+    /// Runs `work` on the first encoder, to inspect it or to change it in ways that no bus allows.
     pub fn with_encoder<T>(&self, work: impl FnOnce(&mut Encoder) -> T) -> T {
         work(&mut self.lock().encoders.first)
     }
 
-    /// Replaces the faults, for a cable that is repaired or breaks later. Requests and stores keep their counts.
+    /// Replaces the faults, e.g. when a cable is repaired or breaks later. Request and store counts are kept.
     pub fn set_faults(&self, faults: &Faults) {
         let mut shared = self.lock();
         shared.faults = faults.clone();
@@ -83,7 +83,7 @@ impl Gateway {
     }
 }
 
-/// The registers as they are at a moment.
+/// Gateway registers at a given moment.
 struct GatewayRegisters<'a>(&'a mut Shared);
 
 impl Registers for GatewayRegisters<'_> {
@@ -101,7 +101,7 @@ impl Registers for GatewayRegisters<'_> {
 }
 
 impl Shared {
-    /// Carries out a request; returns its reply as received by the host, if it is.
+    /// Carries out a request and returns the reply as received by the host, or `None` if no reply arrives.
     fn take(&mut self, request: &[u8]) -> Option<Vec<u8>> {
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
         self.requests = self.requests.saturating_add(1);
@@ -118,8 +118,8 @@ impl Shared {
         self.carry(reply)
     }
 
-    /// Applies the faults to a reply. TCP delivers bytes or none: a fault of one byte on a serial line affects the whole
-    /// reply.
+    /// Applies the configured faults to a reply. TCP delivers bytes or none: what would be a fault of one byte on a
+    /// serial line affects the whole reply.
     fn carry(&mut self, mut reply: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.passage(&mut self.rng, 0);
         let carried = passage.carried?;
@@ -157,7 +157,8 @@ impl ByteDevice for Gateway {
         self.to_host.due()
     }
 
-    /// Connects a client: replies to another connection are dropped; encoders that lost their power get it back.
+    /// Connects a client. Pending replies to the previous connection are dropped, and encoders that lost their power
+    /// get it back.
     fn connect(&mut self, now: Moment) {
         self.received.clear();
         self.to_host = Queue::default();

@@ -18,7 +18,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Returns the memory as delivered: all steps over all turns, no active cams.
+    /// Returns the factory settings: all steps over all turns, no active cams.
     pub(super) fn delivered() -> Self {
         Memory {
             gear: FULL,
@@ -55,12 +55,12 @@ impl Memory {
         self.zero_shift
     }
 
-    /// Returns the shift of the position under its window.
+    /// Returns the shift of the position window.
     pub const fn shift(&self) -> WindowShift {
         self.shift
     }
 
-    /// Returns a cam program; it has every cam, active or not.
+    /// Returns a cam program with all its cams, active or not.
     pub fn program(&self, number: ProgramNumber) -> &Program {
         let [first, ..] = &self.programs;
         self.programs.get(usize::from(number.get()) - 1).unwrap_or(first)
@@ -70,8 +70,8 @@ impl Memory {
         self.programs.get_mut(usize::from(number.get()) - 1)
     }
 
-    /// Adds programs that demonstrate cams: a staircase, nested cams, cams over the end of the range; and if the range
-    /// allows it the manual's example, cam 3 from 15 to 213.
+    /// Adds demonstration cam programs: a staircase, nested cams, cams across the end of the range, and, if the range
+    /// allows it, the manual's example (cam 3 from 15 to 213).
     pub(super) fn with_demonstration(mut self) -> Self {
         let steps = self.gear.steps();
         let place = |sixteenths: u32| (u64::from(steps) * u64::from(sixteenths) / 16) as u32;
@@ -108,14 +108,14 @@ const FULL: Gear = match Gear::new(Value::MAX.get(), TURNS) {
     Err(_) => unreachable!(),
 };
 
-/// Keeps a [`Memory`] without power.
+/// Non-volatile storage for a [`Memory`].
 #[derive(Clone, Debug)]
 pub(super) struct Eeprom {
     pub(super) kept: Memory,
-    /// Its content was lost: 86000000 until everything is stored again.
+    /// Whether the content was lost: 86000000 is sent until everything has been stored again.
     pub(super) lost: bool,
     stores: u32,
-    /// Number of stores since the encoder was created, which faults count.
+    /// Number of stores since the encoder was created, as used for triggering faults.
     begun: u32,
     die_in_store: Option<u32>,
 }
@@ -131,9 +131,10 @@ pub(super) enum Stored {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
     Kept,
-    /// It is worn out, and its content is lost (`U`: the manual guarantees 500 and says nothing about later ones).
+    /// The EEPROM is worn out and its content is lost (`U`: the manual guarantees 500 stores and does not cover later
+    /// ones).
     Worn,
-    /// Power was lost during it.
+    /// Power was lost during the store.
     Died,
 }
 
@@ -150,7 +151,7 @@ impl Eeprom {
         self.die_in_store = number;
     }
 
-    /// Stores the settings. A store that fails loses everything that it was about to write (`U`).
+    /// Stores the settings. A failed store loses everything that was about to be written (`U`).
     pub(super) fn store(&mut self, memory: &Memory, what: Stored) -> Ended {
         self.stores = self.stores.saturating_add(1);
         self.begun = self.begun.saturating_add(1);
@@ -180,5 +181,5 @@ pub(super) fn cam_mut(program: &mut Program, number: CamNumber) -> Option<&mut C
     program.cams.get_mut(usize::from(number.get())).and_then(Option::as_mut)
 }
 
-/// Steps of the disc: all positions of the shaft that an encoder distinguishes.
+/// Number of shaft positions that an encoder distinguishes, in steps of the disc.
 pub(super) const PLACES: u32 = STEPS_PER_TURN * TURNS;

@@ -16,14 +16,14 @@ pub(super) struct Map {
     order: WordOrder,
 }
 
-/// The encoders in the order of their registers.
+/// Encoders in register order.
 #[derive(Debug)]
 pub(super) struct Encoders {
     pub(super) first: Encoder,
     others: Vec<Encoder>,
 }
 
-/// Registers of a word.
+/// Number of registers per word.
 const REGISTERS: usize = 2;
 
 type Result<T> = std::result::Result<T, Exception>;
@@ -48,17 +48,17 @@ impl Map {
         Map { input: config.input, output: config.output, order: config.order }
     }
 
-    /// Reads IN words: function 4.
+    /// Reads IN words (function 4).
     pub(super) fn inputs(&self, encoders: &mut Encoders, now: Moment, first: u16, count: u16) -> Result<Vec<u16>> {
         self.read(encoders, self.input, first, count, |encoder| encoder.read(now).ok_or(Exception::NoAnswer))
     }
 
-    /// Reads the present OUT words: function 3.
+    /// Reads the present OUT words (function 3).
     pub(super) fn outputs(&self, encoders: &mut Encoders, first: u16, count: u16) -> Result<Vec<u16>> {
         self.read(encoders, self.output, first, count, |encoder| Ok(encoder.out()))
     }
 
-    /// Writes OUT words, or halves of them: functions 6 and 16.
+    /// Writes whole or half OUT words (functions 6 and 16).
     pub(super) fn write(&self, encoders: &mut Encoders, now: Moment, first: u16, values: &[u16]) -> Result<()> {
         let begin = self.range(encoders, self.output, first, values.len())?;
         let places = begin..begin + values.len();
@@ -100,7 +100,7 @@ impl Map {
         Ok(registers)
     }
 
-    /// Returns the range of registers, counted from the first encoder's; all of them must exist.
+    /// Returns the offset from the first encoder's register, after checking that the whole range exists.
     fn range(&self, encoders: &Encoders, base: u16, first: u16, count: usize) -> Result<usize> {
         let begin = first.checked_sub(base).map(usize::from).ok_or(Exception::Address)?;
         if begin + count <= encoders.registers() { Ok(begin) } else { Err(Exception::Address) }

@@ -3,7 +3,7 @@
 use crate::devices::interbus::protocol::STEPS_PER_TURN;
 use crate::units::Moment;
 
-/// Shaft turning at constant speed. Its position does not wrap: the gear does that.
+/// Shaft turning at constant speed. The position does not wrap; the gear takes care of that.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shaft {
     rpm: f64,
@@ -31,7 +31,7 @@ impl Shaft {
         (self.place, self.since) = (f64::from(place), now);
     }
 
-    /// Returns its position: whole steps, also below 0.
+    /// Returns the shaft position in whole steps, possibly below 0.
     pub(super) fn place(&self, at: Moment) -> i64 {
         self.exact(at).floor() as i64
     }

@@ -62,7 +62,7 @@ impl Encoder {
         };
     }
 
-    /// Takes a profile that was read for a file, and adds the names of its cams.
+    /// Completes a profile that was read for saving with the cam names.
     pub(super) fn saved(&mut self, mut profile: InterbusProfile, services: &mut Services) {
         let programs: Vec<_> = profile.image.known().map(|(number, own)| (number, *own)).collect();
         self.staged.refresh_parameters(profile.image.parameters);
@@ -74,7 +74,7 @@ impl Encoder {
         self.session.write_read(Body::new(profile), edits, Vec::new(), services);
     }
 
-    /// Reads the rest of a virtual encoder automatically; returns false if there is nothing more.
+    /// Automatically reads the next part of a virtual encoder; returns `false` if nothing is left to read.
     pub(super) fn read_on(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
             return false;

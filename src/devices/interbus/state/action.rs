@@ -10,25 +10,25 @@ use crate::devices::interbus::protocol::{ProgramNumber, ReadOut, StartupMode};
 
 /// Something in the INTERBUS tab.
 pub enum InterbusAction {
-    /// The user states whether the machine stands still.
+    /// Sets whether the user has confirmed that the machine stands still.
     Stopped(bool),
-    /// Read cam programs: the encoder's outputs switch to each of them.
+    /// Reads cam programs, which switches the encoder's outputs to each of them in turn.
     ReadPrograms(Vec<ProgramNumber>),
     ReadOut(ReadOut),
-    /// Select what the encoder sends: its position, its speed, the outputs of a program.
+    /// Selects the data that the encoder sends: position, speed or the outputs of a program.
     Select(StartupMode),
     Check,
-    /// Change something that is not written yet.
+    /// Applies an edit, which is not yet written to the encoder.
     Edit(Box<Edit>),
     Plan(Box<Change>),
-    /// Return the encoder to its earlier mode, whoever changed it.
+    /// Returns the encoder to its earlier mode, regardless of who changed it.
     LeadBack,
-    /// Ask for a table of cams; rows without a program are for this one.
+    /// Asks the user for a cam table; rows without a program belong to the given one.
     AskTable(ProgramNumber),
     OpenTable(PathBuf),
-    /// Take the cams of a table that was pasted.
+    /// Imports the cams of a pasted table.
     PasteTable(ProgramNumber, String),
-    /// Take the table that was read into the edits, or discard it.
+    /// Applies the imported table to the edits, or discards it.
     TakeTable(bool),
     /// Ask where to write the cams as a table, with a decimal comma or a point.
     AskSaveTable {

@@ -13,31 +13,31 @@ use crate::parameter::{Entry, Parameters as _};
 /// Kind of connection to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InterbusLinkKind {
-    /// Virtual encoder in this program, behind a virtual gateway.
+    /// Virtual encoder within the program, behind a virtual gateway.
     #[default]
     Virtual,
     Gateway,
     Replay,
 }
 
-/// Entries of the connection form. Entries of another kind of connection are kept and left out of the link. An empty entry
-/// means the default.
+/// Entries of the connection form. Entries that belong to another kind of connection are kept but left out of the link.
+/// An empty entry selects the default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct InterbusForm {
     pub kind: InterbusLinkKind,
     pub host: String,
-    /// TCP port; empty: 502.
+    /// TCP port; 502 if empty.
     pub tcp_port: String,
     pub file: String,
-    /// Text of other parameters.
+    /// Entered values of the other parameters.
     pub typed: Typed,
-    /// The low word of the two comes first.
+    /// Whether the low word of a pair comes first.
     pub low_first: bool,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
 }
 
-/// The parameter for the order of the two words, and the order that is not usual.
+/// Link parameter for the word order, with the value for the unusual order.
 const LOW_FIRST: (&str, &str) = ("order", "low-first");
 /// The port of Modbus/TCP.
 const PORT: &str = "502";
@@ -84,13 +84,13 @@ impl FormModel for InterbusForm {
 }
 
 impl InterbusForm {
-    /// Returns the parameters to enter: those of the virtual encoder, if it is one, and those of the link.
+    /// Returns the parameters to enter: those of the link, and those of the virtual encoder if one is selected.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == InterbusLinkKind::Virtual { Config::entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Returns the entries for the location of the words in the gateway, and those that are rarely needed.
+    /// Returns the entries for the location of the words in the gateway, followed by the rarely needed ones.
     pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| ["unit", "input", "output"].contains(&own.key))
     }
@@ -99,7 +99,7 @@ impl InterbusForm {
         Config::entries()
     }
 
-    /// Fills in the entry of a parameter; returns false if no entry can show it.
+    /// Fills in the entry for a parameter; returns `false` if the form has no entry that can show the value.
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_low_first = (name, value) == LOW_FIRST;
         self.low_first |= is_low_first;

@@ -21,32 +21,32 @@ use crate::sim::Motor;
 
 use super::word_meaning::WordContext;
 
-/// Steps of the handshake that are shown.
+/// Maximum number of handshake steps shown.
 const STEPS: usize = 200;
 
-/// An INTERBUS encoder, or a profile of one.
+/// State of an INTERBUS encoder, or of a profile of one.
 pub struct Encoder {
     pub session: Session<Interbus>,
     /// The identity and the parameters, as read.
     pub survey: Option<Survey>,
-    /// The last device check.
+    /// Results of the last device check.
     pub check: Option<Vec<CheckLine>>,
     pub staged: Staged,
     pub read_outs: BTreeMap<u16, Value>,
     pub record: Record,
-    /// Comparison of its cam outputs with those of its programs.
+    /// Comparison of the reported cam outputs with the cam programs.
     pub preview: Preview,
-    /// Words of the last handshakes, the newest last.
+    /// Words of the last handshakes, newest last.
     pub handshake: VecDeque<Handshake>,
     pub motor: Option<Motor>,
     /// A table of cams that was read and is not taken yet.
     pub import: Option<Import>,
     pub scale: Scale,
-    /// Why the last edit was refused.
+    /// Reason for which the last edit was refused.
     pub refusal: Option<Text>,
-    /// The user has confirmed that the machine stands still.
+    /// Whether the user has confirmed that the machine stands still.
     stopped: bool,
-    /// Rows of the table that is being opened which name no program are for this one.
+    /// Program for those rows of the table being opened that name none.
     pub(super) table_program: ProgramNumber,
     /// Programs that were written, to be read again.
     pub(super) read_after: Vec<ProgramNumber>,
@@ -79,7 +79,7 @@ impl Encoder {
         self.staged.wanted().map(EditedValues::marks).unwrap_or_default()
     }
 
-    /// Returns the marks to show on every page, those of this program first.
+    /// Returns the marks to show on every page, with those of the given program first.
     pub fn shown_marks(&self, program: Option<ProgramNumber>) -> Vec<Text> {
         let mut marks: Vec<Mark> = self.marks();
         marks.sort_by_key(|mark| program.is_none() || mark.program() != program);
@@ -91,13 +91,12 @@ impl Encoder {
         document.body.get::<InterbusProfile>()
     }
 
-    /// Returns the edited profile, if this is one.
+    /// Returns the profile with its edits applied, or `None` for a connected encoder.
     pub(crate) fn wanted_profile(&self) -> Option<InterbusProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
         Some(InterbusProfile { image: wanted.image.clone(), names: wanted.names.clone(), ..profile.clone() })
     }
 
-    /// Returns the identity, as far as known.
     pub fn identity(&self) -> Option<&Identity> {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
@@ -106,19 +105,19 @@ impl Encoder {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Returns the serial number; `None` if nothing was read.
+    /// Returns the serial number, or `None` if nothing has been read.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
     }
 
-    /// Returns the mode as last read.
+    /// Returns the mode that was last read.
     pub fn mode(&self) -> Option<StartupMode> {
         let read = || self.identity().map(|own| own.mode);
         self.record.last().and_then(|reading| reading.mode).or_else(read)
     }
 
-    /// Returns the facts needed to decode its IN words.
+    /// Returns the context needed to decode IN words.
     pub fn known(&self) -> WordContext {
         let mode = match self.mode() {
             Some(StartupMode::Velocity) => Mode::Velocity,
@@ -132,23 +131,24 @@ impl Encoder {
         self.staged.device().and_then(|image| image.shift)
     }
 
-    /// Returns the latest position in steps; `None` if the word does not contain it.
+    /// Returns the latest position in steps, or `None` if the last word does not contain one.
     pub fn position(&self) -> Option<u32> {
         self.record.last().and_then(WordReading::position)
     }
 
-    /// Returns which of the two words of a register pair comes first.
+    /// Returns the word order of a register pair.
     pub(super) fn order(&self) -> WordOrder {
         let Source::Link(url) = &self.session.source else { return WordOrder::default() };
         url.query.read("order", &WordOrder::WORDS).ok().flatten().unwrap_or_default()
     }
 
-    /// Returns whether the user has confirmed that the machine stands still; a virtual encoder moves none.
+    /// Returns whether the user has confirmed that the machine stands still. A virtual encoder moves no machine and
+    /// needs no confirmation.
     pub fn is_stopped(&self) -> bool {
         self.stopped || self.session.is_virtual()
     }
 
-    /// Returns whether the user first has to confirm that the machine stands still.
+    /// Returns whether the user must confirm that the machine stands still before going on.
     pub fn asks_for_standstill(&self) -> bool {
         self.session.phase != Phase::Offline && !self.session.is_virtual()
     }
@@ -170,12 +170,12 @@ impl Encoder {
         self.staged.device().map(|image| image.known().map(|(number, _)| number).collect()).unwrap_or_default()
     }
 
-    /// Returns the number of programs that were read, of eight.
+    /// Returns how many of the eight programs have been read.
     pub fn programs_read(&self) -> usize {
         self.staged.device().map_or(0, |image| image.known().count())
     }
 
-    /// Returns the write cycles of its memory recorded on this computer, without those that cannot be counted.
+    /// Returns the memory's write cycle count as recorded on this computer, not including uncountable stores.
     pub fn stores(&self) -> Option<u64> {
         self.session.cycles
     }
@@ -188,12 +188,12 @@ impl Encoder {
         self.staged.differences().iter().any(|own| !matches!(own.place, ValueId::Parameter(_)))
     }
 
-    /// Returns whether there are edits that are not written.
+    /// Returns whether any edits have not been written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
     }
 
-    /// Takes over a reading of the encoder; edits stay, unless they are for another encoder.
+    /// Takes over the results of a survey. Edits are kept unless they belong to another encoder.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
             self.replaced_by(&survey.identity.serial_number, services);
@@ -214,7 +214,7 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// Returns whether this is another encoder than the one read before.
+    /// Returns whether the identity belongs to a different encoder from the one last read.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         self.identity().is_some_and(|known| known.serial_number != identity.serial_number)
     }

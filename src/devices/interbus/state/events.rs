@@ -20,7 +20,7 @@ use crate::worker::{OpenError, Session};
 
 impl Kind for Interbus {
     const KIND: &'static str = KIND;
-    /// Its parameters and its position share one word, and a control may be reading it.
+    /// Parameters and position share one word, which a control system may be reading, so live polling starts disabled.
     const STARTS_LIVE: bool = false;
     type Edits = Edits;
     type SessionHandle = Option<Motor>;
@@ -65,7 +65,7 @@ impl Kind for Interbus {
 }
 
 impl Encoder {
-    /// Reads a word to show with the present knowledge, unless words arrive anyway.
+    /// Reads a word for display, unless polling already delivers words.
     fn see_a_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(InterbusJob::Position, services);
@@ -139,7 +139,7 @@ impl SessionEvents for Encoder {
         words::is_silence(error)
     }
 
-    /// Also forgets whether the machine stands still.
+    /// Forgets the review, and that the machine was confirmed to stand still.
     fn forget_requests(&mut self) {
         self.say_stopped(false);
         self.forget_plan();
@@ -149,7 +149,7 @@ impl SessionEvents for Encoder {
         self.cut_write(how, texts)
     }
 
-    /// Submits a job; one that replaces the position or switches outputs only if the machine stands still.
+    /// Submits a job. Jobs that replace the position or switch outputs are submitted only if the machine stands still.
     fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
         if job::disturbs(&job) && !self.is_stopped() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));

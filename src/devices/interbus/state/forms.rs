@@ -8,7 +8,7 @@ use crate::devices::interbus::profile::{Parameters, Scale, Unit};
 use crate::devices::interbus::protocol::{Parameter, Value};
 use crate::devices::interbus::state::TEXTS;
 
-/// Parses a whole number; blanks or apostrophes between its digits are allowed.
+/// Parses a whole number; blanks or apostrophes may separate its digits.
 pub fn number(text: &str) -> Result<u32, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
@@ -18,10 +18,10 @@ pub fn number(text: &str) -> Result<u32, Text> {
     number.ok_or_else(|| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
-/// Returns the edit of an entered parameter. The edit checks whether it fits the others.
+/// Parses an entered parameter into an edit. Whether the value fits the others is checked when the edit is applied.
 ///
 /// # Errors
-/// Not a number.
+/// The entry is not a number.
 pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<Edit, Text> {
     let value = number(text)?;
     Ok(match parameter {
@@ -35,10 +35,10 @@ pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<E
     })
 }
 
-/// Parses the preset to be set; an empty entry means the stored one.
+/// Parses the preset to set; an empty entry means the stored preset.
 ///
 /// # Errors
-/// Not a number, or beyond the measuring range.
+/// The entry is not a number or is beyond the measuring range.
 pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
     if text.trim().is_empty() {
         return Ok(now.preset);
@@ -63,10 +63,10 @@ pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
     }
 }
 
-/// Returns the step that is nearest to a position that was typed in the units of the machine.
+/// Parses a position in machine units and returns the nearest step.
 ///
 /// # Errors
-/// Not a number, or beyond the measuring range.
+/// The entry is not a number or is beyond the measuring range.
 pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
     let refused = || TEXTS.text("ib_entry.position").with("entry", text.trim());
     let value = decimal(text).ok_or_else(refused)?;
@@ -81,7 +81,7 @@ pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
     Ok(placed.step)
 }
 
-/// Returns the default scale of a unit: a turn of the machine is the measuring range.
+/// Returns the default scale for a unit, in which the measuring range is one machine turn.
 pub fn usual_scale(unit: Unit, zero: u32, range: u32) -> Scale {
     let steps = match unit {
         Unit::Degrees => f64::from(range.max(1)),
@@ -90,7 +90,7 @@ pub fn usual_scale(unit: Unit, zero: u32, range: u32) -> Scale {
     Scale::new(unit, steps, zero).unwrap_or_default()
 }
 
-/// Returns the steps in a turn of the machine, or in a millimetre; `None` for steps.
+/// Returns the number of steps per machine turn or per millimetre, or `None` if the unit is the step.
 pub fn steps_of(scale: &Scale) -> Option<f64> {
     match scale.unit() {
         Unit::Steps => None,
@@ -99,20 +99,20 @@ pub fn steps_of(scale: &Scale) -> Option<f64> {
     }
 }
 
-/// Returns a scale with other steps.
+/// Parses a number of steps and returns the scale that uses it.
 ///
 /// # Errors
-/// Not a number above 0.
+/// The entry is not a number above 0.
 pub fn scale(unit: Unit, text: &str, zero: u32) -> Result<Scale, Text> {
     let refused = || TEXTS.text("ib_entry.scale").with("entry", text.trim());
     let steps = decimal(text).ok_or_else(refused)?;
     Scale::new(unit, steps, zero).map_err(|_| refused())
 }
 
-/// Returns a scale with its 0 at another position of the encoder.
+/// Returns the scale with its zero at the entered encoder position.
 ///
 /// # Errors
-/// Not a position of the measuring range.
+/// The entry is not a position within the measuring range.
 pub fn with_zero(own: &Scale, text: &str, range: u32) -> Result<Scale, Text> {
     let zero = number(text)?;
     let last = range.saturating_sub(1);

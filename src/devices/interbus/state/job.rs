@@ -22,7 +22,7 @@ pub(super) fn words(job: &InterbusJob) -> Text {
     }
 }
 
-/// Returns whether the job removes the position or switches the outputs: the machine must stand still.
+/// Returns whether the job removes the position or switches outputs, so that the machine must stand still.
 pub(super) fn disturbs(job: &InterbusJob) -> bool {
     !matches!(job, InterbusJob::Hello | InterbusJob::Position)
 }

@@ -3,23 +3,23 @@
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{Compiled, Program, ProgramNumber, StartupMode, Value};
 
-/// Programs as they were read, and how the outputs of an encoder agree with them.
+/// Cam programs as read, and how well the reported outputs agree with them.
 #[derive(Clone, Debug)]
 pub struct Preview {
     programs: [Option<Program>; ProgramNumber::COUNT],
     compiled: Compiled,
-    /// Words whose outputs match the program at their position.
+    /// Number of words whose outputs match the program at their position.
     pub same: u64,
     pub other: u64,
-    /// The last of those.
+    /// Last word whose outputs differ from the program.
     pub last: Option<Differing>,
 }
 
-/// Outputs that differ from those of a program.
+/// Reported outputs that differ from the program's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differing {
     pub position: u32,
-    /// Reported by the encoder: bit i for cam i.
+    /// Outputs reported by the encoder: bit i for cam i.
     pub own: u8,
     pub expected: u8,
 }
@@ -36,14 +36,14 @@ impl Preview {
         Preview { programs, compiled, same: 0, other: 0, last: None }
     }
 
-    /// Takes the programs of the encoder; if they differ from the previous ones, the comparison starts again.
+    /// Takes the encoder's programs; the comparison restarts if they have changed.
     pub(super) fn follow(&mut self, programs: &[Option<Program>; ProgramNumber::COUNT]) {
         if self.programs != *programs {
             *self = Preview::of(*programs);
         }
     }
 
-    /// Compares the outputs in a word with those of its program, if both and the position are known.
+    /// Compares the outputs in a word with those of its program, provided that outputs, program and position are known.
     pub(super) fn compare(&mut self, reading: &WordReading) {
         let Some(StartupMode::Cams(program)) = reading.mode else { return };
         let at = usize::from(program.get() - 1);

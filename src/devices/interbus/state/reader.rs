@@ -5,7 +5,7 @@ use crate::app::Text;
 use crate::devices::interbus::protocol::{Mode, ReadOut, Single, WindowShift};
 use crate::devices::interbus::state::TEXTS;
 
-/// The direction of a word, and the class of encoders.
+/// Direction of a word and class of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordSource {
     /// From a K3 encoder.
@@ -43,7 +43,7 @@ impl WordSource {
     }
 }
 
-/// The context in which typed words are read.
+/// Context for interpreting typed words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     pub source: WordSource,
@@ -63,13 +63,13 @@ impl Default for Reading {
 pub struct DecodedWord {
     /// As entered.
     pub word: String,
-    /// The meaning, or why it is not a word.
+    /// Meaning of the word, or the reason why the entry is not a word.
     pub meaning: Result<Text, Text>,
     pub warning: Option<Text>,
 }
 
 impl Reading {
-    /// Decodes words separated by blanks and commas, with `0x` or `h` if present.
+    /// Decodes words separated by blanks or commas, optionally written with `0x` or `h`.
     pub fn lines(&self, text: &str) -> Vec<DecodedWord> {
         let words = text.split([' ', ',', ';', '\n', '\r', '\t']).filter(|word| !word.is_empty());
         words.map(|word| self.line(word)).collect()

@@ -19,7 +19,7 @@ pub(super) enum RecordedValue {
     Cam(CamNumber),
 }
 
-/// Recorder of an encoder, and the latest word.
+/// Recorder for an encoder's values, with the latest word.
 #[derive(Debug, Default)]
 pub struct Record {
     pub(super) track: Track<RecordedValue>,
@@ -32,7 +32,7 @@ impl Record {
         self.track.begin(began);
     }
 
-    /// Takes new readings; `dropped` were not taken in time.
+    /// Adds new readings; `dropped` is the number of readings that came too late to be taken.
     pub(super) fn add(&mut self, readings: Vec<WordReading>, dropped: u64) {
         self.track.note_dropped(dropped);
         for reading in readings {
@@ -41,7 +41,7 @@ impl Record {
         }
     }
 
-    /// Records the first word: it is not known yet whether it is a position, so it is added to no line.
+    /// Keeps the first word without adding it to a trace, since the word may not be a position.
     pub(super) fn glimpse(&mut self, reading: WordReading) {
         self.last = Some(reading);
     }

@@ -16,10 +16,10 @@ use crate::store::{read_file, write_atomically};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
     pub origin: Text,
-    /// Its content, in the present units of the machine.
+    /// Table content, in the present units of the machine.
     pub table: CamTable,
     text: String,
-    /// The program of rows that name none.
+    /// Program for rows that name none.
     program: ProgramNumber,
 }
 
@@ -42,7 +42,7 @@ impl Encoder {
         TableOptions { scale: self.scale, range: self.range(), program }
     }
 
-    /// Reads the table again after a change of the units or of the measuring range.
+    /// Reparses the table after a change of the units or the measuring range.
     pub(super) fn read_table_anew(&mut self) {
         let Some(program) = self.import.as_ref().map(|import| import.program) else { return };
         let options = self.options(program);
@@ -51,8 +51,8 @@ impl Encoder {
         }
     }
 
-    /// Takes the imported table into the edits, or drops it. One that cannot be taken stays, with the reason: omitting a
-    /// line would switch its cam off.
+    /// Applies the imported table to the edits, or discards it. A table with problems stays open with the reason, since
+    /// omitting a line would switch its cam off.
     pub(super) fn take_table(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
         if take && !import.table.problems.is_empty() {

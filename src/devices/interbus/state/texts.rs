@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// Texts of INTERBUS; other names are those of common texts.
+/// Message catalogue for INTERBUS; all other IDs come from the common catalogue.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/interbus.ron"));

@@ -8,30 +8,29 @@ use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 use crate::link::{Direction, TraceEntry};
 
-/// Decoder of frames, in the order in which they were transmitted.
+/// Decoder for a sequence of frames, which must be given in transmission order.
 #[derive(Debug)]
 pub(super) struct Meaning {
-    /// Order of the halves of a word.
+    /// Order in which the halves of a word are transmitted.
     pub(super) order: WordOrder,
     pub(super) shift: Option<WindowShift>,
     mode: Mode,
     read_out: Option<ReadOut>,
-    /// The frame of the last request.
     requested: Vec<u8>,
 }
 
 impl Meaning {
-    /// Creates it for a new link, which starts with a position.
+    /// Creates the decoder for a new link, which starts in position mode.
     pub(super) fn new(order: WordOrder) -> Self {
         Meaning { order, shift: None, mode: Mode::Position, read_out: None, requested: Vec::new() }
     }
 
-    /// Notes that the encoder is known to be in this mode.
+    /// Updates the encoder's known mode.
     pub(super) fn found(&mut self, mode: Mode) {
         self.mode = mode;
     }
 
-    /// Returns the meaning of a frame; nothing for an intact one without a word.
+    /// Explains a frame; the explanation of an intact frame without a word is empty.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
         if entry.direction == Direction::Sent {
@@ -47,7 +46,7 @@ impl Meaning {
         }
     }
 
-    /// Decodes a reply; an error word in it is reported by the encoder.
+    /// Decodes a reply; an error word in the reply counts as reported by the encoder.
     fn received(&mut self, bytes: &[u8]) -> Explained {
         let meaning = self.meanings(Direction::Received, bytes);
         let is_error = match carried(false, bytes, self.order) {
@@ -72,8 +71,7 @@ impl Meaning {
         }
     }
 
-    /// Parses a sent word, which is legal in the encoder's mode: if that differs from the mode known here, the word
-    /// shows it.
+    /// Parses a sent word in the known mode, or else in the mode in which it is legal.
     fn command(&self, word: u32) -> Command {
         let readings = || Command::readings(word).into_iter().next();
         Command::in_mode(word, self.mode).ok().or_else(readings).unwrap_or(Command::Unknown(word))

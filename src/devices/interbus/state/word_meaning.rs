@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::{
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 
-/// The facts about an encoder that its IN words depend on.
+/// Facts about an encoder that determine how its IN words are decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordContext {
     pub mode: Mode,
@@ -25,7 +25,7 @@ impl WordContext {
     }
 }
 
-/// Returns the request of an OUT word in a mode, or that it must not be sent.
+/// Describes an OUT word in the given mode, including whether the word is illegal there.
 pub fn out(word: u32, mode: Mode) -> Text {
     match Command::in_mode(word, mode) {
         Ok(command) => command_text(command),
@@ -66,7 +66,7 @@ pub fn command_text(command: Command) -> Text {
     }
 }
 
-/// Returns the mode in which an encoder interprets a command as such; of several modes, not the cam mode.
+/// Returns the mode in which an encoder accepts a command, preferring position mode over cam mode.
 pub fn mode_of(command: Command) -> Mode {
     if command.is_legal_in(Mode::Position) || !command.is_legal_in(Mode::Cam) { Mode::Position } else { Mode::Cam }
 }
@@ -107,7 +107,6 @@ pub fn stray(word: u32) -> Option<Text> {
     }
 }
 
-/// Returns the meaning of an error word.
 fn error(error: ErrorWord) -> Text {
     let id = match (error.code.get(), error.data.get()) {
         (1, _) => "ib_error.data",
@@ -167,7 +166,7 @@ mod tests {
             (0x2040_0093, Mode::Cam, "Active cams: 0, 1, 4, 7"),
             (0x4600_0015, Mode::Cam, "Cam 3 starts at 21"),
             (0x2021_000C, Mode::Position, "Read out: temperature"),
-            (0x4600_0015, Mode::Position, "Not valid in position mode; elsewhere: Cam 3 starts at 21"),
+            (0x4600_0015, Mode::Position, "Not valid in position mode; in other modes: Cam 3 starts at 21"),
         ] {
             assert_eq!(english(out(word, mode)), says, "{word:08X}");
         }

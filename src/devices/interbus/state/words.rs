@@ -25,7 +25,7 @@ pub fn setting(parameter: Parameter, number: u32) -> Text {
     }
 }
 
-/// Returns the text for a mode, in a sentence.
+/// Returns the name of a mode, worded for use in a sentence.
 pub fn mode(mode: Mode) -> Text {
     TEXTS.text(match mode {
         Mode::Position => "ib_mode.position",
@@ -55,7 +55,6 @@ pub fn celsius(tenths: i32) -> Text {
     TEXTS.text("ib_read_out.celsius").with_number("celsius", f64::from(tenths) / 10.0, 1)
 }
 
-/// Returns the text of the flags of an encoder.
 pub fn flags(flags: Flags) -> Text {
     let turns = TEXTS.text(if flags.multiturn() { "ib_flags.multiturn" } else { "ib_flags.single_turn" });
     let mut all = vec![turns];
@@ -68,7 +67,7 @@ pub fn flags(flags: Flags) -> Text {
     TEXTS.text("ib_flags.all").with_list("flags", all)
 }
 
-/// Returns the meaning of a combination of LEDs, and what to do.
+/// Explains an LED combination and what to do about it.
 pub fn lamps(row: &LedRow) -> (Text, Text) {
     use crate::devices::interbus::protocol::LedState::{Blinking, On};
     let (meaning, remedy) = match (row.leds.ba, row.leds.rbda) {
@@ -93,7 +92,7 @@ pub fn range(steps: u32, turns: u32) -> Text {
     TEXTS.text(id).with("steps", steps).with("turns", turns)
 }
 
-/// Returns the text of a value beside its name.
+/// Formats a read-out value for display beside its name.
 pub fn read_value(what: ReadOut, value: Value) -> Text {
     match (what.number(), Direction::of_code(value.get())) {
         (0x3, Some(own)) => direction(own),

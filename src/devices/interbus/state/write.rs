@@ -15,8 +15,9 @@ use crate::devices::interbus::state::TEXTS;
 use crate::profile::{Body, ProfileError};
 
 impl Encoder {
-    /// Returns the edited values. Only edited programs are included, since each program of a plan is selected to be read.
-    /// If the measuring range shrinks, all known ones are included, since their cams must stay within it.
+    /// Returns the edited values. Only edited programs are included, since planning selects each included program to
+    /// read it. If the measuring range shrinks, all known programs are included, because their cams must stay within
+    /// it.
     fn edited_image(&self) -> Option<Image> {
         let (wanted, device) = (&self.staged.wanted()?.image, self.staged.device()?);
         let mut edited = Image::of(wanted.parameters);
@@ -109,7 +110,7 @@ impl Saved for Encoder {
     }
 }
 
-/// Returns the programs that a plan changes; `None`: any of them.
+/// Returns the programs that a plan changes, or `None` if it may change any of them.
 fn changed_by(plan: &InterbusPlan) -> Option<Vec<ProgramNumber>> {
     let of_programs = plan.base.programs.iter().map(|(number, _)| *number).collect();
     (!plan.ops.contains(&Op::Default)).then_some(of_programs)

@@ -65,7 +65,7 @@ pub(super) fn page_ui(
     );
 }
 
-/// Draws a program that was not read, with the button to read it.
+/// Draws a placeholder for a program that has not been read, with a button to read it.
 fn unread(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_cams.title"), |ui| {
         let id = encoder.session.id;

@@ -63,7 +63,7 @@ impl TypedConnectForm for InterbusConnectForm {
     }
 }
 
-/// Draws the location of the words in the gateway.
+/// Draws the settings for the location of the words in the gateway.
 fn registers(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
     let (registers, _) = InterbusForm::of_the_link();
     typed(ui, theme, say, registers, &mut form.typed);

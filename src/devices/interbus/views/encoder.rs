@@ -89,7 +89,7 @@ fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action
     });
 }
 
-/// Draws the present word and its content: position, speed, or the outputs of a program.
+/// Draws the present word and its content: position, speed or program outputs.
 fn sends(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_sends.title"), |ui| {
         match encoder.record.last() {
@@ -162,10 +162,6 @@ mod tests {
             &["two 9-pin round connectors", "male for the incoming and female for the outgoing cable"],
         );
         check_notes(&TEXTS, &WIRING, &["10 … 30 V DC (absolute limits)", "at most 3.5 W", "500 kbit/s or 2 Mbit/s"]);
-        check_notes(
-            &TEXTS,
-            &WIRING,
-            &["screen of the cable to the encoder's housing", "housing to PE", "no address switch"],
-        );
+        check_notes(&TEXTS, &WIRING, &["cable screen to the encoder housing", "housing to PE", "no address switch"]);
     }
 }

@@ -53,7 +53,7 @@ fn lamps(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     });
 }
 
-/// Draws an LED: a press changes it from dark to lit, and to blinking if possible.
+/// Draws a clickable LED; each click switches from dark to lit and, if possible, to blinking.
 fn lamp_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut LedState, blinks: bool) {
     let palette = theme.palette;
     let (id, ink) = match lamp {

@@ -11,9 +11,9 @@ use crate::ui::Theme;
 use crate::ui::controls::{dot, row};
 use crate::ui::panels::live::{LOW, mark, raw_row};
 
-/// Width that eight outputs need beside each other.
+/// Width required for eight output indicators side by side.
 const LAMPS: f32 = 280.0;
-/// Height of a row of them.
+/// Height of a row of output indicators.
 const LAMP: f32 = 16.0;
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {

@@ -8,7 +8,7 @@ use crate::devices::interbus::state::Encoder;
 use crate::ui::controls::{paragraph, problem};
 use crate::ui::{Theme, icons, page};
 
-/// Draws them, those of the shown program first, and why the last edit was refused.
+/// Draws the marks, with those of the shown program first, and the reason why the last edit was refused.
 pub(super) fn marks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, shown: Option<ProgramNumber>) {
     let marks = encoder.shown_marks(shown);
     if marks.is_empty() && encoder.refusal.is_none() {

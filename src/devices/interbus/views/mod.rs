@@ -24,7 +24,7 @@ use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 pub(crate) enum Page {
     #[default]
     Encoder,
-    /// Parameters of the position, and the words that set them.
+    /// Position parameters, and the words that set them.
     Parameters,
     Cams,
     Diagnosis,
@@ -42,13 +42,13 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// Returns whether edits on the page are written from it.
+    /// Returns whether the page has a bar for writing its edits.
     fn has_edit_bar(self) -> bool {
         matches!(self, Page::Parameters | Page::Cams)
     }
 }
 
-/// State of the tab for one session between frames: text buffers and selections.
+/// UI state of a session's tab between frames, such as text buffers and selections.
 #[derive(Default)]
 pub(crate) struct InterbusUiState {
     parameters: parameters::EncoderParametersUiState,
@@ -136,7 +136,7 @@ impl TypedDeviceView for InterbusView {
     }
 }
 
-/// Returns a text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a message from the INTERBUS or the common catalogue, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -19,7 +19,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Entered text that does not take effect yet.
+/// Entered text that has not taken effect yet.
 #[derive(Default)]
 pub(super) struct EncoderParametersUiState {
     drafts: BTreeMap<&'static str, Option<(String, Option<Text>)>>,
@@ -27,9 +27,9 @@ pub(super) struct EncoderParametersUiState {
     preset_problem: Option<Text>,
 }
 
-/// Width of the entry of a number.
+/// Width of a number field.
 const NUMBER: f32 = 112.0;
-/// Height of the list of words.
+/// Height of the word list.
 const WORDS: f32 = 240.0;
 
 pub(super) fn page_ui(
@@ -174,7 +174,7 @@ fn preset(
     });
 }
 
-/// Draws the number of stores counted by this computer.
+/// Draws the number of EEPROM stores counted on this computer.
 fn wear(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_wear.title"), |ui| {
         let Some(stores) = encoder.stores() else {
@@ -197,7 +197,7 @@ fn wear(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     });
 }
 
-/// Draws the words of the last handshakes.
+/// Draws the words of the latest handshakes.
 fn handshake(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_handshake.title"), |ui| {
         if encoder.handshake.is_empty() {

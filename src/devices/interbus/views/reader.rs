@@ -9,14 +9,13 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, choice, entry, mono_entry, name, paragraph};
 use crate::ui::{Theme, icons};
 
-/// Entered text, and its context.
 #[derive(Default)]
 pub(super) struct WordReaderUiState {
     text: String,
     reading: Reading,
 }
 
-/// Width of the column of words.
+/// Width of the word column.
 const WORD: f32 = 92.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) {

@@ -8,7 +8,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::{Theme, icons};
 
-/// Draws the confirmation, and the actions that it permits.
+/// Draws the standstill confirmation and the actions that it permits.
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     if !encoder.asks_for_standstill() {
         return;

@@ -12,7 +12,7 @@ use crate::devices::ssi::protocol::{self, Class, Families, Search};
 use crate::devices::ssi::state::Frames;
 use crate::devices::ssi::state::explain as words;
 
-/// Bits of a hexadecimal frame if their number is not given: the maximum.
+/// Maximum bit count, assumed for hexadecimal frames if the count is not specified.
 const MOST_CLOCKS: u8 = 64;
 
 pub(super) fn find(output: &Output, SsiFind { file, clocks }: &SsiFind) -> Result {
@@ -94,7 +94,7 @@ fn why(class: &Class) -> String {
     frame.into_iter().chain([evidence]).collect::<Vec<_>>().join("; ")
 }
 
-/// Returns the motion that would distinguish the layouts; `None` if there is only one.
+/// Returns which motion would distinguish the remaining layouts, or `None` if no doubt remains.
 fn next(search: &Search) -> Option<String> {
     let doubt = search.doubt.filter(|doubt| *doubt != protocol::Uncertainty::Open);
     let doubt = doubt.map(|doubt| words::doubt(Some(doubt)).terminal());

@@ -37,7 +37,7 @@ impl<'a> DecodedFrame<'a> {
         self.layout.is_valid(self.reading)
     }
 
-    /// Returns the position, if the bits are one, and its location.
+    /// Returns the position and its location, or `None` if the bits do not encode a position.
     pub(super) fn place(&self) -> Option<(u64, Location)> {
         let range = self.layout.descriptor().range;
         let is_none = self.reading.flags.has(Flags::CODE);
@@ -93,7 +93,7 @@ impl<'a> DecodedFrame<'a> {
     }
 }
 
-/// Returns the bits grouped by field: `MT 000100100011  ST 10101011110000  ERROR 0`.
+/// Formats the bits grouped by field, e.g. `MT 000100100011  ST 10101011110000  ERROR 0`.
 fn fields(layout: &Layout, frame: u64) -> String {
     let mut words: Vec<(String, String)> = Vec::new();
     for cell in layout.cells(frame) {
@@ -154,7 +154,7 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncode) -> Result {
     Ok(Done::Well)
 }
 
-/// Returns the position of `--position`, or of `--turns` and `--steps`; if both are given, they have to agree.
+/// Returns the position from `--position`, or from `--turns` and `--steps`; if both forms are given, they must agree.
 fn position(layout: &Layout, arguments: &SsiEncode) -> Result<u64> {
     let last = layout.coding().last();
     let range = layout.descriptor().range;

@@ -21,7 +21,7 @@ use crate::store::Store;
 pub(crate) struct Chosen {
     pub(crate) profile: SsiProfile,
     pub(crate) layout: Layout,
-    /// The times of its family; `None` if it has none, or an unknown one.
+    /// Timing of the layout's family, or `None` without a known family.
     pub(crate) times: Option<Times>,
     pub(crate) title: String,
 }
@@ -40,7 +40,7 @@ pub(crate) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<
     if is_file(spec, &families) { in_file(output, spec, &families) } else { of_family(output, spec, &families) }
 }
 
-/// Returns the families, the user's own before the built-in ones; errors of those that cannot be used are printed.
+/// Returns the encoder families, with the user's own before the built-in ones. Errors of unusable families are printed.
 pub(super) fn families(output: &Output) -> Result<Families> {
     let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
     let (families, broken) = read_families(&store);
@@ -50,8 +50,8 @@ pub(super) fn families(output: &Output) -> Result<Families> {
     Ok(families)
 }
 
-/// Returns whether it names a file: by a path, by its extension, or because there is one and no family of this name.
-/// Settings follow the first comma, in which `/` is a fraction.
+/// Returns whether the specification names a file: by a path, by its extension, or because the file exists and no
+/// family has that name. Settings follow the first comma and may contain `/` in fractions.
 fn is_file(spec: &str, families: &Families) -> bool {
     let key = spec.split(',').next().unwrap_or(spec);
     let is_path = key.contains('/') || key.contains(std::path::MAIN_SEPARATOR);
@@ -87,7 +87,7 @@ fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
     Ok(Chosen { title, profile, layout, times })
 }
 
-/// Returns how a frame written by hand differs from its family.
+/// Prints how a hand-written frame differs from its family.
 fn beside_family(output: &Output, family: &Family, profile: &SsiProfile) {
     let settings = family.settings_of(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {

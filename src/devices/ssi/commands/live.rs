@@ -57,7 +57,8 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     ended
 }
 
-/// Returns whether a finding is reported: passing a position that looks like an idle line is not, starting with one is.
+/// Returns whether to report a finding. A position that looks like an idle line is reported only in the first word,
+/// since a moving encoder may pass such a position.
 fn is_reported(finding: &FrameFinding, is_first: bool) -> bool {
     is_first || !matches!(finding, FrameFinding::StuckHigh { sure: false } | FrameFinding::StuckLow { sure: false })
 }
@@ -66,7 +67,7 @@ fn seconds(at: Time) -> String {
     format!("{:.3} s", at.seconds_since(Time::ORIGIN))
 }
 
-/// Columns: turns, steps and degrees of a shaft; steps and millimetres of a scale.
+/// Columns of a reading: turns, steps and degrees for a shaft, steps and millimetres for a scale.
 struct Columns {
     turns: Option<u64>,
     steps: Option<u64>,
@@ -163,7 +164,7 @@ pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Resul
     Ok(Done::Well)
 }
 
-/// Returns the finding as JSON, with the number of its clock if it has one.
+/// Converts a finding to JSON, with its clock number, if any.
 fn item(layout: &Layout, finding: &FrameFinding) -> Json {
     let clock = match finding {
         FrameFinding::Error { name, .. } => layout.descriptor().errors.iter().find(|bit| bit.name == *name),

@@ -24,7 +24,7 @@ use crate::devices::ssi::sim::{AtAdapter, Encoder};
 use crate::kinds::at_adapter;
 use crate::profile::Body;
 
-/// The commands for SSI encoders. They send their position and have no memory.
+/// Commands for SSI encoders, which only send their position and have no memory.
 pub(crate) struct SsiCommands;
 
 impl DeviceCommands for SsiCommands {
@@ -94,7 +94,7 @@ impl ProfileCommands for SsiCommands {
 /// How an encoder is configured.
 const SET: &str = "configure it with the manufacturer's tool";
 
-/// `ssi`: frames without an encoder.
+/// Command `ssi`, which works on frames without an encoder.
 struct SsiCommand;
 
 impl OwnCommand for SsiCommand {

@@ -31,7 +31,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     Ok(Done::Well)
 }
 
-/// Returns the document of a layout. It was read from no device, so it contains no time.
+/// Creates the document of a layout. The document contains no time, since the layout was not read from a device.
 pub(super) fn document(profile: SsiProfile) -> Document {
     Document { saved: None, ..Document::new(String::new(), Body::new(profile)) }
 }

@@ -15,11 +15,11 @@ use crate::devices::ssi::state::explain as words;
 use crate::result_of;
 use crate::worker::Session;
 
-/// A session with an adapter before an SSI encoder on its thread.
+/// Runner for a session with an adapter in front of an SSI encoder.
 pub(super) type Runner = runner::Runner<Ssi>;
 
 impl Runs for Ssi {
-    /// How words are read unless an option overrides it: as in the link.
+    /// Settings for reading words, taken from the link unless an option overrides them.
     type Context = Asking;
     const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 
@@ -32,8 +32,8 @@ impl Runs for Ssi {
     }
 }
 
-/// Opens the link and reads words as the layout requires; clock and pause are those of the link if given, else those of the
-/// profile. A violation of the encoder's times is a remark.
+/// Opens the link and configures it for the layout. Clock and pause come from the link if specified, otherwise from the
+/// profile; violations of the encoder's timing are printed as remarks.
 pub(super) fn begin(common: &Common, output: &Output, chosen: &Chosen) -> Result<Runner> {
     let mut runner = Runner::open(common)?;
     let names = |name: &str| common.link.as_ref().is_some_and(|url| url.query.get(name).is_some());

@@ -10,11 +10,11 @@ use crate::devices::ssi::protocol::{FrameTextError, Layout, parse_frame};
 use crate::devices::ssi::state::{Frames, Origin, TEXTS, frames_of, read_frames};
 use crate::store::MAX_TEXT;
 
-/// Standard input in place of a file or a frame.
+/// Argument that selects standard input instead of a file or a frame.
 const INPUT: &str = "-";
 
-/// Frames of a file, or of standard input where it is `-`; those that are numbers have so many bits. Incomplete bursts are a
-/// remark.
+/// Reads frames from a file, or from standard input for `-`. Frames written as numbers have `clocks` bits; incomplete
+/// bursts cause a remark.
 pub(super) fn read(output: &Output, path: &Path, clocks: u8) -> Result<Frames> {
     let frames = if path == Path::new(INPUT) {
         frames_of(&input()?, "standard input".to_owned(), clocks)
@@ -39,7 +39,7 @@ fn input() -> Result<String> {
     Ok(text)
 }
 
-/// The frames that an argument names: one as it is written, `@FILE`, or `-`.
+/// Returns the frames that an argument specifies: a literal frame, `@FILE`, or `-` for standard input.
 pub(super) fn named(output: &Output, layout: &Layout, text: &str) -> Result<Vec<u64>> {
     let path = match text.strip_prefix('@') {
         Some(path) => path,

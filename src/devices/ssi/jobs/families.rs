@@ -4,8 +4,8 @@ use crate::devices::ssi::protocol::{Families, KIND};
 use crate::profile::Cause;
 use crate::store::{Store, StoreError, read_folder};
 
-/// Returns the built-in families of encoders, with the user's own replacing those with the same key, and the errors of
-/// those that cannot be used (a `FamilyError` each).
+/// Returns the encoder families, in which the user's own replace built-in ones with the same key, and a `FamilyError`
+/// for each unusable family.
 pub fn families(store: &Store) -> (Families, Vec<StoreError>) {
     let (files, unread) = read_folder(&store.device_folder(KIND), "ron");
     let (own, broken) = Families::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));

@@ -20,24 +20,24 @@ use crate::sim::Motor;
 use crate::store::Store;
 use crate::worker::{Device, EndedEarly, JobReport, Progress, Session, SessionContext, Watched};
 
-/// SSI encoder behind its adapter.
+/// SSI encoder connected through an adapter.
 pub struct Ssi {
     wire: Box<dyn ByteLink>,
     station: Station,
     motor: Option<Motor>,
-    /// Interval of the words in a stream, in microseconds, if it is shorter than single requests allow.
+    /// Interval of the words in a stream in microseconds, if too short for single requests.
     streamed_us: Option<u32>,
 }
 
-/// A job of an adapter in front of an SSI encoder.
+/// Job for an adapter in front of an SSI encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SsiJob {
-    /// Identifies the adapter; switches the encoder's supply on if requested, and configures how words are read.
+    /// Identifies the adapter, switches on the encoder's supply if requested, and configures how words are read.
     Hello,
-    /// Reads words this way from now on; a requested stream continues with it.
+    /// Changes how words are read from now on; a requested stream continues with the new settings.
     Set(Asking),
     Read,
-    /// Runs the device check, which also compares words with the layout.
+    /// Runs the device check, which also compares the words with the layout.
     Check(Box<Layout>),
 }
 
@@ -50,7 +50,7 @@ pub enum SsiOutput {
     Check(Vec<check::SsiStepResult>),
 }
 
-/// Step of a job: words are being read.
+/// Progress step of a job; the only step is reading words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JobStep;
 
@@ -63,7 +63,7 @@ impl EndedEarly for Error {
     }
 }
 
-/// Largest interval at which requested words are streamed.
+/// Longest interval at which words are streamed instead of requested singly.
 const STREAMED: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Ssi {
@@ -79,7 +79,7 @@ impl Ssi {
 }
 
 impl Session<Ssi> {
-    /// Creates a session on an open connection. With a motor the encoder is a virtual one in this process.
+    /// Creates a session on an open connection. If a motor is given, the encoder is a virtual one in this process.
     pub fn to_adapter(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -100,7 +100,7 @@ impl Session<Ssi> {
         &self.device.station
     }
 
-    /// Returns the motor of the shaft, if the encoder is in this process.
+    /// Returns the motor that turns the shaft, if the encoder runs in this process.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }
@@ -110,10 +110,10 @@ impl Device for Ssi {
     type Job = SsiJob;
     type Output = SsiOutput;
     type Error = JobError;
-    /// All messages are part of the words.
+    /// SSI encoders have no messages apart from their words.
     type DeviceMessage = Infallible;
     type Sample = Words;
-    /// There are no values other than words.
+    /// SSI encoders have no values to watch apart from their words.
     type Watch = Infallible;
     type JobStep = JobStep;
 

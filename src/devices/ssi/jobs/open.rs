@@ -20,8 +20,8 @@ pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to an SSI encoder: `bridge:` to the adapter before it, `sim:` to a virtual one, `replay:` to a recording of
-/// one.
+/// Opens a link to an SSI encoder: `bridge:` for an adapter in front of the encoder, `sim:` for a virtual one,
+/// `replay:` for a recording.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
@@ -37,7 +37,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     Ok(Session::to_adapter(wire, clock, station, store, motor))
 }
 
-/// Returns the line, and the virtual adapter, which counts for a link to it alone.
+/// Parses the line settings and the virtual adapter, which matters only for `sim:` links.
 fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Bridge | Scheme::Replay) {
         return Err(leads_elsewhere(url.scheme, "sim:, bridge:, replay:"));

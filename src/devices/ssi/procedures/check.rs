@@ -9,12 +9,12 @@ use crate::devices::ssi::protocol::{Flags, FrameFinding as Said, Layout, Meaning
 
 pub use crate::analysis::check::Verdict;
 
-/// Words that are taken.
+/// Number of words read for the check.
 pub const WORDS: u64 = 50;
 /// Maximum step between consecutive positions of a shaft at standstill, which may jitter by a step or two.
 const TREMBLES: u64 = 4;
 
-/// One line of the check.
+/// Result line of a device check.
 pub type SsiStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,11 +25,11 @@ pub enum CheckStep {
     Layout,
     /// Error bits and patterns.
     Errors,
-    /// The motion of the position from word to word.
+    /// Position changes from word to word.
     Motion,
 }
 
-/// One fact that the check found.
+/// Fact established by the device check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
     Adapter(String, String),
@@ -52,7 +52,7 @@ pub enum CheckFinding {
         taken: u64,
         different: usize,
     },
-    /// Finding about words, and the number of words with it.
+    /// Finding about the words, and the number of words affected.
     Said {
         finding: Said,
         count: u64,
@@ -60,21 +60,21 @@ pub enum CheckFinding {
     Fits,
     /// No error bit is active.
     Silent,
-    /// The shaft stands still: its position, and the jitter in steps.
+    /// The shaft stands still, with the given position and jitter.
     Stands {
-        /// The last position.
+        /// Last position read.
         position: u64,
         /// Steps between the lowest and the highest.
         steps: u64,
     },
-    /// The shaft turns: the maximum steps from one word to the next.
+    /// The shaft turns by at most the given number of steps from one word to the next.
     Turns {
         /// Distance in steps, in the shorter direction.
         most: u64,
     },
 }
 
-/// Reads words and checks them.
+/// Reads a series of words and checks them.
 ///
 /// # Errors
 /// No words arrive.
@@ -174,7 +174,7 @@ fn supply(identity: &Identity) -> SsiStepResult {
     SsiStepResult { step: CheckStep::Supply, verdict, findings: vec![finding] }
 }
 
-/// Evaluates the motion of the position from word to word, the shorter way round.
+/// Evaluates how the position changes from word to word, along the shorter way round.
 fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
     let all = u128::from(layout.coding().last()) + 1;
     let apart = |one: u64, other: u64| {

@@ -4,7 +4,7 @@ use crate::buses::bridge::procedures::{AdapterError, Failure};
 use crate::link::LinkError;
 use crate::link::line::LineError;
 
-/// Why no words arrive.
+/// Reason why no words arrive.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]

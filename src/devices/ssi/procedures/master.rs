@@ -26,14 +26,14 @@ pub struct Master<'a> {
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master for one job, with the whole time limit ahead.
+    /// Creates a master for one job, with its full time limit available.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }
     }
 
-    /// Identifies the adapter, switches the encoder's supply on if requested, and configures how words are read; known and
-    /// present settings are not repeated.
+    /// Identifies the adapter, switches on the encoder's supply if requested, and configures how words are read. Steps
+    /// that are already done are skipped.
     ///
     /// # Errors
     /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], a refusal, or errors of the
@@ -50,10 +50,10 @@ impl<'a> Master<'a> {
         Ok(Identity { hello, asking: self.station.asking, clock_hz, supply: self.station.supply })
     }
 
-    /// Sets how words are read.
+    /// Changes how words are read.
     ///
     /// # Errors
-    /// As [`hello`](Self::hello); words are then read as before.
+    /// As for [`hello`](Self::hello); the previous settings then stay in effect.
     pub fn set(&mut self, asking: Asking) -> Result<Identity, Error> {
         let before = std::mem::replace(&mut self.station.asking, asking);
         if before != asking {
@@ -65,7 +65,7 @@ impl<'a> Master<'a> {
     /// Reads a single word.
     ///
     /// # Errors
-    /// As [`hello`](Self::hello).
+    /// As for [`hello`](Self::hello).
     pub fn word(&mut self) -> Result<Words, Error> {
         match self.word_as_set() {
             // The adapter has lost its settings: it was reset. One more attempt, with new settings.
@@ -78,21 +78,21 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reads the next of many words that are requested one by one.
+    /// Reads the next word of a series of single requests.
     ///
     /// # Errors
-    /// As [`hello`](Self::hello).
+    /// As for [`hello`](Self::hello).
     pub fn next_word(&mut self) -> Result<Words, Error> {
         let word = self.word()?;
         Ok(Words { first: self.station.count(), ..word })
     }
 
-    /// Returns the next words of a stream with this interval in microseconds, or the shortest that the adapter supports;
-    /// starts the stream if necessary.
+    /// Returns the next words of a stream with the given interval in microseconds, or the shortest that the adapter
+    /// supports; starts the stream if necessary.
     ///
     /// # Errors
-    /// At the start as [`hello`](Self::hello); then errors of the adapter, or cancellation, after which the stream
-    /// continues.
+    /// When starting the stream, as for [`hello`](Self::hello); afterwards errors of the adapter, or cancellation,
+    /// after which the stream continues.
     pub fn words(&mut self, period_us: u32) -> Result<Words, Error> {
         let streamed = Streamed::Ssi { period_us };
         if self.station.flow.as_ref().is_none_or(|flow| flow.streamed() != streamed) {
@@ -117,10 +117,10 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Ends the running stream, even after cancellation. Requested words are counted from the start again.
+    /// Ends the running stream, even after cancellation, and restarts the count of single requests.
     ///
     /// # Errors
-    /// Errors of the adapter; ending is then tried again before the next request.
+    /// Errors of the adapter; the stream is then ended before the next request.
     pub fn end_words(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.asked = 0;
@@ -141,7 +141,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sets the encoder's supply for the end of a session.
+    /// Leaves the encoder's supply on or off at the end of a session, as configured.
     ///
     /// # Errors
     /// Errors of the adapter.
@@ -169,7 +169,8 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(Supply::POWER_UP)?)
     }
 
-    /// Configures how words are read if it differs from the present way; returns the actual clock in hertz.
+    /// Configures how words are read unless already configured, limiting the clock to `fastest`; returns the actual
+    /// clock in hertz.
     fn set_clocks(&mut self, fastest: u32) -> Result<u32, Error> {
         let asking = self.station.asking;
         if let Some((_, clock_hz)) = self.station.set.filter(|(own, _)| *own == asking) {
@@ -215,7 +216,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Repeats `once`, which may be done twice, until there is a reply.
+    /// Repeats `once`, which must tolerate being executed twice, until a reply arrives.
     fn repeated<T>(&mut self, mut once: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Error> {
         let longest = 2 * (REPEAT_AFTER + self.station.line.margin);
         let mut tries = 0;
@@ -247,7 +248,7 @@ impl<'a> Master<'a> {
         error
     }
 
-    /// Notes that a stream has failed and is over, at the adapter as well if that can be told.
+    /// Records that a stream has failed, and ends the adapter's side of the stream if possible.
     fn stream_failed(&mut self, error: Error) -> Error {
         if error != Error::Cancelled && self.end_words().is_err() {
             // Identifying the adapter again sends HELLO, which ends all streams.

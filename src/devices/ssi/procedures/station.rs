@@ -17,13 +17,13 @@ use crate::units::SupplyVoltage;
 parameters! {
     /// Parameters of the line and the encoder's supply in a link.
     pub struct LinkParameters: UrlError {
-        /// Additional delay allowed for a reply beyond the protocol's worst case; `None` for the default of the link.
+        /// Additional delay allowed for a reply beyond the protocol's worst case, or `None` for the link's default.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
         /// Clock in hertz.
         pub clock_hz: u32 = 400_000, "clock" => CLOCK;
-        /// Least pause between two words.
+        /// Minimum pause between two words in microseconds.
         pub pause_us: u16 = 200, "pause" => Whole(Quantity::Microseconds, 1..=u16::MAX);
-        /// Supply of the encoder by the adapter; `None` for none.
+        /// Encoder supply voltage to be provided by the adapter in millivolts, or `None` for no supply.
         pub millivolt: Option<u16> = None, "voltage" => Maybe(Millivolts(Supply::RANGE)), "connect.voltage" like "";
         pub after: SupplyAfter = SupplyAfter::AsFound, "leave-supply" => SupplyAfter::WORDS;
     }
@@ -31,68 +31,67 @@ parameters! {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Asking {
-    /// Bits of a word, 1…64.
+    /// Number of bits per word, 1…64.
     pub clocks: u8,
-    /// Clock in hertz; the adapter uses the nearest one that it supports.
+    /// Clock frequency in hertz; the adapter uses the nearest one that it supports.
     pub clock_hz: u32,
-    /// Minimum pause between two words in microseconds; longer than the encoder's monoflop time.
+    /// Minimum pause between two words in microseconds; must exceed the encoder's monoflop time.
     pub pause_us: u16,
 }
 
 impl Default for Asking {
-    /// Returns a word of 25 clocks, slow enough for 50 m of cable (SICK SSI description 2.7), with a pause after which
-    /// every family is ready.
+    /// Returns settings for 25-clock words that are slow enough for 50 m of cable (SICK SSI description 2.7), with a
+    /// pause after which every family is ready.
     fn default() -> Self {
         let LinkParameters { clock_hz, pause_us, .. } = LinkParameters::default();
         Asking { clocks: 25, clock_hz, pause_us }
     }
 }
 
-/// The adapter, and how it actually reads words.
+/// Identity of the adapter, with the settings actually used for reading words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     pub hello: Hello,
     pub asking: Asking,
-    /// The clock in hertz, as the adapter has set it.
+    /// Actual clock frequency in hertz, as set by the adapter.
     pub clock_hz: u32,
-    /// The encoder's supply, if the adapter switches it.
     pub supply: Option<Supply>,
 }
 
-/// The state of a session's adapter and how it reads words.
+/// State of a session's adapter, and the settings for reading words.
 #[derive(Clone, Debug)]
 pub struct Station {
     pub line: LineState,
     pub adapter: AdapterState,
     pub asking: Asking,
-    /// The encoder's supply, if the adapter is to switch it.
+    /// Encoder supply that the adapter should switch, if any.
     pub supply: Option<Supply>,
-    /// The adapter's setting and its actual clock; `None` before, and after a possible reset.
+    /// Settings sent to the adapter and the actual clock in hertz, or `None` if not configured yet or possibly reset.
     pub(super) set: Option<(Asking, u32)>,
     pub(super) flow: Option<Flow>,
-    /// The last word of the streams before.
+    /// Time of the last word from previous streams.
     pub(super) streamed_until: Option<Time>,
-    /// Number of words requested singly since they are read this way.
+    /// Number of single requests with the current settings.
     pub(super) asked: u64,
 }
 
-/// The encoder's supply as an adapter gives it.
+/// Encoder supply as provided by an adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Supply {
     /// Millivolts requested.
     pub millivolt: u16,
-    /// Millivolts and milliamperes measured when it was switched on; `None` before.
+    /// Millivolts and milliamperes measured at switch-on; `None` before that.
     pub measured: Option<(u16, u16)>,
 }
 
 impl Supply {
-    /// Time until words are valid (`U`: the manual does not specify it).
+    /// Power-up time before words are valid (`U`: not specified in the manual).
     pub(super) const POWER_UP: Duration = Duration::from_millis(500);
-    /// Millivolts for which SSI encoders are made: from 5 V minus a tenth to 30 V (SICK SSI description, TTK70).
+    /// Supply range of SSI encoders in millivolts: from 5 V less 10 % up to 30 V (SICK SSI description, TTK70).
     const RANGE: std::ops::RangeInclusive<u16> = 4_500..=30_000;
 
-    /// Returns the supply voltage with its limits. The encoder is not known: a tenth above the requested voltage is too
-    /// much (AFS60 at 5 V: 4.5 to 5.5 V).
+    /// Returns the supply voltage with its limits. Since the encoder is unknown, more than 10 % above the requested
+    /// voltage is too much (AFS60 at 5 V: 4.5 to 5.5 V).
     pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: millivolt + millivolt / 10 }
     }
@@ -113,10 +112,10 @@ impl Station {
         }
     }
 
-    /// Reads the parameters of a link. Those that do not concern the line are ignored.
+    /// Reads the link parameters, ignoring those that do not concern the line.
     ///
     /// # Errors
-    /// A value that cannot be used, with the allowed values.
+    /// A parameter value is invalid; the error lists the allowed values.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));
@@ -126,7 +125,7 @@ impl Station {
         Ok(station)
     }
 
-    /// Forgets the adapter: it is identified and configured again.
+    /// Discards what is known of the adapter, so that it is identified and configured again.
     pub(super) fn forget_adapter(&mut self) {
         self.adapter.forget();
         self.flow = None;
@@ -141,12 +140,12 @@ impl Station {
         }
     }
 
-    /// Makes the next requested word the first of many.
+    /// Restarts the count of single requests.
     pub(crate) fn count_anew(&mut self) {
         self.asked = 0;
     }
 
-    /// Returns the number of the next of many words that are asked for.
+    /// Returns the sequence number for the next single request, and increments the count.
     pub(super) fn count(&mut self) -> u64 {
         let number = self.asked;
         self.asked = number.wrapping_add(1);

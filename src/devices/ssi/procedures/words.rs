@@ -7,24 +7,25 @@ use crate::buses::bridge::procedures::Portion;
 use crate::buses::bridge::protocol::SsiData;
 use crate::units::Moment;
 
-/// Consecutive words at equal intervals, or a single requested one.
+/// Series of words at equal intervals, or a single requested word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Words {
-    /// Number of the first word since words are read this way, including missing ones.
+    /// Sequence number of the first word, counted since the settings last changed and including missing words.
     pub first: u64,
-    /// Time of the first word.
+    /// Time at which the first word was read.
     pub at: Moment,
-    /// Nanoseconds from one to the next; 0 for a single requested word.
+    /// Interval between words in nanoseconds, or 0 for a single requested word.
     pub period_ns: i64,
-    /// Words that are missing before the first.
+    /// Number of words missing before the first.
     pub lost: u64,
-    /// Bits of a word, 1…64.
+    /// Number of bits per word, 1…64.
     pub clocks: u8,
-    /// At least one word: the first bit received is the highest of the `clocks` bits, right-justified.
+    /// Received words, at least one. The first bit received is the highest of the `clocks` bits, which are
+    /// right-justified.
     pub words: Vec<u64>,
-    /// The clock in hertz, as the adapter has set it.
+    /// Actual clock frequency in hertz, as set by the adapter.
     pub clock_hz: u32,
-    /// The words cannot have the requested interval.
+    /// Whether the requested interval is shorter than the adapter can provide.
     pub is_limited: bool,
 }
 
@@ -42,7 +43,7 @@ impl Words {
         }
     }
 
-    /// Returns the words of a packet, requested at this interval.
+    /// Returns the words of a packet that was requested at the interval `wished_us`.
     pub(super) fn run(portion: &Portion, data: &SsiData, asking: Asking, clock_hz: u32, wished_us: u32) -> Self {
         let Portion { first, time, period_ns, lost, .. } = *portion;
         Words {
@@ -58,7 +59,7 @@ impl Words {
         }
     }
 
-    /// Returns whether nothing came before these words since recording began.
+    /// Returns whether the series begins with the very first word since recording began.
     pub const fn is_stream_start(&self) -> bool {
         self.first == self.lost
     }
@@ -67,7 +68,7 @@ impl Words {
         self.period_ns > 0
     }
 
-    /// Returns each word with the moment in which it was taken.
+    /// Iterates over the words, each with the time at which it was read.
     pub fn timed(&self) -> impl Iterator<Item = (Moment, u64)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.words).map(move |(number, word)| (self.at + period * number, *word))

@@ -4,7 +4,7 @@ use super::SsiProfile;
 use crate::devices::ssi::protocol::{Range, Word};
 use crate::profile::{Comparison, Difference};
 
-/// Compares frame, direction, preset and the reading settings. Omitted entries of a file count with their default values.
+/// Compares frame, direction, preset and reading settings. Entries missing from a file count with their default values.
 pub(super) fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
     let (left, right) = (items(left), items(right));
     let mut comparison = Comparison::default();
@@ -25,7 +25,7 @@ pub(super) fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
     comparison
 }
 
-/// Returns everything that is compared, by name, in the order of the file.
+/// Returns all compared entries as name and value, in file order.
 fn items(profile: &SsiProfile) -> Vec<(String, String)> {
     let frame = &profile.descriptor;
     let mut items: Vec<(String, String)> = Vec::new();

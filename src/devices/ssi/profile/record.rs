@@ -44,13 +44,13 @@ pub struct UnknownEntries {
     pub(super) reading: Unknown,
     pub(super) parity: Unknown,
     pub(super) repeat: Unknown,
-    /// By the name of the error bit, to stay with it.
+    /// Unknown entries keyed by error bit name, so that reordering the bits does not mix them up.
     pub(super) errors: Vec<(String, Unknown)>,
     pub(super) patterns: Vec<(String, Unknown)>,
 }
 
 impl Default for ReadingSettings {
-    /// Returns a clock for 50 m of cable (SICK SSI description 2.7), and a pause after which every family is ready,
+    /// Returns the clock rate for 50 m of cable (SICK SSI description 2.7), and a pause that suits every family,
     /// including an ATM60 with any number of steps (more than 200 µs, reference section 5).
     fn default() -> Self {
         ReadingSettings { clock_hz: 400_000, pause_us: 250, cable_metres: None, synchronous: false }

@@ -19,7 +19,7 @@ const FLAG: Expected = Expected::words(&["true", "false"]);
 const CLOCK_HZ: Expected = Expected::between(1000, 20_000_000);
 const PAUSE_US: Expected = Expected::between(1, 65_535);
 const METRES: Expected = Expected::between(0, 65_535);
-/// The word for a frame of ones alone.
+/// Keyword for a frame that consists only of ones.
 const ONES: &str = "ones";
 
 impl Profile for SsiProfile {
@@ -200,7 +200,7 @@ fn of_name(kept: &mut VecDeque<&(String, Unknown)>, name: &str) -> Unknown {
     at.and_then(|at| kept.remove(at)).map(|(_, unknown)| unknown.clone()).unwrap_or_default()
 }
 
-/// Returns the clocks of the position without zeros after it.
+/// Returns the number of clocks the position takes without trailing zeros.
 fn usual_area(frame: &Descriptor) -> u8 {
     let coding = frame.range.last().ok().and_then(|last| Coding::new(frame.code, last).ok());
     let bits = coding.map_or(0, |coding| coding.bits());
@@ -250,7 +250,8 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Desc
     Ok(frame)
 }
 
-/// Reads the range of positions: bits of turns and steps, any number of them, or a length; one of the three.
+/// Parses the position range, given as turn and step bits, as a number of steps, or as a length. Exactly one of the
+/// three is allowed.
 fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
     let multiturn: Option<u8> = entries.optional("multiturn", SMALL)?;
     let singleturn: Option<u8> = entries.optional("singleturn", SMALL)?;
@@ -348,7 +349,7 @@ fn read_reading(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Re
     Ok(ReadingSettings { clock_hz, pause_us, cable_metres, synchronous })
 }
 
-/// Returns a text that is one of some words.
+/// Parses an entry whose value must be one of a fixed set of keywords.
 fn word<T: FromStr<Err = Expected>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
     let path = entries.path_of(name);
     let Some(word) = entries.optional::<String>(name, Expected::Text)? else { return Ok(None) };

@@ -52,7 +52,7 @@ pub struct Coding {
     code: Code,
     last: u64,
     bits: u8,
-    /// Gray excess: the number whose Gray code means position 0.
+    /// Gray excess offset: the number whose Gray code represents position 0.
     offset: u64,
 }
 
@@ -124,13 +124,13 @@ impl Coding {
     }
 }
 
-/// Returns the number of bits that a number needs, at least one.
+/// Returns the number of bits needed to represent `number`, at least one.
 pub(super) const fn bits_of(number: u64) -> u8 {
     let bits = 64 - number.leading_zeros();
     if bits == 0 { 1 } else { bits as u8 }
 }
 
-/// Returns this many ones, 0…64, right-justified.
+/// Returns a mask of 0 to 64 ones, right-justified.
 pub(super) const fn ones(bits: u8) -> u64 {
     if bits >= 64 { u64::MAX } else { (1 << bits) - 1 }
 }

@@ -44,14 +44,15 @@ pub enum NoBursts {
     },
 }
 
-/// tm, the least: as long at one level, and the encoder takes the burst for ended.
+/// Minimum monoflop time tm in seconds. The encoder considers a burst finished once the clock has stayed at one level
+/// for this long.
 const LEAST_MONOFLOP: f64 = 15e-6;
-/// A pause is at least so many halves of a period, where the clock is slow.
+/// Minimum pause for a slow clock, in half periods.
 const HALVES: f64 = 3.0;
-/// The last bit is looked at after this part of half a period: behind it the line falls.
+/// Sampling point of the last bit, as a fraction of a half period; the line falls after the full half period.
 const SETTLED: f64 = 0.9;
 
-/// An edge of the clock, by its place in the recording.
+/// A clock edge and its position in the recording.
 #[derive(Clone, Copy)]
 struct Edge {
     at: f64,
@@ -91,7 +92,7 @@ fn edges(levels: &[Levels]) -> Vec<Edge> {
     changes.collect()
 }
 
-/// The level at which the clock stays for longest in all; `None`: it never rests.
+/// Returns whether the clock rests high, judged by the level it holds longest overall; `None` if it never rests.
 fn rests_high(levels: &[Levels], edges: &[Edge], pause: f64) -> Option<bool> {
     let (first, last) = (levels.first()?, levels.last()?);
     let begins = std::iter::once((first.at, first.clock)).chain(edges.iter().map(|edge| (edge.at, edge.rises)));
@@ -113,7 +114,7 @@ fn usual(numbers: impl Iterator<Item = usize>) -> Option<usize> {
     runs.max_by_key(|run| run.len()).and_then(|run| run.first().copied())
 }
 
-/// The bits of a burst that is whole.
+/// Returns the bits of a complete burst.
 fn frame(levels: &[Levels], run: &[Edge], half: f64) -> u64 {
     let sampled = run.chunks(2).skip(1).filter_map(|clock| levels.get(clock.first()?.row - 1));
     let bits = sampled.fold(0, |bits, before| bits << 1 | u64::from(before.data));

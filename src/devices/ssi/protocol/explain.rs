@@ -171,7 +171,7 @@ impl Layout {
         !reading.flags.any(self.invalid()) && !stuck
     }
 
-    /// Returns whether a healthy encoder does not send this.
+    /// Returns whether the reading carries a flag that a healthy encoder never causes.
     fn is_no_position(&self, reading: FrameReading) -> bool {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let errors = (0..self.descriptor().errors.len()).fold(form, |all, index| all.with(Flags::error(index)));

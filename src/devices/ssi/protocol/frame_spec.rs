@@ -7,7 +7,7 @@ use super::range::{Fraction, Range};
 use super::spec::{Setting, SpecError};
 use crate::expected::Expected;
 
-/// First word of a frame in one word.
+/// Keyword that starts a frame specification.
 const KEY: &str = "frame";
 
 const NAMES: &[&str] = &[
@@ -35,7 +35,7 @@ const NAMES: &[&str] = &[
 
 /// Name of an unexplained bit.
 const UNKNOWN: &str = "BIT";
-/// Lists of clocks with the names of their bits, and whether they are active at 0.
+/// Keys of the bit lists, each with the name of its bits and whether they are active at 0.
 const LISTS: [(&str, &str, bool); 3] = [("ones", "HIGH", true), ("err", "ERROR", false), ("unknown", UNKNOWN, false)];
 
 impl Descriptor {

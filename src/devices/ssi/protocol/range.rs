@@ -201,8 +201,8 @@ impl Range {
         u64::try_from(position % (u128::from(last) + 1)).unwrap_or(last)
     }
 
-    /// Returns the count from 0 at the shaft's zero. Both directions count alike, so that each position lasts equally long
-    /// in either.
+    /// Returns the count from 0 at the shaft's zero. Counting is symmetric, so that each position is equally wide in
+    /// both directions.
     fn counted(&self, raw: u64, per_turn: u64, direction: Direction) -> u64 {
         let (turned, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
         let last = self.last().unwrap_or(0);

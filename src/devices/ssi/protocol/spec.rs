@@ -36,7 +36,6 @@ pub enum SpecError {
     Twice(String),
 }
 
-/// One `name=value`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting<'t> {
     pub(super) name: &'t str,
@@ -45,7 +44,7 @@ pub(super) struct Setting<'t> {
 }
 
 impl<'t> Setting<'t> {
-    /// Parses words of `name=value`; empty ones are ignored.
+    /// Parses `name=value` pairs, ignoring empty items.
     ///
     /// # Errors
     /// [`SpecError::Form`], [`SpecError::Twice`].
@@ -81,7 +80,7 @@ impl<'t> Setting<'t> {
         }
     }
 
-    /// Returns the error for a value that is not allowed.
+    /// Returns the error for a value outside the allowed set.
     pub(super) fn wrong(self, expected: Expected) -> SpecError {
         SpecError::Value { name: self.name.to_owned(), expected, value: self.value.to_owned() }
     }

@@ -9,7 +9,7 @@ use crate::analysis::Time;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
     noted: Vec<Noted>,
-    /// The flags of the previous frame, and their indices in `noted`.
+    /// Flags of the previous frame, and their indices in `noted`.
     before: (Flags, Vec<usize>),
 }
 
@@ -83,7 +83,7 @@ impl Tally {
     }
 }
 
-/// Returns whether the next frame may have the finding again although it ended in between.
+/// Returns whether a finding lasts for one transfer only, so that its return in the next frame is not a new finding.
 fn is_of_one_transfer(finding: &FrameFinding) -> bool {
     matches!(
         finding,

@@ -8,19 +8,19 @@ use crate::parameter::{ANY, Checked, Maybe, Parameters, Refused};
 use crate::parameters;
 use crate::sim::ConfigError;
 
-/// The default SSI frame: 12 bits of turns, 13 within one.
+/// Default SSI frame, with 12 turn bits and 13 step bits.
 pub const DELIVERED: &str = "atm60,code=gray";
 
 parameters! {
-    /// SSI encoder on the shaft at an adapter, and its injected faults.
+    /// Settings of an SSI encoder on the shaft at an adapter, and its injected faults.
     pub struct Settings: ConfigError {
-        /// Family and settings of the encoder; a host with another number of clocks gets a truncated frame, or zeros after
-        /// it.
+        /// Family and settings of the encoder. A host that clocks a different number of bits receives a truncated
+        /// frame, or zeros after the frame.
         encoder: Option<Encoder> = None,
             "ssi" => Maybe(Checked(Expected::Family, Encoder::named)),
             "connect.ssi_layout" like "atm60,code=gray";
-        /// Active error bits of its frame and words that it sends instead (`ERRSYNC:0.5,ERRSI:4`, `safety-fault`), each
-        /// with the interval in seconds.
+        /// Active error bits, and words sent instead of the frame (`ERRSYNC:0.5,ERRSI:4`, `safety-fault`), each with
+        /// its interval in seconds.
         troubles: String = String::new(), "ssi-error" => ANY;
     }
 }
@@ -28,15 +28,15 @@ parameters! {
 /// An SSI encoder on the shaft at an adapter.
 #[derive(Clone, Debug)]
 pub struct AtAdapter {
-    /// Used if the settings name none; `None` for the factory settings.
+    /// Encoder to use if the settings name none, or `None` for the factory settings.
     encoder: Option<Encoder>,
 }
 
 impl AtAdapter {
-    /// Encoder as delivered, if the settings name no other.
+    /// Encoder with factory settings, used if the settings name no other.
     pub const DELIVERED: AtAdapter = AtAdapter { encoder: None };
 
-    /// Creates this encoder, if the settings name no other.
+    /// Creates an adapter that uses the given encoder unless the settings name another.
     pub const fn sending(encoder: Encoder) -> Self {
         AtAdapter { encoder: Some(encoder) }
     }

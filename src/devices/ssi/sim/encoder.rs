@@ -9,12 +9,12 @@ use crate::units::Moment;
 pub struct Encoder {
     pub layout: Layout,
     pub direction: Direction,
-    /// Its position at the shaft's zero, within the frame's range.
+    /// Position at the shaft's zero, within the frame's range.
     pub preset: u64,
 }
 
 impl Encoder {
-    /// Returns the encoder of a family with its settings, such as `atm60,code=gray`; `None` if there is none.
+    /// Returns the encoder for a family and settings such as `atm60,code=gray`, or `None` if the family is unknown.
     pub(super) fn named(text: &str) -> Option<Self> {
         let (key, settings) = Settings::parse(text).ok()?;
         let families = Families::built_in();
@@ -23,12 +23,10 @@ impl Encoder {
     }
 }
 
-/// Encoder being read, with its faults.
 #[derive(Clone)]
 pub(super) struct Sending {
     pub(super) encoder: Encoder,
     pub(super) troubles: Vec<InjectedFault>,
-    /// The last word.
     pub(super) transferred: Option<Moment>,
 }
 

@@ -6,23 +6,22 @@ use std::time::Duration;
 use crate::devices::ssi::protocol::{Flags, Layout, Word};
 use crate::units::Moment;
 
-/// Error bit or word that reports a fault, and its times.
+/// Error bit or word that reports a fault, and its timing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct InjectedFault {
     shows: FaultIndication,
-    /// Interval of the fault; `None`: it is present from the start.
+    /// Interval of the fault, or `None` if the fault is present from the start.
     period: Option<Duration>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FaultIndication {
-    /// This error bit.
     Bit {
         index: usize,
-        /// It reports what happened since the previous transfer.
+        /// Whether the bit reports events since the previous transfer and is cleared by a transfer.
         cleared: bool,
     },
-    /// This word, right-justified.
+    /// A word sent instead of the frame, right-justified.
     Word(u64),
 }
 
@@ -30,8 +29,8 @@ impl InjectedFault {
     const LEAST_PERIOD: f64 = 1e-6;
     const MOST_PERIOD: f64 = 86_400.0;
 
-    /// Parses `ERRSYNC:0.5,ERRSI`; `None` if it is invalid. A name is that of a bit or a pattern of the layout, in upper or
-    /// lower case, with hyphens for spaces.
+    /// Parses faults such as `ERRSYNC:0.5,ERRSI`; returns `None` if the string is invalid. A name refers to an error
+    /// bit or a pattern of the layout, in upper or lower case, with hyphens for spaces.
     pub(super) fn read(text: &str, layout: &Layout) -> Option<Vec<Self>> {
         let items = text.split(',').map(str::trim).filter(|item| !item.is_empty());
         items
@@ -51,8 +50,9 @@ impl InjectedFault {
         bits.chain(descriptor.patterns.iter().map(|pattern| &pattern.name)).map(|name| name.replace(' ', "-")).collect()
     }
 
-    /// Returns whether the fault shows in a transfer, given the time of the previous one. A fault that a transfer clears
-    /// covers the time between the two; an intermittent one is present in the second half of its period.
+    /// Returns whether the fault shows in a transfer, given the time of the previous transfer. A fault cleared by
+    /// transfers covers the interval since the previous one; an intermittent fault is present in the second half of its
+    /// period.
     pub(super) fn happens(&self, at: Moment, before: Option<Moment>) -> bool {
         let Some(period) = self.period else {
             return before.is_none() || !matches!(self.shows, FaultIndication::Bit { cleared: true, .. });
@@ -65,7 +65,6 @@ impl InjectedFault {
         }
     }
 
-    /// Returns the word that is sent instead of the frame.
     pub(super) const fn word(&self) -> Option<u64> {
         match self.shows {
             FaultIndication::Word(word) => Some(word),

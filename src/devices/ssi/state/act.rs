@@ -120,7 +120,7 @@ impl Encoder {
         }
     }
 
-    /// Returns a name for a file with this ending.
+    /// Returns a suggested file name with the given extension.
     pub(super) fn suggested(&self, ending: &str) -> PathBuf {
         match &self.session.source {
             Source::File { path, .. } if ending == "ron" => path.clone(),
@@ -133,7 +133,6 @@ impl Encoder {
         }
     }
 
-    /// Searches for the layout of the words read last.
     fn find_live(&mut self, services: &mut Services) {
         let clocks = self.clocks();
         let frames = self.record.words(clocks);
@@ -151,7 +150,7 @@ impl Encoder {
         self.find(services, move || read_frames(&path, clocks));
     }
 
-    /// Searches on a thread: some thousand layouts are tried.
+    /// Searches on a background thread, since several thousand layouts are tried.
     fn find(&mut self, services: &mut Services, frames: impl FnOnce() -> Result<Frames, Text> + Send + 'static) {
         self.searches = self.searches.wrapping_add(1);
         let number = self.searches;
@@ -168,7 +167,6 @@ impl Encoder {
         });
     }
 
-    /// Takes a layout that was found as the layout that is being designed.
     fn take_found(&mut self, class: usize, member: usize) {
         let SearchState::Found { search, .. } = &self.hunt else { return };
         let Some(proposal) = search.classes.get(class).and_then(|class| class.members.get(member)) else { return };

@@ -12,32 +12,26 @@ use crate::app::{DeviceAction, Language};
 pub enum SsiAction {
     Check,
     Edit(Box<Edit>),
-    /// Enter a value into a row of its form.
     Enter(Field, Input),
-    /// Move a part of its frame to a clock, or as near to it as possible.
+    /// Moves a part of the frame to a clock, or as close to it as possible.
     Move(Handle, u8),
     /// Add an error bit.
     AddErrorBit,
-    /// Remove the error bit of this number.
     RemoveErrorBit(usize),
     Try(Try),
-    /// Set the clocks of the words during a search; `None`: those of the layout.
+    /// Sets the number of clocks per word during a search; `None` restores that of the layout.
     SetClocks(Option<u8>),
-    /// Search for the layout of the words read last.
     Find,
-    /// Ask for a file with frames, to search for their layout.
+    /// Asks for a file with frames whose layout is to be found.
     AskFrames,
     /// Search for the layout of the frames in a file.
     FindIn(PathBuf),
     /// Discard the result of the search.
     ForgetSearch,
-    /// Take a layout from the result: the number of its class, and its place in that.
+    /// Adopts a layout from the search result, given the index of its class and its index within that class.
     Take(usize, usize),
-    /// Forget the error bits reported so far.
     ForgetErrors,
-    /// Ask where to write the layout for other programs, in this language.
     AskExport(Format, Language),
-    /// Write the layout for other programs, in this language.
     Export(Format, Language, PathBuf),
     AskSaveFrames,
     SaveFrames(PathBuf),
@@ -50,13 +44,12 @@ pub enum SsiAction {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Try {
     Position(u64),
-    /// The frame of a turn and the steps within it.
+    /// Frame for a turn and a step within that turn.
     Place(u64, u64),
-    /// Frame as text.
     Bits(String),
-    /// The other value for the bit on this clock, counted from 1.
+    /// Inverts the bit at the given clock, counted from 1.
     Toggle(u8),
-    /// The word that was read last, again and again.
+    /// Follows the most recently read word.
     Live,
 }
 

@@ -24,12 +24,12 @@ pub enum SsiLinkKind {
     Replay,
 }
 
-/// Entries of the connection form. Entries of another kind of connection are kept and left out of the link. An empty entry
-/// means the default.
+/// Entries of the connection form. Entries for another type of connection are kept but left out of the link. An empty
+/// entry means the default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SsiForm {
     pub kind: SsiLinkKind,
-    /// Over a network, and not a serial port of this machine.
+    /// Whether to connect over a network instead of a serial port of this machine.
     pub network: bool,
     pub port: String,
     pub host: String,
@@ -37,7 +37,7 @@ pub struct SsiForm {
     pub file: String,
     /// The adapter leaves the encoder's supply on at the end.
     pub leave_supply: bool,
-    /// Text of other parameters.
+    /// Text typed for the remaining parameters.
     pub typed: Typed,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
@@ -87,23 +87,23 @@ impl FormModel for SsiForm {
 }
 
 impl SsiForm {
-    /// Returns the parameters to enter: those of the virtual encoder, if it is one, and those of the link.
+    /// Returns the parameters to enter: those of the link, and those of the virtual encoder if one is selected.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == SsiLinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Returns the entries of the virtual encoder and its adapter.
+    /// Returns the entries for the virtual encoder and its adapter.
     pub fn of_the_virtual() -> Vec<Entry> {
         [Settings::entries(), bridge::entries()].concat()
     }
 
-    /// Returns the entry of the encoder's supply, and the others.
+    /// Returns the entry for the encoder supply, and the remaining link entries.
     pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "voltage")
     }
 
-    /// Fills in the entry of a parameter; returns false if there is none.
+    /// Fills in the entry of a parameter. Returns `false` if the parameter has no entry.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if name == SupplyAfter::LEFT_ON.0 {
             self.leave_supply = value == SupplyAfter::LEFT_ON.1;

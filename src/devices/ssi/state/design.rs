@@ -17,7 +17,6 @@ use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 use crate::link::{LinkUrl, Scheme};
 
-/// A layout to begin with.
 const TO_BEGIN_WITH: &str = "ahm36";
 
 /// A layout that can work.
@@ -25,8 +24,8 @@ const TO_BEGIN_WITH: &str = "ahm36";
 pub struct Design {
     pub profile: SsiProfile,
     pub layout: Layout,
-    /// The settings with which its family sends exactly this frame; `None`: it belongs to no family, or the family cannot
-    /// send it.
+    /// Settings with which the family sends exactly this frame, or `None` if the layout has no family or its family
+    /// cannot send the frame.
     pub settings: Option<Settings>,
     /// Accepted settings that the family's manual does not mention.
     pub advice: Vec<Advice>,
@@ -35,14 +34,14 @@ pub struct Design {
 /// A change of a layout.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
-    /// Take a family's layout as delivered, by its key.
+    /// Switches to a family's factory layout, given the family key.
     Family(String),
-    /// Leave the family: the frame stays, and everything about it can be set.
+    /// Leaves the family. The frame stays, and every part of it becomes editable.
     Free,
-    /// The family with other settings.
+    /// Changes the family settings.
     Settings(Box<Settings>),
     Frame(Box<Descriptor>),
-    /// Set other positions or another code; the frame grows and shrinks with them.
+    /// Changes the positions or the code; the frame grows or shrinks accordingly.
     Position(Range, Code),
     Direction(Direction),
     /// The position at the shaft's zero.
@@ -64,11 +63,11 @@ pub struct Designer {
 }
 
 impl Design {
-    /// Creates the design of a layout with its family. Of several settings with the same frame, the `requested` ones are
-    /// taken, else the fewest.
+    /// Creates the design of a layout with its family. If several settings produce the frame, the `requested` ones are
+    /// preferred, otherwise the fewest.
     ///
     /// # Errors
-    /// Why the layout is impossible.
+    /// The reason why the layout is impossible.
     fn of(profile: SsiProfile, families: &Families, requested: Option<&Settings>) -> Result<Self, Text> {
         let layout = Layout::new(profile.descriptor.clone()).map_err(|error| words::layout(&error))?;
         let family = profile.family.as_deref().and_then(|key| families.named(key));
@@ -95,7 +94,7 @@ impl Default for Design {
 }
 
 impl Designer {
-    /// Creates the design of a saved layout. An impossible one, which no file contains, is left out.
+    /// Creates the design of a saved layout. An impossible layout, which no file contains, is replaced by the default.
     fn with(profile: SsiProfile, families: Arc<Families>) -> Self {
         let now = Design::of(profile, &families, None).unwrap_or_default();
         let saved = now.profile.clone();
@@ -108,7 +107,7 @@ impl Designer {
         Designer::with(profile, families)
     }
 
-    /// Creates it with the layout that a virtual encoder sends; the layout of any other is not known.
+    /// Creates the design for a link. The layout is known only if the link leads to a virtual encoder.
     pub(super) fn at_link(url: &LinkUrl, families: Arc<Families>) -> Self {
         let sent = url.query.get("ssi").filter(|_| url.scheme == Scheme::Sim);
         let mut profile = of_text(sent.unwrap_or(DELIVERED), &families);
@@ -116,13 +115,13 @@ impl Designer {
         Designer::with(profile, families)
     }
 
-    /// Returns how frames are read over another link to the same encoder: parameters that differ in the link apply, and
-    /// those set here stay.
+    /// Returns the reading settings for a new link to the same encoder. Parameters that differ between the links are
+    /// taken from the new one; settings made by the user stay.
     pub(super) fn reading_over(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
         read_over(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }
 
-    /// Returns the frame that a virtual encoder at this link sends.
+    /// Returns the frame that the virtual encoder at the given link sends.
     pub(super) fn sent_by(&self, url: &LinkUrl) -> Descriptor {
         of_text(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
     }
@@ -147,12 +146,13 @@ impl Designer {
         self.families.named(self.now.profile.family.as_deref()?)
     }
 
-    /// Returns the times of the family; `None` without one.
+    /// Returns the family's timing, or `None` without a family.
     pub fn times(&self) -> Option<&Times> {
         self.family().map(|family| &family.times)
     }
 
-    /// Returns whether error and parity bits move with the position's end: by the setting of the family, else by the frame.
+    /// Returns whether error and parity bits move with the end of the position, as determined by the family settings or
+    /// else by the frame.
     pub fn errors_follow(&self) -> bool {
         let settings = self.family().zip(self.now.settings.as_ref());
         match settings.and_then(|(family, settings)| settings.resolve(family).ok()) {
@@ -161,7 +161,6 @@ impl Designer {
         }
     }
 
-    /// Returns why the last change was refused.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -170,7 +169,6 @@ impl Designer {
         &self.saved
     }
 
-    /// Takes other families, and checks the layout against them again.
     pub(super) fn take_families(&mut self, families: Arc<Families>) {
         self.families = families;
         if let Ok(design) = Design::of(self.now.profile.clone(), &self.families, self.now.settings.as_ref()) {
@@ -178,7 +176,7 @@ impl Designer {
         }
     }
 
-    /// Changes the layout, as one step that can be undone. Returns false if nothing changed.
+    /// Changes the layout as a single undo step. Returns `false` if nothing changed.
     pub(super) fn edit(&mut self, edit: Edit) -> bool {
         let requested = match &edit {
             Edit::Settings(settings) => Some((**settings).clone()),
@@ -260,7 +258,7 @@ impl Designer {
         true
     }
 
-    /// Takes the profile as saved; undo steps stay.
+    /// Marks the profile as saved. Undo steps are kept.
     pub(super) fn saved_as(&mut self, profile: SsiProfile) {
         self.saved = profile;
     }
@@ -300,7 +298,7 @@ impl PendingEdits for Designer {
     }
 }
 
-/// Returns how frames are read over a link, from those of its parameters that apply.
+/// Returns the reading settings for a link, with the link's parameters applied.
 fn read_over(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> bool) -> ReadingSettings {
     let number = |name: &str| url.query.get(name).filter(|_| counts(name)).and_then(|text| text.parse::<u32>().ok());
     let pause_us = number("pause").and_then(|pause| u16::try_from(pause).ok());
@@ -311,7 +309,7 @@ fn read_over(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> b
     }
 }
 
-/// Returns the layout of a text; a minimal one if the text is none.
+/// Parses a layout, falling back to a minimal one if the string is invalid.
 fn of_text(text: &str, families: &Families) -> SsiProfile {
     let resolved = Settings::parse(text).ok().and_then(|(key, settings)| {
         let family = families.named(&key)?;
@@ -320,7 +318,7 @@ fn of_text(text: &str, families: &Families) -> SsiProfile {
     resolved.unwrap_or_else(|| Design::default().profile)
 }
 
-/// Returns the frame of a family with these settings. Direction and preset are the profile's own.
+/// Returns the profile with the frame that a family sends with the given settings. Direction and preset are kept.
 fn resolved(mut profile: SsiProfile, family: &Family, settings: Settings) -> Result<SsiProfile, Text> {
     let settings = Settings { direction: Some(profile.direction), preset: Some(profile.preset), ..settings };
     let resolved = settings.resolve(family).map_err(|error| words::settings(&error))?;

@@ -11,8 +11,8 @@ use crate::devices::ssi::state::TEXTS;
 use crate::profile::{Body, Change, Document, Profile};
 use crate::store::DeviceKey;
 
-/// The changes, one per entry; empty if the layout is as saved. Earlier versions stored the whole layout, as the text of a
-/// profile.
+/// Changes to the layout, one per entry; empty if the layout is as saved. Earlier versions stored the whole layout as
+/// profile text.
 pub(crate) type Drafts = Vec<String>;
 
 impl HasSession for Encoder {
@@ -28,13 +28,13 @@ impl HasSession for Encoder {
 }
 
 impl Drafted for Encoder {
-    /// An SSI encoder does not report its identity.
+    /// Returns `None`, because an SSI encoder does not report its identity.
     fn key(&self) -> Option<DeviceKey> {
         None
     }
 
-    /// SSI encoders do not report their identity: a layout belongs to the link at which it was used; a virtual encoder is
-    /// described by its link.
+    /// Returns `None`. SSI encoders do not report their identity, so a layout belongs to the link on which it was used;
+    /// a virtual encoder is described by its link.
     fn type_and_serial(&self) -> Option<(String, String)> {
         let Source::Link(url) = &self.session.source else { return None };
         let wire = if self.session.is_virtual() {

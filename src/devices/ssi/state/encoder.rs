@@ -17,23 +17,22 @@ use crate::devices::ssi::protocol::{Families, Layout, Reads, Times, Timing};
 use crate::link::LinkUrl;
 use crate::sim::Motor;
 
-/// An SSI encoder, or a layout of one.
+/// A session with an SSI encoder, or with a layout only.
 pub struct Encoder {
     pub session: Session<Ssi>,
     pub designer: Designer,
     pub trial: Trial,
-    /// Set if the trial frame follows the word read last.
+    /// Whether the trial frame follows the most recently read word.
     pub(super) follows: bool,
     pub record: Record,
     pub hunt: SearchState,
     pub(super) searches: u32,
-    /// The adapter and its settings for reading words, once known.
+    /// Adapter identity and its settings for reading words, once known.
     pub identity: Option<Identity>,
-    /// The last device check.
     pub check: Option<Vec<CheckLine>>,
     pub motor: Option<Motor>,
     pub(super) clocks: Option<u8>,
-    /// The settings last sent to the adapter for reading words.
+    /// Reading settings last sent to the adapter, if any.
     pub(super) requested: Option<Asking>,
 }
 
@@ -62,33 +61,33 @@ impl Encoder {
         self.designer.design()
     }
 
-    /// Returns the displayed frame: the word read last if this is selected and there is one, else the trial frame.
+    /// Returns the displayed frame: the last word read if following is selected and a word is available, otherwise the
+    /// trial frame.
     pub fn displayed_frame(&self) -> Decoded {
         let live = || self.record.last().and_then(|seen| seen.decoded.clone());
         self.is_following().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
     }
 
-    /// Returns whether the word that was read last is shown.
+    /// Returns whether the last word read is displayed.
     pub fn is_following(&self) -> bool {
         self.follows && self.record.last().is_some_and(|seen| seen.decoded.is_some())
     }
 
-    /// Returns the word read last; `None` if there is none.
     pub fn last(&self) -> Option<&ReadWord> {
         self.record.last()
     }
 
-    /// Returns what an adapter streams now; `None` if it does not.
+    /// Returns the adapter's current stream, or `None` if it is not streaming.
     pub fn streamed(&self) -> Option<&Streamed> {
         self.record.streamed().filter(|_| self.session.is_polling())
     }
 
-    /// Returns the clocks of the words being read: those of the layout, unless others are tried.
+    /// Returns the number of clocks per word being read: that of the layout, unless another number is being tried.
     pub fn clocks(&self) -> u8 {
         self.clocks.unwrap_or_else(|| self.designer.layout().clocks())
     }
 
-    /// Returns whether other clocks than those of the layout are tried.
+    /// Returns whether a number of clocks other than the layout's is being tried.
     pub fn has_own_clocks(&self) -> bool {
         self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clocks())
     }
@@ -98,12 +97,11 @@ impl Encoder {
         Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
     }
 
-    /// Returns whether the layout is not as it was saved.
     pub fn is_dirty(&self) -> bool {
         self.designer.is_dirty()
     }
 
-    /// Returns the layout as it would be saved.
+    /// Returns the profile that saving would write.
     pub(crate) fn wanted_profile(&self) -> SsiProfile {
         self.design().profile.clone()
     }
@@ -112,7 +110,6 @@ impl Encoder {
         self.designer.take_families(families);
     }
 
-    /// Changes the layout and everything that depends on it.
     pub(super) fn edit(&mut self, edit: Edit) {
         let before = self.designer.layout().clone();
         if self.designer.edit(edit) {
@@ -132,14 +129,13 @@ impl Encoder {
         self.record.read_as(now);
     }
 
-    /// Names the device of the link after its family.
     pub(super) fn name_after_family(&mut self) {
         let family = self.designer.family().map(|family| family.name.clone());
         self.session.title = family.or_else(|| Some("SSI".to_owned())).filter(|_| self.session.phase != Phase::Offline);
     }
 
-    /// Returns the link to a virtual encoder that sends this layout, if it is connected to one that sends another; a link
-    /// can only describe frames of a family.
+    /// Returns the link to a virtual encoder that would send this layout, if the connected virtual encoder sends
+    /// another. A link can only describe frames of a family.
     pub fn link_to_send(&self) -> Option<LinkUrl> {
         let Source::Link(url) = &self.session.source else { return None };
         let (family, settings) = (self.designer.family()?, self.design().settings.as_ref()?);
@@ -151,7 +147,7 @@ impl Encoder {
         })
     }
 
-    /// Returns whether it is a profile in a file, or will be.
+    /// Returns whether this is a profile stored in a file, or to be stored in one.
     pub fn is_profile(&self) -> bool {
         !matches!(self.session.source, Source::Link(_))
     }
@@ -163,12 +159,12 @@ impl Encoder {
 }
 
 impl Designer {
-    /// Returns the times that apply: those of the family, else what the manual says of SSI as such.
+    /// Returns the applicable times: those of the family, otherwise the general SSI times from the manual.
     pub fn applicable_times(&self) -> Times {
         self.times().copied().unwrap_or(Times::GENERAL)
     }
 
-    /// Returns the times of reading the layout as it is set.
+    /// Returns the timing of reading the current layout.
     pub fn timing(&self) -> Timing {
         let reads = self.reads();
         self.times().map_or_else(|| Times::of_any_encoder(&reads), |times| times.reckon(&reads))
@@ -179,7 +175,7 @@ impl Designer {
         self.design().profile.reads()
     }
 
-    /// Returns the user's name for it, or that of its family.
+    /// Returns the user-defined name, or else the family's.
     pub fn title(&self) -> String {
         let profile = &self.design().profile;
         if !profile.name.is_empty() {

@@ -24,7 +24,7 @@ impl Kind for Ssi {
     const KIND: &'static str = KIND;
     type Edits = Drafts;
     type SessionHandle = Option<Motor>;
-    /// Nothing is ever written into it.
+    /// Uninhabited, because an SSI encoder is never written to.
     type Review = Infallible;
 
     fn session_handle(session: &Session<Self>) -> Option<Motor> {
@@ -57,7 +57,7 @@ impl Kind for Ssi {
 }
 
 impl Encoder {
-    /// Sends the settings to the adapter if the layout has other clocks, or is read differently, than last sent.
+    /// Sends the reading settings to the adapter if they differ from those last sent.
     fn tell_asking(&mut self, services: &mut Services) {
         let asking = self.asking();
         // Once it is identified, and nothing else runs; a refused setting is not sent again.
@@ -67,7 +67,7 @@ impl Encoder {
         }
     }
 
-    /// Reads a word to show, unless words arrive anyway.
+    /// Reads a word to display, unless words are being polled anyway.
     fn see_a_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(SsiJob::Read, services);

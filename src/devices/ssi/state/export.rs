@@ -8,14 +8,14 @@ use crate::devices::ssi::protocol::{
 };
 use crate::devices::ssi::state::explain as words;
 
-/// A format of an exported layout, besides a profile.
+/// Export format of a layout, other than a profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
     /// A function in C99.
     C,
-    /// A function block in IEC 61131-3 structured text.
+    /// IEC 61131-3 structured text function block.
     StructuredText,
-    /// The same for controllers of 32 bits.
+    /// IEC 61131-3 structured text function block for 32-bit controllers.
     StructuredText32,
     Scl,
     LinuxCnc,
@@ -80,10 +80,10 @@ impl Format {
 }
 
 impl Designer {
-    /// Returns the layout as text, in this language where people read it. Programs are in English.
+    /// Returns the layout in the given format. The language applies to prose; program code is in English.
     ///
     /// # Errors
-    /// What the format has no place for.
+    /// The part of the layout that the format cannot represent.
     pub fn export(&self, format: Format, language: Language) -> Result<String, Text> {
         if let Some(picture) = self.picture(format, language) {
             return Ok(picture.svg());
@@ -102,7 +102,7 @@ impl Designer {
         })
     }
 
-    /// The layout as a picture; `None`: the format is text.
+    /// Returns the layout as a picture, or `None` if the format is plain text.
     pub fn picture(&self, format: Format, language: Language) -> Option<Picture> {
         let (layout, title) = (self.layout(), self.title());
         let say = |text: &ExportText| words::export(text).words(language);

@@ -10,8 +10,8 @@ use crate::app::{AnyDevice, Severity};
 use crate::devices::ssi::jobs;
 use crate::devices::ssi::protocol::Families;
 
-/// Returns the families: the built-in ones, until the user's own are read as well. The first call starts reading them,
-/// as a task.
+/// Returns the known families: the built-in ones, plus the user's own once those are loaded. The first call starts
+/// loading them in a task.
 pub(super) fn families(services: &mut Services) -> Arc<Families> {
     if let Some(families) = services.shared::<Arc<Families>>() {
         return families.clone();

@@ -27,7 +27,7 @@ pub enum Entry {
         value: u64,
         unit: Option<Text>,
     },
-    /// A frequency in hertz, shown in the unit that suits it.
+    /// Frequency in hertz, displayed in a suitable unit.
     Frequency(u32),
     Choice {
         options: Vec<Text>,
@@ -50,7 +50,7 @@ pub enum Input {
 /// The subject of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Field {
-    /// The kind of positions: bits, steps, a round axis, a length.
+    /// Type of position range: bits, steps, round axis or length.
     Range,
     /// Bits of the turns.
     Multiturn,
@@ -58,7 +58,7 @@ pub enum Field {
     Singleturn,
     /// Steps in a turn, or altogether.
     Steps,
-    /// Turns with this number of steps each.
+    /// Number of turns in a range with a fixed number of steps per turn.
     Turns,
     RevolutionsAbove,
     RevolutionsBelow,
@@ -71,7 +71,6 @@ pub enum Field {
     Over,
     Align,
     Shift,
-    /// The place of the error bits.
     Errors,
     Clocks,
     /// Zeros before the position.
@@ -96,28 +95,28 @@ pub enum Field {
     ErrorClock(usize),
     /// Meaning of an error bit for the position.
     ErrorMeaning(usize),
-    /// It is active when it is 0.
+    /// Whether the error bit with the given index is active low.
     ErrorLow(usize),
     ErrorCleared(usize),
     /// Clock in hertz.
     ClockRate,
     /// Microseconds between two bursts.
     Pause,
-    /// Cable in metres; 0: not checked.
+    /// Cable length in metres; 0 disables the check.
     Cable,
-    /// Positions are made when the host clocks.
+    /// Whether the encoder takes the position when the host starts clocking.
     Synchronous,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// Their heading, as a row of the texts.
+    /// Identifier of the group's heading in the message catalogue.
     pub title: &'static str,
     pub rows: Vec<Row>,
 }
 
 impl Group {
-    /// Returns the error bit that it belongs to.
+    /// Returns the index of the error bit that the field belongs to, if any.
     pub fn error(&self) -> Option<usize> {
         match self.rows.first()?.field {
             Field::ErrorName(index) => Some(index),
@@ -125,14 +124,14 @@ impl Group {
         }
     }
 
-    /// Returns whether error bits can be added: to a frame without a family.
+    /// Returns whether error bits can be added, which requires a frame without a family.
     pub fn takes_error_bits(&self) -> bool {
         self.rows.iter().any(|row| row.field == Field::Lead)
     }
 }
 
 impl Row {
-    /// Creates a number; `unit` is its symbol, empty for none.
+    /// Creates a number row. `unit` is the unit symbol, empty for none.
     fn number(field: Field, name: &'static str, value: impl Into<u64>, unit: &'static str) -> Self {
         let unit = match unit {
             "" => None,
@@ -146,7 +145,7 @@ impl Row {
         Row { field, name: TEXTS.text(name), entry: Entry::Switch(is_on), hint: None }
     }
 
-    /// Creates a choice; the options are in `all` with their texts.
+    /// Creates a choice row. `all` lists the options with their labels.
     fn choice<T: PartialEq>(field: Field, name: &'static str, all: &[(T, Text)], own: &T) -> Self {
         let chosen = all.iter().position(|(one, _)| one == own).unwrap_or(usize::MAX);
         let options = all.iter().map(|(_, words)| words.clone()).collect();
@@ -193,7 +192,7 @@ impl Designer {
     /// Applies an entry.
     ///
     /// # Errors
-    /// Why it is not possible.
+    /// The reason why the entry was refused.
     pub(super) fn entered(&self, field: Field, input: &Input) -> Result<Edit, Text> {
         let wrong = || TEXTS.text("ssi_form.wrong");
         match (field, input) {
@@ -253,7 +252,6 @@ fn counting(designer: &Designer) -> Group {
     }
 }
 
-/// The codes in the order of their list.
 const CODES: [Code; 4] = [Code::Binary, Code::Gray, Code::GrayExcess, Code::Bcd];
 const OVER: [Coded; 3] = [Coded::Position, Coded::Area, Coded::AreaAndErrors];
 
@@ -302,7 +300,7 @@ impl RangeKind {
     }
 }
 
-/// Returns the rows of the positions of a frame and their code, limited to these kinds.
+/// Returns the form rows for a frame's positions and code, limited to the given kinds of range.
 fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &Descriptor) -> Vec<Row> {
     let mut rows = Vec::new();
     if kinds.len() > 1 {
@@ -342,10 +340,10 @@ fn range_row(kinds: &[RangeKind], range: &Range) -> Row {
     Row::choice(Field::Range, "ssi_form.range", &all, &RangeKind::of(range))
 }
 
-/// Parses a whole number in usual notations: 3600, 3 600, 0x0E10.
+/// Parses a whole number in any common notation: 3600, 3 600, 0x0E10.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// The reason why the entry is invalid.
 pub fn whole(text: &str) -> Result<u64, Text> {
     let plain: String = text.chars().filter(|c| !c.is_whitespace() && !matches!(c, '_' | '’' | '\'')).collect();
     let number = match plain.strip_prefix("0x").or_else(|| plain.strip_prefix("0X")) {

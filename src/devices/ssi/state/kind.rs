@@ -48,7 +48,7 @@ impl DeviceType for Encoder {
         Encoder::with(session, designer)
     }
 
-    /// Creates a layout as delivered of the first family, with the first name that no other such layout has.
+    /// Creates a factory layout of the first family, with the first name that is not taken.
     fn new_profile(id: SessionId, is_taken: &dyn Fn(&Path) -> bool, services: &mut Services) -> Option<Self> {
         let further = (2..).map(|number: u32| PathBuf::from(format!("layout-{number}.ron")));
         let mut names = std::iter::once(PathBuf::from("layout.ron")).chain(further);

@@ -16,19 +16,19 @@ use crate::devices::ssi::procedures::Words;
 use crate::devices::ssi::protocol::{Descriptor, Flags, Layout, Meaning as Says, Range, Tally};
 use crate::units::Moment;
 
-/// Number of words stored as received, to be read with another layout and to be searched.
+/// Number of raw words kept, for decoding with another layout and for searches.
 const KEPT: usize = 40_000;
 
-/// Words of an encoder, decoded by the layout.
+/// Words read from an encoder, decoded with its layout.
 pub struct Record {
     track: Track<Infallible>,
     layout: Layout,
     meaning: Meaning,
     kept: VecDeque<Words>,
-    /// Words in `kept`.
+    /// Total number of words in `kept`.
     held: usize,
     tally: Tally,
-    /// Findings up to this time are no longer shown.
+    /// Time up to which findings are hidden, if any.
     forgotten: Option<Moment>,
     last: Option<ReadWord>,
     stream: Option<Streamed>,
@@ -38,11 +38,10 @@ pub struct Record {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadWord {
     pub at: Moment,
-    /// Its number of bits.
     pub clocks: u8,
-    /// The decoded word; `None` if the layout has another number of clocks.
+    /// Decoded word, or `None` if the layout has a different number of clocks.
     pub decoded: Option<Decoded>,
-    /// The word as received, right-justified.
+    /// Word as received, right-justified.
     pub word: u64,
 }
 
@@ -54,7 +53,6 @@ pub struct Streamed {
 }
 
 impl Streamed {
-    /// Returns the words per second.
     pub fn hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
@@ -87,7 +85,7 @@ impl Record {
         (self.held, self.stream, self.last, self.forgotten) = (0, None, None, None);
     }
 
-    /// Takes new words; `dropped` were not taken in time.
+    /// Adds new words; `dropped` is the number of words lost before they could be added.
     pub(super) fn add(&mut self, runs: Vec<Words>, dropped: u64) {
         match self.stream {
             // Even if words were dropped, their numbers show how many there were.
@@ -101,7 +99,7 @@ impl Record {
         }
     }
 
-    /// Appends a run to the previous one: missing words are counted and never joined.
+    /// Appends a run to the previous one. Missing words are counted, and runs are not joined across a gap.
     fn follow(&mut self, run: &Words) {
         let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
@@ -148,8 +146,7 @@ impl Record {
         }
     }
 
-    /// Changes the layout: stored words are read with it, earlier recordings are dropped. If only names differ,
-    /// everything stays.
+    /// Changes the layout. Stored words are decoded again and earlier recordings are dropped, unless only names differ.
     pub(super) fn read_as(&mut self, layout: &Layout) {
         if self.layout == *layout {
             return;
@@ -174,19 +171,19 @@ impl Record {
         (self.kept, self.lost, self.stream) = (kept, lost, stream);
     }
 
-    /// Returns the stored words with this number of clocks: the newest run without a gap.
+    /// Returns the newest gapless run of stored words with the given number of clocks.
     pub(super) fn words(&self, clocks: u8) -> Vec<u64> {
         let mut runs: Vec<&Words> = self.runs(clocks).collect();
         runs.reverse();
         runs.into_iter().flat_map(|run| run.words.iter().copied()).collect()
     }
 
-    /// Returns the number of words kept with this many clocks: the newest run without a gap.
+    /// Returns the length of the newest gapless run of stored words with the given number of clocks.
     pub fn count(&self, clocks: u8) -> usize {
         self.runs(clocks).map(|run| run.words.len()).sum()
     }
 
-    /// Returns the newest run first; each continues where the one before it ends.
+    /// Iterates over contiguous runs from the newest to the oldest; each run continues where its predecessor ends.
     fn runs(&self, clocks: u8) -> impl Iterator<Item = &Words> {
         let mut later: Option<&Words> = None;
         self.kept.iter().rev().take_while(move |run| {
@@ -204,18 +201,17 @@ impl Record {
         &self.tally
     }
 
-    /// Forgets the findings so far, also when words are decoded again.
+    /// Hides the findings so far, even if the words are decoded again.
     pub(super) fn forget_tally(&mut self) {
         self.tally.reset();
         self.forgotten = self.last.as_ref().map(|last| last.at);
     }
 
-    /// Returns the last word.
     pub fn last(&self) -> Option<&ReadWord> {
         self.last.as_ref()
     }
 
-    /// Returns the latest stream; `None` if words arrived one by one since.
+    /// Returns the latest stream, or `None` if words have since arrived one at a time.
     pub(super) fn streamed(&self) -> Option<&Streamed> {
         self.stream.as_ref()
     }
@@ -255,7 +251,7 @@ fn nameless(layout: &Layout) -> Descriptor {
     descriptor
 }
 
-/// Returns the meaning of the positions of a layout.
+/// Returns how to interpret a layout's positions.
 fn meaning(layout: &Layout) -> Meaning {
     let range = layout.descriptor().range;
     let all = range.last().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));

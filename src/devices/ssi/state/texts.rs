@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// Texts of SSI; other names are those of common texts.
+/// SSI message catalogue. Identifiers not found in it are looked up in the common catalogue.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/ssi.ron"));

@@ -17,7 +17,7 @@ pub struct Decoded {
     /// The frame, right-justified.
     pub frame: u64,
     pub reading: FrameReading,
-    /// The position, if the bits are one, and its location on the shaft or scale.
+    /// Position and its location on the shaft or scale, if the bits represent a valid position.
     pub place: Option<(u64, Location)>,
     pub findings: Vec<FrameFinding>,
     /// The position may be used.
@@ -32,7 +32,7 @@ impl Decoded {
         Decoded { frame, reading, place, findings: layout.findings(reading), is_valid: layout.is_valid(reading) }
     }
 
-    /// Returns its bits with the content of each.
+    /// Returns the frame's bits and the content of each.
     pub fn cells(&self, layout: &Layout) -> Vec<Cell> {
         layout.cells(self.frame)
     }
@@ -44,7 +44,6 @@ impl Trial {
         self.frame
     }
 
-    /// Returns why the last entry was refused.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -53,7 +52,7 @@ impl Trial {
         Decoded::of(layout, self.frame)
     }
 
-    /// Sets the frame of a position; error bits stay as they are.
+    /// Sets the frame to the given position. Error bits are kept.
     pub(super) fn set_position(&mut self, layout: &Layout, position: u64) {
         let errors = error_bits(layout, layout.decode(self.frame).flags);
         match layout.encode(position, errors) {
@@ -65,7 +64,7 @@ impl Trial {
         }
     }
 
-    /// Sets the frame of a turn and the steps within it.
+    /// Sets the frame to the given turn and step within the turn.
     pub(super) fn set_place(&mut self, layout: &Layout, turns: u64, steps: u64) {
         match layout.descriptor().range.position(turns, steps) {
             Some(position) => self.set_position(layout, position),
@@ -80,7 +79,7 @@ impl Trial {
         }
     }
 
-    /// Inverts a bit; clocks count from 1.
+    /// Inverts the bit at the given clock, counted from 1.
     pub(super) fn toggle(&mut self, layout: &Layout, clock: u8) {
         if (1..=layout.clocks()).contains(&clock) {
             self.set(self.frame ^ 1 << (layout.clocks() - clock));
@@ -91,7 +90,7 @@ impl Trial {
         *self = Trial { frame, problem: None };
     }
 
-    /// Changes to another layout: the position stays, if it exists there.
+    /// Switches to another layout, keeping the position if the new layout has it.
     pub(super) fn follow(&mut self, before: &Layout, now: &Layout) {
         let reading = before.decode(self.frame);
         let position = reading.position.min(now.coding().last());

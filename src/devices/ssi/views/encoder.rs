@@ -36,7 +36,6 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
     wiring::card_ui(ui, theme, encoder.designer.family());
 }
 
-/// Draws the adapter and how it reads the encoder.
 fn adapter(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let is_readable = encoder.session.is_readable() && !encoder.is_profile();
@@ -78,7 +77,7 @@ fn adapter(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Acti
     });
 }
 
-/// Draws the findings of error bits, patterns and the like, including those between frames on the screen.
+/// Draws the findings such as error bits and patterns, including those from frames that were not displayed.
 fn errors(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let noted = encoder.record.tally().noted();
     let id = encoder.session.id;

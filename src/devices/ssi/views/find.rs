@@ -14,17 +14,15 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Entered text that does not take effect yet.
 #[derive(Default)]
 pub(super) struct FindUiState {
     clocks: Option<(String, Option<Text>)>,
-    /// Classes whose other members are shown.
     unfolded: Option<usize>,
 }
 
-/// Maximum number of classes shown; the others fit even worse.
+/// Maximum number of classes shown; the remaining ones fit even worse.
 const CLASSES: usize = 6;
-/// Members of a class that are shown at first.
+/// Number of class members shown before expanding.
 const MEMBERS: usize = 4;
 
 pub(super) fn page_ui(
@@ -140,7 +138,7 @@ fn found(
     }
 }
 
-/// Draws layouts that these frames cannot distinguish.
+/// Draws a class: layouts that the recorded frames cannot tell apart.
 fn class_ui(
     ui: &mut Ui,
     theme: &Theme,

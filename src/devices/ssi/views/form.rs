@@ -12,13 +12,11 @@ use crate::devices::ssi::state::{Encoder, Entry, Field, Input, Row, SsiAction as
 use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, label_width, problem_beside, settled_entry};
 
-/// Entered text that does not take effect yet.
 #[derive(Default)]
 pub(super) struct LayoutFormUiState {
     drafts: BTreeMap<Field, Option<(String, Option<Text>)>>,
 }
 
-/// Width of the entry of a number.
 const NUMBER: f32 = 104.0;
 const NAME: f32 = 160.0;
 
@@ -111,7 +109,6 @@ pub(super) fn rows_ui(
     }
 }
 
-/// Returns why the text of an entry was refused.
 fn refusal(draft: &Option<(String, Option<Text>)>) -> Option<&Text> {
     draft.as_ref()?.1.as_ref()
 }

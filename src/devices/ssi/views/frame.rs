@@ -62,7 +62,7 @@ pub(super) fn page_ui(
     buttons_ui(ui, theme, studio, device, encoder, actions);
 }
 
-/// Splits the form into the part beside the trial frame, and the part below it: direction and preset, and error bits.
+/// Splits the form into the groups beside the trial frame and the groups below it (direction and preset, error bits).
 fn columns(form: &[Group]) -> (&[Group], &[Group]) {
     form.split_at(form.len().min(2))
 }
@@ -233,7 +233,7 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
     actions.extend(asked.map(|asked| Action::device(id, asked)));
 }
 
-/// Taking changes back, saving, and taking the layout for an encoder that is connected.
+/// Draws the undo and save buttons, and the button that adopts the layout for a connected encoder.
 fn buttons_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -9,10 +9,9 @@ use crate::devices::ssi::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph};
 
-/// Rows that are seen at once.
 const ROWS: f32 = 12.0;
 
-/// Draws the frames; a click on one tries the layout with it.
+/// Draws the list of frames. Clicking a frame tries the layout on it.
 pub(super) fn card_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -25,15 +25,15 @@ use crate::ui::{NamedAction, Theme, icons, page};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// The frame on the drawing board, and a frame to try it with.
+    /// Frame layout editor, with a trial frame.
     #[default]
     Frame,
     Timing,
     /// The search for the layout of frames that were read.
     Find,
-    /// The layout for other programs.
+    /// Export of the layout for other programs.
     Export,
-    /// The encoder behind its adapter, its reported error bits, its wiring.
+    /// Adapter, reported error bits and wiring of the encoder.
     Encoder,
 }
 
@@ -47,7 +47,7 @@ impl TabPage for Page {
     ];
 }
 
-/// State of the tab for one session between frames: text buffers and selections.
+/// UI state of a session's tabs that persists between frames, such as text buffers and selections.
 #[derive(Default)]
 pub(crate) struct SsiUiState {
     form: form::LayoutFormUiState,
@@ -111,7 +111,7 @@ impl TypedDeviceView for SsiView {
     }
 }
 
-/// Returns a text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a message in the window's language, from the SSI catalogue or else from the common one.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -8,11 +8,11 @@ use egui::{
 use crate::devices::ssi::protocol::{PathStep, Picture, PictureLabel, PictureShape};
 use crate::ui::Theme;
 
-/// Smaller than this, its numbers cannot be read; then the picture scrolls.
+/// Minimum scale at which the numbers are legible; below this scale, the picture scrolls.
 const LEAST_SCALE: f32 = 0.75;
 const MOST_SCALE: f32 = 1.4;
 
-/// Draws a picture on its paper, as wide as there is room. Its title is its accessible name.
+/// Draws a picture on paper, scaled to the available width. The title serves as the accessible name.
 pub(super) fn picture_ui(ui: &mut Ui, theme: &Theme, picture: &Picture) {
     ScrollArea::horizontal().id_salt("picture").auto_shrink([false, true]).show(ui, |ui| {
         let scale = (ui.available_width() / picture.width as f32).clamp(LEAST_SCALE, MOST_SCALE);
@@ -96,7 +96,7 @@ impl Paper<'_> {
     }
 }
 
-/// A colour of a file: black where it is none.
+/// Parses a colour from a file, falling back to black.
 fn colour(text: &str) -> Color32 {
     Color32::from_hex(text).unwrap_or(Color32::BLACK)
 }

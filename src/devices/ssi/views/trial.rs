@@ -12,14 +12,13 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Entered text that does not take effect yet.
 #[derive(Default)]
 pub(super) struct TrialUiState {
     position: Option<(String, Option<Text>)>,
     turns: Option<(String, Option<Text>)>,
     steps: Option<(String, Option<Text>)>,
     bits: Option<String>,
-    /// The frame shown when typing began: words that arrive meanwhile do not change it.
+    /// Frame shown when typing began. Words that arrive meanwhile do not replace it.
     held: Option<Decoded>,
 }
 
@@ -113,7 +112,7 @@ fn refused(ui: &mut Ui, theme: &Theme, draft: Option<&(String, Option<Text>)>) {
     problem_beside(ui, theme, draft.and_then(|(_, problem)| problem.as_ref()));
 }
 
-/// Draws the bits as text, to be copied and replaced by pasting.
+/// Draws the bits as text that can be copied, or replaced by pasting.
 fn bits(
     ui: &mut Ui,
     theme: &Theme,

@@ -10,10 +10,9 @@ use crate::ui::Theme;
 use crate::ui::controls::{folding_card, paragraph, row};
 use crate::ui::wiring::wires_ui;
 
-/// Width of the column of wires.
 const WIRE: f32 = 84.0;
 
-/// Names of the wires and their signals (SICK SSI description 2.1, 2.2).
+/// Wire names and their signals (SICK SSI description 2.1, 2.2).
 const WIRES: [(&str, &str); 6] = [
     ("CLOCK+", "ssi_wiring.clock_plus"),
     ("CLOCK−", "ssi_wiring.clock_minus"),
@@ -82,10 +81,10 @@ mod tests {
             &TEXTS,
             &WIRES,
             &[
-                ("CLOCK+", &["from the host", "RS-422", "high at rest"]),
-                ("CLOCK−", &["from the host", "RS-422", "low at rest"]),
-                ("DATA+", &["to the host", "RS-422", "high at rest"]),
-                ("DATA−", &["to the host", "RS-422", "low at rest"]),
+                ("CLOCK+", &["from the host", "RS-422", "high when idle"]),
+                ("CLOCK−", &["from the host", "RS-422", "low when idle"]),
+                ("DATA+", &["to the host", "RS-422", "high when idle"]),
+                ("DATA−", &["to the host", "RS-422", "low when idle"]),
                 ("US", &["type label"]),
                 ("GND", &["0 V"]),
             ],

@@ -50,7 +50,7 @@ pub(crate) fn network(ui: &mut Ui, theme: &Theme, host: &mut String, port: &mut 
     ui.label(theme.caption(theme.say("connect.tcp_words")));
 }
 
-/// Draws host and port, each with an example.
+/// Draws the host and port entries, each with an example.
 pub(crate) fn place(
     ui: &mut Ui,
     theme: &Theme,
@@ -81,7 +81,7 @@ pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
     choice(ui, &theme.say("settings_card.parity"), own, parities);
 }
 
-/// Draws the heading of the rarely needed entries; returns whether they are unfolded.
+/// Draws the heading of the rarely needed entries; returns whether they are expanded.
 pub(crate) fn unfolded(ui: &mut Ui, theme: &Theme, open: &mut bool) -> bool {
     disclosure(ui, RichText::new(theme.say("connect.more")), open);
     *open
@@ -96,10 +96,10 @@ pub(crate) fn echo(ui: &mut Ui, theme: &Theme, echo: &mut Echo) {
     });
 }
 
-/// The texts of a device.
+/// A function that returns a device's messages in the window's language.
 type Say = fn(&Theme, &'static str) -> String;
 
-/// Draws entries of parameters; `say` gives the device's texts.
+/// Draws the entries of parameters; `say` returns the device's labels.
 pub(crate) fn typed(ui: &mut Ui, theme: &Theme, say: Say, entries: impl IntoIterator<Item = Entry>, typed: &mut Typed) {
     for own in entries {
         let word = say(theme, own.label);
@@ -107,7 +107,7 @@ pub(crate) fn typed(ui: &mut Ui, theme: &Theme, say: Say, entries: impl IntoIter
     }
 }
 
-/// Entries of parameters side by side, each before its name.
+/// Draws the entries of parameters side by side, each followed by its label.
 pub(crate) fn typed_in_a_row(
     ui: &mut Ui,
     theme: &Theme,
@@ -138,13 +138,13 @@ pub(crate) fn field(ui: &mut Ui, theme: &Theme, word: &str, own: &Entry, typed: 
     }
 }
 
-/// Draws the choice whether the adapter leaves the encoder's supply on at the end.
+/// Draws the option to leave the encoder's supply on when the adapter is closed.
 pub(crate) fn leave_supply(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
     ui.checkbox(leave_on, theme.say("connect.leave_supply"));
     paragraph(ui, theme.caption(theme.say("connect.leave_supply_words")));
 }
 
-/// Draws one of a few choices, side by side.
+/// Draws a choice between a few options, side by side.
 pub(crate) fn segments<T: PartialEq + Copy, const N: usize>(
     ui: &mut Ui,
     theme: &Theme,

@@ -8,14 +8,14 @@ use crate::app::connect::form::FormModel;
 use crate::app::connect::{Connect as Dialog, ConnectAction as Connect};
 use crate::ui::Theme;
 
-/// The form of a kind of device, as the device implements it.
+/// The connection form of a kind of device, as implemented by the device.
 pub trait TypedConnectForm: 'static {
-    /// The link as a form.
+    /// The form representation of a link.
     type Form: FormModel;
-    /// The selections that are no part of the link.
+    /// UI selections that are not part of the link.
     type Memory: Default;
 
-    /// Draws the form. `more` tells whether the rarely needed entries are unfolded, for all kinds.
+    /// Draws the form. `more` is whether the rarely needed entries are expanded, which is shared by all kinds.
     fn form_ui(
         ui: &mut Ui,
         theme: &Theme,
@@ -26,9 +26,9 @@ pub trait TypedConnectForm: 'static {
     );
 }
 
-/// Form of a kind of device, as used by the dialog, with its selections.
+/// The connection form of a kind of device, as used by the dialog, with its selections.
 pub trait ConnectForm {
-    /// Draws the form. `more` tells whether the rarely needed entries are unfolded, for all kinds.
+    /// Draws the form. `more` is whether the rarely needed entries are expanded, which is shared by all kinds.
     fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>);
 }
 

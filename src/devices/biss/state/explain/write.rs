@@ -270,9 +270,9 @@ mod tests {
         };
         let lost = || Failure::Device(Error::NeverSilent);
         let cases = [
-            (ChangeKind::Restore, "Restore the profile again"),
+            (ChangeKind::Restore, "restore the profile again"),
             (ChangeKind::Bytes, "Other registers keep the written value"),
-            (ChangeKind::Guided, "Completed steps need not be repeated"),
+            (ChangeKind::Guided, "completed steps do not have to be repeated"),
             (ChangeKind::WiegandTest, "changes only its saved result"),
             (ChangeKind::Filter, "status biss"),
             (ChangeKind::Preset, "position biss"),
@@ -286,7 +286,7 @@ mod tests {
         let address = RegisterAddress::direct(0x6A).unwrap();
         interrupted.unfinished = Some(Op::WriteRegister { address, old: None, new: 1, cycles: 0 });
         let words = last(&interrupted, ChangeKind::Bytes);
-        assert!(words.contains("not known") && words.contains("read biss 0x6A"), "{words}");
+        assert!(words.contains("is unclear") && words.contains("read biss 0x6A"), "{words}");
     }
 
     #[test]
@@ -378,7 +378,7 @@ mod tests {
             (calibration(first, 0x30), "wrong direction"),
             (calibration(first, 0x31), "25…40 °C"),
             (calibration(first, 0x32), "300…700 rpm"),
-            (calibration(first, 0x33), "no reason"),
+            (calibration(first, 0x33), "did not report a reason"),
             (calibration(second, 0x32), "lost"),
             (calibration(second, 0x77), "0x77"),
             (wiegand(0x30, 0), "wrong direction"),
@@ -388,13 +388,13 @@ mod tests {
             (Failure::Mode { wanted: DeviceMode::PRESET, found: DeviceMode::OPERATION }, "0x07 preset"),
             (Failure::Status { kind: ProcedureKind::DataWrite, expected: 1, found: 0 }, "0x00"),
             (Failure::TooLong { run: first, seconds: 20 }, "20 s"),
-            (Failure::NotReady { task: Task::Turn(first), blockers: vec![Blocker::Standing] }, "not turning"),
+            (Failure::NotReady { task: Task::Turn(first), blockers: vec![Blocker::Standing] }, "at rest"),
             (
                 Failure::NotReady {
                     task: Task::Stand,
                     blockers: vec![Blocker::Standing, Blocker::Temperature { celsius: 20 }],
                 },
-                "is not turning. The encoder is at 20 °C",
+                "is at rest. The encoder temperature is 20 °C",
             ),
             (Failure::NotVerified { item: "0x6E".to_owned(), expected: "04".to_owned(), got: "03".to_owned() }, "0x6E"),
             (Failure::NotDescribed { kind: ProcedureKind::Preset }, "Preset"),

@@ -79,7 +79,7 @@ mod tests {
         let cases = [
             (
                 CheckFinding::FieldLocked { number: 1, status },
-                "1: 48 bytes, write protected, code 2, code required, the access code 2 is not known",
+                "1: 48 bytes, write protected, code 2, code required, access code 2 is unknown",
                 "Datenfeld 1: 48 Bytes, schreibgeschützt, Zugriffsschlüssel 2, Schlüssel erforderlich, \
                  Zugriffsschlüssel 2 ist unbekannt",
             ),

@@ -12,23 +12,23 @@ use crate::devices::interbus::procedures::error::Awaited;
 use crate::devices::interbus::procedures::handshake::is_echo;
 use crate::devices::interbus::protocol::{Command, Reply, Value};
 
-/// The word of a busy encoder without other bits: also the echo of cam 0's start at 0.
+/// The word from a busy encoder without further bits, which is also the echo of cam 0's start at 0.
 const BUSY: u32 = 0xC000_0000;
-/// Number of attempts to set an edge of cam 0 until it reads back. None of them stores.
+/// Number of attempts to set an edge of cam 0 until it reads back correctly. None of the attempts stores.
 const TRIES: u32 = 4;
 
 impl Master<'_> {
-    /// Sends a word that is acknowledged, until its exact echo is stable.
+    /// Sends an acknowledged word until its exact echo is stable.
     ///
     /// # Errors
-    /// [`Error::Illegal`], with nothing sent; [`Error::Refused`], [`Error::OtherMaster`], [`Error::TimeOut`]; errors of the
-    /// exchange.
+    /// [`Error::Illegal`], with nothing sent; [`Error::Refused`], [`Error::OtherMaster`], [`Error::TimeOut`]; errors of
+    /// the exchange.
     pub(in crate::devices::interbus::procedures) fn set(&mut self, command: Command) -> Result<(), Error> {
         self.set_again(command, 0)
     }
 
-    /// Sets like [`set`](Self::set), for a word whose echo proves nothing: `question` reads the value back, and the word is
-    /// repeated until it has been accepted, each time with a longer wait.
+    /// Sets like [`set`](Self::set), for a word whose echo proves nothing. `question` reads the value back, and the
+    /// word is repeated, with a longer wait each time, until the encoder has accepted it.
     ///
     /// # Errors
     /// As [`set`](Self::set); [`Error::NotTaken`] with the name `item`.
@@ -58,7 +58,7 @@ impl Master<'_> {
         self.acknowledged(command, tried, false)
     }
 
-    /// Sets like [`set`](Self::set), for a word that an encoder may also accept without a reply (`U`).
+    /// Sends a word like [`set`](Self::set), but one that an encoder may also accept without a reply (`U`).
     pub(super) fn tell_to(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.leave_value()?;
@@ -87,7 +87,7 @@ impl Master<'_> {
         })
     }
 
-    /// Returns how long an echo that looks like a busy encoder must stay; `None` if it does not look so.
+    /// Returns how long an echo that looks like a busy encoder must persist, or `None` if the echo is unambiguous.
     fn holds(&self, command: Command, tried: u32) -> Option<Duration> {
         let echo = Reply::echo_of(command);
         let most = self.patience / 2;

@@ -10,11 +10,11 @@ use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};
 
 /// How long the value of a cam request may stay `00000000` before `80000000` is tried (`U`).
 const VALUE_STAYS: Duration = Duration::from_millis(300);
-/// Number of further readings: the first one may still return an old word.
+/// Number of additional readings, since the first may still return an old word.
 const LOOKS: u32 = 2;
-/// Interval between them.
+/// Interval between additional readings.
 const LOOK: Duration = Duration::from_millis(10);
-/// How long a mode that was read stays valid between two steps of a job; both lead it back.
+/// How long a mode reading stays valid between two steps of a job that both return the encoder to its mode.
 const STILL: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
@@ -27,7 +27,7 @@ impl Master<'_> {
         self.end(ended)
     }
 
-    /// Returns the encoder to its state before [`begin`](Self::begin), however the work in between has ended.
+    /// Returns the encoder to its state before [`begin`](Self::begin), regardless of how the work in between ended.
     ///
     /// # Errors
     /// The error of the work; [`Error::NotLedBack`].
@@ -50,9 +50,9 @@ impl Master<'_> {
         Err(Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
-    /// Ends a state left by another program: parameterisation, an error, a read-out. Returns the encoder's mode afterwards.
-    /// Values set and not stored are stored by that: one store, which is counted. A persistent error is left to the reader
-    /// of the IN word: the encoder can be read and set regardless.
+    /// Ends a state left by another program (parameterisation, an error, a read-out) and returns the encoder's mode
+    /// afterwards. Doing so stores any values that were set but not stored, which is counted as one store. A persistent
+    /// error is left to the reader of the IN word, since the encoder can be read and set regardless.
     ///
     /// # Errors
     /// Errors of the handshake and the exchange.
@@ -80,7 +80,7 @@ impl Master<'_> {
         ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
-    /// Sends the encoder into a mode, and checks that it is in it.
+    /// Switches the encoder to a mode and checks that it has arrived there.
     ///
     /// # Errors
     /// [`Error::NoMode`], [`Error::NotSelectable`], [`Error::UnknownMode`]; errors of the handshake and the exchange.
@@ -105,12 +105,12 @@ impl Master<'_> {
         }
     }
 
-    /// Makes the present mode the one to which the encoder is returned.
+    /// Makes the present mode the one to which the encoder is returned after the job.
     pub(in crate::devices::interbus::procedures) fn stay(&mut self) {
         self.found = self.is;
     }
 
-    /// Reads the encoder's state and mode, so that no word is sent that it would interpret differently.
+    /// Reads the encoder's state and mode, so that no word is sent that the encoder would misinterpret.
     pub(in crate::devices::interbus::procedures) fn begin(&mut self) -> Result<(), Error> {
         let begun = self.data.now();
         let mut looks = 0;
@@ -171,8 +171,8 @@ impl Master<'_> {
         Ok(mode)
     }
 
-    /// Sends a word that changes the mode; then `00000000` if the encoder keeps the mode with it, or else the word that
-    /// keeps it (`U`: the manual does not say which). The encoder is queried for the result.
+    /// Sends a word that changes the mode, followed by `00000000` if the encoder keeps the mode after it, or else by
+    /// the word that keeps the mode (`U`: the manual does not say which). The encoder is then queried for the result.
     fn switch(&mut self, command: Command, wanted: StartupMode) -> Result<(), Error> {
         let of_cams = matches!(command, Command::Cams(_));
         let keeps = if of_cams { Command::Run } else { command };
@@ -235,7 +235,7 @@ impl Master<'_> {
         self.rest()
     }
 
-    /// Removes `80000000`, which may already be the OUT word: its edge is what counts.
+    /// Removes `80000000`, which may already be the OUT word, since only its edge has an effect.
     fn let_go_of_run(&mut self) -> Result<(), Error> {
         for _ in 0..LOOKS {
             self.cycle(Command::Normal)?;
@@ -243,7 +243,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Sends the word used while nothing is requested of the encoder.
+    /// Sends the idle word, used while nothing is requested from the encoder.
     fn rest(&mut self) -> Result<(), Error> {
         self.leave_value()?;
         let word = self.resting_word();
@@ -255,7 +255,7 @@ impl Master<'_> {
         hold.map_or(Command::Normal, |(_, word)| word)
     }
 
-    /// Waits until no value is present: the next one would look the same.
+    /// Waits until no value is present, since the next one would look the same.
     pub(super) fn leave_value(&mut self) -> Result<(), Error> {
         let asks = self.out.is_some_and(is_question);
         let stands = matches!(Reply::parse(self.input), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
@@ -277,8 +277,8 @@ impl Master<'_> {
         }
     }
 
-    /// Sends `00000000` until no value is present, during a setting: `80000000` would store it. A value that stays is
-    /// distinguished from the next echo.
+    /// Sends `00000000` during a setting until no value is present, since `80000000` would store the setting. A value
+    /// that persists can be told apart from the next echo.
     fn stop_asking(&mut self) -> Result<(), Error> {
         let patience = VALUE_STAYS.min(self.patience);
         let ended = self.until(Command::Normal, Awaited::Run, patience, |CycleResult { word, same, .. }| {
@@ -292,7 +292,7 @@ impl Master<'_> {
     }
 }
 
-/// Returns whether both give the position, or they are the same.
+/// Returns whether the two modes are equal or both give the position.
 pub(super) fn does_the_same(is: StartupMode, wanted: StartupMode) -> bool {
     let is_plain = |mode| matches!(mode, StartupMode::K2 | StartupMode::K3);
     is == wanted || is_plain(is) && is_plain(wanted)

@@ -6,20 +6,19 @@ use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::journal::{Excursion, Journal};
 use crate::devices::interbus::protocol::{ReadOut, StartupMode};
 
-/// The notes of this job.
 #[derive(Default)]
 pub(super) struct Notes<'a> {
     journal: Option<Box<dyn Journal + 'a>>,
     serial_number: Option<String>,
     excursion: Option<Excursion>,
-    /// Cam programs that were left unchanged: the encoder may have stored each (reference 5).
+    /// Number of cam programs left unchanged, each of which the encoder may have stored (reference 5).
     left: u64,
-    /// The running program was changed: its store belongs to the write.
+    /// Whether the running program was changed, in which case its store belongs to the write.
     is_set: bool,
 }
 
 impl<'a> Master<'a> {
-    /// Records facts that outlast this job in `journal`.
+    /// Uses `journal` to record facts that outlast this job.
     #[must_use]
     pub fn noting(mut self, journal: impl Journal + 'a) -> Self {
         self.notes.journal = Some(Box::new(journal));
@@ -32,7 +31,7 @@ impl Master<'_> {
         self.notes.serial_number = Some(serial_number.to_string());
     }
 
-    /// Notes that this many cam programs will be selected for reading.
+    /// Notes that the given number of cam programs will be selected for reading.
     pub(in crate::devices::interbus::procedures) fn will_read(&mut self, programs: usize) -> Result<(), Error> {
         if programs == 0 || self.notes.journal.is_none() {
             return Ok(());
@@ -49,7 +48,7 @@ impl Master<'_> {
         self.notes.is_set = matches!(self.is, Some(StartupMode::Cams(_)));
     }
 
-    /// Leads the encoder back if an earlier run was cut off that had sent it into this mode.
+    /// Returns the encoder to its original mode if an interrupted earlier run left it in the given mode.
     pub(super) fn resume(&mut self, mode: StartupMode) -> Result<(), Error> {
         if !self.notes.journal.as_ref().is_some_and(|journal| journal.has_excursions()) {
             return Ok(());
@@ -72,7 +71,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Notes that the encoder is about to be sent into this mode.
+    /// Notes that the encoder is about to be switched to the given mode.
     pub(super) fn note_switch(&mut self, wanted: StartupMode) -> Result<(), Error> {
         if let Some(StartupMode::Cams(_)) = self.is
             && !std::mem::take(&mut self.notes.is_set)
@@ -103,7 +102,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Notes the end of a step of the job, and whether the encoder is back in its state.
+    /// Notes the end of a step of the job, and whether the encoder is back in its previous state.
     pub(super) fn conclude_notes(&mut self, is_back: bool) {
         let Notes { journal: Some(journal), serial_number: Some(serial_number), excursion, left, .. } = &mut self.notes
         else {

@@ -5,27 +5,28 @@ use std::time::Duration;
 
 use crate::units::Moment;
 
-/// An echo or a value stands when it came in so many cycles, one after the other (reference 4),
+/// Number of consecutive cycles after which an echo or a value is stable (reference 4).
 const STANDS: u32 = 2;
-/// and for so long: longer than a gateway usually keeps one word (`U`).
+/// Minimum duration of a stable echo or value: longer than a gateway usually keeps one word (`U`).
 const STANDS_FOR: Duration = Duration::from_millis(10);
-/// A word that may be the answer to the one before stands after so long (`U`),
+/// Time after which a word that may answer the previous request is accepted (`U`).
 pub(super) const STAYS_FOR: Duration = Duration::from_millis(100);
-/// or after so many cycles of a recording, in which no time passes.
+/// Number of cycles that replaces the time in a recording, in which no time passes.
 const STAYS: u32 = 20;
 
-/// A reply that is lost can take all the patience: an answer has so many cycles at least, old words among them.
+/// Returns the minimum number of cycles to wait for an answer, old words included, since a single lost reply can use up
+/// all the patience.
 pub(super) const fn least_cycles(recorded: bool) -> u32 {
     if recorded { STAYS + 4 } else { 8 }
 }
 
-/// Less patience than this is none: what stays has to be seen.
+/// Minimum patience; anything shorter would miss words that persist.
 pub(super) const LEAST_PATIENCE: Duration = Duration::from_millis(150);
 
 /// For how long something holds, cycle after cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held {
-    /// In a recording no time passes between two looks: cycles alone count.
+    /// Whether only cycles count, because no time passes between two readings of a recording.
     timeless: bool,
     cycles: u32,
     since: Option<Moment>,
@@ -38,7 +39,7 @@ impl Held {
         Held { timeless, cycles: 0, since: None, lasted: Duration::ZERO }
     }
 
-    /// Takes whether the condition holds in the cycle that ends now.
+    /// Records whether the condition holds in the cycle that ends now.
     pub(super) fn go_on(&mut self, holds: bool, now: Moment) {
         if !holds {
             *self = Held::new(self.timeless);
@@ -48,7 +49,7 @@ impl Held {
         self.lasted = now.since(*self.since.get_or_insert(now));
     }
 
-    /// Long enough for an answer that cannot be an old one.
+    /// Returns whether the condition has held long enough to exclude an old answer.
     pub(super) fn is_stable(self) -> bool {
         self.cycles >= STANDS && self.lasts(STANDS_FOR)
     }
@@ -57,13 +58,14 @@ impl Held {
         self.stays_for(STAYS_FOR)
     }
 
-    /// Returns whether it stayed this long; with a slow gateway, for as many cycles as show that it stands.
+    /// Returns whether the condition has held for the given time and, with a slow gateway, for enough cycles to be
+    /// stable.
     pub(super) fn stays_for(self, duration: Duration) -> bool {
         let least = if self.timeless { STAYS } else { STANDS };
         self.cycles >= least && self.lasts(duration)
     }
 
-    /// Returns the time from the first of these cycles to the last.
+    /// Returns the time from the first cycle to the last in which the condition held.
     pub(super) const fn lasted(self) -> Duration {
         self.lasted
     }

@@ -4,15 +4,15 @@ use super::Column;
 use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::profile::Unit;
 
-/// Columns by their place, from 0.
+/// Zero-based indices of the table columns.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Columns {
     places: Vec<(Column, usize)>,
-    /// A number of the column of cams may be a name instead.
+    /// Whether the cam column may contain names as well as numbers.
     pub(super) cam_or_name: bool,
 }
 
-/// Words of a header, in lower case.
+/// Recognised header words in lower case.
 const WORDS: [(Column, &[&str]); 5] = [
     (Column::Program, &["program", "programm", "prog", "prg", "p"]),
     (Column::Cam, &["cam", "nocken", "nocke", "nr", "no", "number", "nummer", "output", "ausgang"]),
@@ -22,7 +22,7 @@ const WORDS: [(Column, &[&str]); 5] = [
 ];
 
 impl Columns {
-    /// Finds the columns by their header; `None` if it names neither a start nor a stop.
+    /// Identifies the columns by their header; returns `None` if the header names neither a start nor a stop.
     pub(super) fn of_header(cells: &[&str]) -> Option<Self> {
         let mut places: Vec<(Column, usize)> = Vec::new();
         for (place, cell) in cells.iter().enumerate() {
@@ -38,7 +38,7 @@ impl Columns {
         has_edge.then_some(Columns { places, cam_or_name })
     }
 
-    /// Guesses the columns by their number, without a header.
+    /// Guesses the columns of a table without a header from their number.
     pub(super) fn of_count(count: usize) -> Self {
         use Column::{Cam, Name, Program, Start, Stop};
         let order: &[Column] = match count {
@@ -57,8 +57,8 @@ impl Columns {
     }
 }
 
-/// Returns the delimiter: the one that most lines have outside of quotes; a comma only if it is more frequent, as it
-/// may be a decimal sign.
+/// Returns the delimiter that occurs outside quotes on most lines. A comma has to be more frequent than the others,
+/// since it may be a decimal sign.
 pub(super) fn delimiter(text: &str) -> Delimiter {
     let has = |line: &str, sign: char| {
         let mut quoted = false;
@@ -85,7 +85,7 @@ pub(super) fn unit(cell: &str) -> Option<Unit> {
     })
 }
 
-/// Returns the first word of a cell.
+/// Returns the first word of a cell in lower case.
 fn word(cell: &str) -> String {
     let cell = cell.trim().trim_start_matches('\u{FEFF}').to_lowercase();
     cell.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned()

@@ -10,9 +10,9 @@ use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::profile::{Outside, Placed, Unit};
 use crate::devices::interbus::protocol::{CamNumber, Program, ProgramNumber};
 
-/// Maximum number of rows in a table of cams: eight programs of eight, with a reserve for errors.
+/// Maximum number of rows in a cam table: eight programs of eight cams, with room for errors.
 const MOST_ROWS: usize = 1000;
-/// Maximum number of characters of a wrong cell in a message.
+/// Maximum number of characters of an invalid cell to show in a message.
 const SHOWN: usize = 24;
 
 struct TableLine {
@@ -24,7 +24,7 @@ struct TableLine {
 /// Row whose cam may still be undetermined.
 struct Draft {
     line: u64,
-    /// The column that named the cam, or the first one.
+    /// Column that named the cam, or else the first column.
     column: u64,
     program: ProgramNumber,
     cam: Option<CamNumber>,
@@ -63,7 +63,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
 }
 
 impl CamTable {
-    /// Determines the columns, from the first line if it is a header.
+    /// Determines the columns from the first line if it is a header.
     fn columns(&mut self, options: &TableOptions, first: &TableLine, lines: &[TableLine]) -> Columns {
         let cells: Vec<&str> = first.cells.iter().map(String::as_str).collect();
         let count = lines.iter().map(|line| line.cells.len()).max().unwrap_or_default();
@@ -93,7 +93,7 @@ impl CamTable {
         columns
     }
 
-    /// Assigns a cam to each row: first to those that name one, then to the others from the rest.
+    /// Assigns a cam to each row: first to the rows that name one, then the remaining cams to the other rows.
     fn place(&mut self, drafts: Vec<Draft>) {
         let mut taken: Vec<(ProgramNumber, CamNumber, u64)> = Vec::new();
         let mut rows: Vec<Option<CamNumber>> = vec![None; drafts.len()];
@@ -127,7 +127,7 @@ impl CamTable {
         self.rows = placed.collect();
     }
 
-    /// Notes that several pulses of one track take one cam each.
+    /// Adds a note for each track with several pulses, since every pulse takes a cam.
     fn note_pulses(&mut self) {
         for program in ProgramNumber::all() {
             let mut tracks: Vec<(String, String, Vec<CamNumber>)> = Vec::new();
@@ -156,7 +156,7 @@ fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     lines
 }
 
-/// Returns the cells of a line, without quotes and blanks around them.
+/// Returns the cells of a line without their quotes and surrounding blanks.
 fn cells(reader: &mut Reader, line: &str) -> Vec<String> {
     // Quotes are removed: the output is never longer than the input, nor has it more ends than characters.
     let (mut out, mut ends) = (vec![0; line.len() + 1], vec![0; line.len() + 2]);
@@ -219,7 +219,7 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
     Ok(Draft { line: line.number, column, program, cam, name, start, stop })
 }
 
-/// Returns both edges in steps. A pulse around the whole range ends right before its start.
+/// Returns both edges in steps. A pulse that spans the whole range ends right before its start.
 fn edges(
     options: &TableOptions,
     start: f64,
@@ -241,7 +241,8 @@ fn edges(
     Ok((edge(start, first), edge(stop, last)))
 }
 
-/// Parses a number with a decimal point, or a comma if that does not separate columns; a unit may follow it.
+/// Parses a number with a decimal point, or with a decimal comma if commas do not separate columns. A unit may follow
+/// the number.
 fn number(text: &str, comma: bool) -> Option<f64> {
     let text = text.trim();
     let text =
@@ -253,7 +254,7 @@ fn number(text: &str, comma: bool) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| is_plain && value.is_finite())
 }
 
-/// Returns a whole number, with or without one of these words before it.
+/// Parses a whole number, optionally preceded by one of the given words.
 fn whole(text: &str, words: &[&str]) -> Option<u64> {
     let text = text.trim().to_lowercase();
     let bare = words.iter().find_map(|word| text.strip_prefix(word)).map_or(text.as_str(), str::trim);

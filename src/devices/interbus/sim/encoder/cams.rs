@@ -5,7 +5,6 @@ use crate::devices::interbus::protocol::{CamNumber, Gear, Program, StartupMode, 
 use crate::devices::interbus::sim::memory::{Stored, cam_mut};
 use crate::units::Moment;
 
-/// The program that is being set.
 pub(super) struct Setting<'a>(&'a mut Program);
 
 impl Setting<'_> {
@@ -43,7 +42,8 @@ impl Encoder {
         self.set(now, taken);
     }
 
-    /// Ends a read-out. Values set and not stored keep the encoder in setting: position and outputs are invalid.
+    /// Ends a read-out. With values that are set but not stored, the encoder returns to setting, where position and
+    /// outputs are invalid.
     pub(super) fn end_read_out(&mut self) {
         match self.unstored {
             None => self.turn_to(Activity::Running, InWordContent::Live),

@@ -6,7 +6,7 @@ use crate::devices::interbus::sim::memory::PLACES;
 use crate::units::Moment;
 
 impl Encoder {
-    /// Sets the position to the preset; one beyond the range, which a later gear may cause, wraps.
+    /// Sets the position to the preset. A preset beyond the range, possible after a gear change, wraps.
     pub(super) fn fire(&mut self, now: Moment) {
         let gear = self.memory.gear;
         let (steps, range) = (u64::from(gear.steps()), u64::from(gear.range()));
@@ -17,7 +17,7 @@ impl Encoder {
         self.offset = place as i64 - self.turned(now);
     }
 
-    /// Returns the shaft's position as counted in its direction.
+    /// Returns the shaft position, counted in the configured direction.
     fn turned(&self, now: Moment) -> i64 {
         let place = self.shaft.place(now);
         if self.memory.counterclockwise { -place } else { place }
@@ -32,7 +32,7 @@ impl Encoder {
         Value::of_word((position % u64::from(gear.steps())) as u32)
     }
 
-    /// Returns the IN word while it runs.
+    /// Returns the IN word in normal running.
     pub(super) fn live(&self, now: Moment) -> u32 {
         let position = self.position(now);
         match (self.class, self.mode) {

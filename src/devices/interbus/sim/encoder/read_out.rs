@@ -6,9 +6,9 @@ use crate::units::Moment;
 
 const VALUE: u32 = 0xA000_0000;
 const UNKNOWN: u32 = 0xA400_0000;
-/// Flag: it counts turns.
+/// Flag of an encoder that counts turns.
 const MULTITURN: u32 = 2;
-/// The upper part of a register of the chip, chosen; the lower part is its number.
+/// Upper part of a chip register value (chosen); the lower part is the register number.
 const CHIP: u32 = 0x40;
 
 impl Encoder {
@@ -34,7 +34,7 @@ impl Encoder {
         self.show(value);
     }
 
-    /// A word that asks for a cam, a register or a number that there is not.
+    /// Sends a read-out value; `None` sends the error word for a nonexistent cam, register or number.
     pub(super) fn show(&mut self, value: Option<u32>) {
         let word = value.map_or(UNKNOWN, |value| VALUE | Value::of_word(value).get());
         self.turn_to(Activity::ReadingOut, InWordContent::Word(word));

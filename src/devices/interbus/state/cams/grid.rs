@@ -9,7 +9,7 @@ pub struct Tick {
     /// Position in steps.
     pub position: f64,
     pub value: f64,
-    /// Decimals that it needs.
+    /// Number of decimals needed to label the line.
     pub decimals: usize,
 }
 
@@ -18,7 +18,7 @@ const DEGREES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
 /// More lines than a chart has room for.
 const MOST_TICKS: usize = 400;
 
-/// Returns the smallest of 1, 2, 5, 10, 20, 50 … that is at least this value.
+/// Returns the smallest of 1, 2, 5, 10, 20, 50 … that is at least `at_least`.
 pub fn rounded(at_least: f64) -> f64 {
     if !at_least.is_finite() || at_least <= 0.0 {
         return 1.0;
@@ -29,7 +29,7 @@ pub fn rounded(at_least: f64) -> f64 {
     nice * power
 }
 
-/// Returns lines at least this number of steps apart.
+/// Returns the visible grid lines, at least `apart` steps from each other.
 pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<Tick> {
     let one = scale.steps_in_unit();
     let unit = round_units(scale.unit(), apart / one);
@@ -46,7 +46,7 @@ pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<
     (0..MOST_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()
 }
 
-/// Returns the next line of that grid from a position on, or the previous one, in steps; lines continue beyond the range.
+/// Returns the next or previous grid line from a position, in steps; lines continue beyond the range.
 pub fn next_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
     let around = lines_around(scale, apart, f64::from(position), 2);
     let position = i64::from(position);
@@ -58,7 +58,7 @@ pub fn next_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64
     }
 }
 
-/// Returns the lines around a position, this number on each side, at whole steps and rising.
+/// Returns the grid lines around a position, `each` per side, rounded to whole steps and in ascending order.
 pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) -> Vec<f64> {
     let steps = scale.steps_in_unit() * round_units(scale.unit(), apart / scale.steps_in_unit());
     let zero = f64::from(scale.zero());
@@ -66,7 +66,7 @@ pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) 
     (-each..=each + 1).map(|line| (zero + (own + f64::from(line)) * steps).round()).collect()
 }
 
-/// Returns the smallest round number of units that is at least this value.
+/// Returns the smallest round number of units that is at least `at_least`.
 fn round_units(unit: Unit, at_least: f64) -> f64 {
     match unit {
         Unit::Steps => rounded(at_least).max(1.0),

@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 pub enum Hold {
     Edge(CamNumber, Edge),
     Whole(CamNumber),
-    /// The empty lane of a cam, in which one can be drawn.
+    /// The empty lane of a cam, where a new cam can be drawn.
     New(CamNumber),
 }
 
@@ -21,8 +21,8 @@ impl Hold {
     }
 }
 
-/// Returns the cam with an edge moved by this many steps; backwards if negative. A cam keeps at least one position, and
-/// at most all of them; positions beyond the range are brought within it.
+/// Returns the cam with one edge moved by `by` steps, backwards if negative. A cam always keeps at least one position
+/// and covers at most all of them; edges beyond the range are brought within it.
 pub fn pulled(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (start, stop) = (i64::from(cam.start.get()), i64::from(cam.stop.get()));
@@ -38,7 +38,7 @@ pub fn pulled(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     with(cam, edge, i64::from(of_edge(cam, edge).get()) + by, whole)
 }
 
-/// Returns the whole cam moved by this number of steps. Parts beyond the range stay there.
+/// Returns the whole cam moved by `by` steps. Parts beyond the range stay there.
 pub fn moved(cam: Cam, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     if i64::from(cam.start.get()) >= whole || i64::from(cam.stop.get()) >= whole {
@@ -49,7 +49,7 @@ pub fn moved(cam: Cam, by: i64, range: u32) -> Cam {
     with(start, Edge::Stop, i64::from(cam.stop.get()) + by, whole)
 }
 
-/// Returns the cam between two positions of the pointer, in either order. It may pass the ends of the range.
+/// Returns the cam drawn between two pointer positions, in either order. The positions may lie beyond the range.
 pub fn drawn(from: i64, to: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (first, last) = (from.min(to), from.max(to));

@@ -4,14 +4,14 @@ use super::{Chart, Hold, grid, of_edge};
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber};
 
-/// Targets of snapping, and its reach.
+/// Snapping targets and the distance within which they attract an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snap {
     /// Reach in steps.
     pub reach: f64,
-    /// The lines of a grid in round units, at least this number of steps apart; `None`: no snapping to lines.
+    /// Minimum distance of the grid lines to snap to, in steps; `None` disables snapping to lines.
     pub apart: Option<f64>,
-    /// Edges of other cams do.
+    /// Whether to snap to the edges of other cams.
     pub edges: bool,
 }
 
@@ -19,7 +19,8 @@ impl Snap {
     /// Nothing draws.
     pub const OFF: Snap = Snap { reach: 0.0, apart: None, edges: false };
 
-    /// Snaps to everything, in a chart with this many steps a point: within six points, on a grid of at least ten.
+    /// Creates settings that snap to everything in a chart with the given number of steps per point: within six points,
+    /// on a grid of at least ten.
     pub const fn on(steps_in_point: f64) -> Self {
         Snap { reach: steps_in_point * REACH, apart: Some(steps_in_point * GRID), edges: true }
     }
@@ -27,11 +28,11 @@ impl Snap {
 
 /// Reach in points.
 const REACH: f64 = 6.0;
-/// Least distance of the lines of the grid, in points.
+/// Minimum distance between grid lines, in points.
 const GRID: f64 = 10.0;
 
-/// Returns the number of steps to move instead of `by`: an edge of the original cam snaps to the nearest target, else
-/// to a whole step.
+/// Returns the number of steps to move instead of `by`, so that an edge of the original cam snaps to the nearest target
+/// or else to a whole step.
 pub fn snap(chart: &Chart, scale: &Scale, hold: Hold, cam: Cam, by: f64, snap: &Snap) -> i64 {
     let whole = by.round() as i64;
     let edges: &[Edge] = match hold {

@@ -7,10 +7,10 @@ use crate::devices::interbus::profile::{
 };
 use crate::devices::interbus::state::TEXTS;
 
-/// Most decimals that are useful.
+/// Maximum number of useful decimals.
 const MOST_DECIMALS: usize = 6;
 
-/// Returns how it was read: its delimiter, and whether the columns have names.
+/// Describes how a table was read: its delimiter, and whether the columns have names.
 pub fn layout(table: &CamTable) -> Text {
     let delimiter = match table.delimiter {
         Some(Delimiter::Tab) => "camtable.tab",
@@ -21,7 +21,7 @@ pub fn layout(table: &CamTable) -> Text {
     TEXTS.text(id).with("count", table.rows.len()).with_text("delimiter", TEXTS.text(delimiter))
 }
 
-/// Returns the text of a problem in a table, with its location.
+/// Describes a problem in a table, with its location.
 pub fn problem(problem: &TableProblem) -> Text {
     let text = TEXTS.text("camtable.problem").with("line", problem.line).with("column", problem.column);
     text.with_text("what", wrong(&problem.kind))
@@ -51,7 +51,6 @@ fn wrong(wrong: &TableProblemKind) -> Text {
     }
 }
 
-/// Returns the text of a note about what was read.
 pub fn note(note: &TableNote) -> Text {
     match note {
         TableNote::Pulses { program, name, cams } => {
@@ -67,14 +66,13 @@ pub fn note(note: &TableNote) -> Text {
     }
 }
 
-/// Returns the text of a row with rounded edges.
 pub fn rounding(row: &TableRow, scale: &Scale) -> Text {
     let text = TEXTS.text("camtable.rounded").with("line", row.line).with("program", row.program.get());
     let text = text.with("cam", row.cam.get());
     text.with_text("start", edge(row.start, scale)).with_text("stop", edge(row.stop, scale))
 }
 
-/// Returns the text of an edge: as requested, as rounded, and the difference.
+/// Describes an edge: as requested, as rounded, and the difference.
 pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimals() + 1;
     let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
@@ -123,7 +121,10 @@ mod tests {
         let options = TableOptions { scale, range: 8192, program: ProgramNumber::new(2).unwrap() };
         let table = options.read("name;start;stop\nfeed;350;10\nglue;20;30\nglue;40;x\nGlue;100;110,5\n");
         let says = |text: Text| text.words(Language::English);
-        assert_eq!(says(layout(&table)), "Pulses read: 3. Columns separated by semicolons, named in the first line.");
+        assert_eq!(
+            says(layout(&table)),
+            "Pulses read: 3. The columns are separated by semicolons and named in the first line."
+        );
         assert_eq!(says(problem(&table.problems[0])), "Line 4, column 3: \"x\" is not a number.");
         let pulses = "Program 2: Glue has 2 pulses, which use cams 1, 2.";
         assert_eq!(table.notes.iter().map(note).map(says).collect::<Vec<_>>(), [pulses.replace("Glue", "glue")]);
@@ -153,7 +154,7 @@ mod tests {
         let expected = [
             "Line 2, column 1: Cam program \"9\" does not exist. Choose 1 to 8.",
             "Line 3, column 2: Cam \"8\" does not exist. Choose 0 to 7.",
-            "Line 4, column 3: The start at 1000 is outside the measuring range, which is 0 to 999.",
+            "Line 4, column 3: The start 1000 is outside the measuring range 0 to 999.",
             "Line 5, column 4: The stop is missing.",
             "Line 7, column 2: Cam 2 of program 1 is already defined in line 6; that line is used.",
         ];

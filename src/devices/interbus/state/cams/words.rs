@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, Parameter, P
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::staged::{EditError, Mark};
 
-/// Returns the text of a cam: its number, and its name if it has one.
+/// Returns the label of a cam: its number, followed by its name, if any.
 pub fn cam(lane: &Lane) -> Text {
     match &lane.name {
         Some(name) => TEXTS.text("cams.named").with("cam", lane.cam.get()).with("name", name),
@@ -19,7 +19,6 @@ pub fn bare(cam: CamNumber) -> Text {
     TEXTS.text("cams.cam").with("cam", cam.get())
 }
 
-/// Returns the text for an edge of a cam.
 pub fn edge(lane: &Lane, edge: Edge) -> Text {
     TEXTS
         .text(match edge {
@@ -29,7 +28,7 @@ pub fn edge(lane: &Lane, edge: Edge) -> Text {
         .with_text("cam", bare(lane.cam))
 }
 
-/// Returns the text of a position: in steps, and in units of the machine if it has others.
+/// Formats a position in steps, and also in machine units if the scale has other units.
 pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     match scale.unit() {
         Unit::Steps if scale.zero() == 0 => TEXTS.text("cams.steps").with("step", step),
@@ -40,12 +39,12 @@ pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     }
 }
 
-/// Returns the text of a number of units for a ruler.
+/// Formats a ruler value in the given unit.
 pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
     TEXTS.text("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
 }
 
-/// Returns the place and length of a cam as text.
+/// Describes the position and length of a cam.
 pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
     let (start, stop) = (cam.start.get(), cam.stop.get());
     let text = TEXTS.text(if cam.wraps() { "cams.stretch_over" } else { "cams.stretch" });
@@ -54,7 +53,7 @@ pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
     text.with("count", (i64::from(stop) - i64::from(start)).rem_euclid(whole) + 1)
 }
 
-/// Returns the text of a lane: the place of its cam and whether it is active.
+/// Describes a lane: the position of its cam and whether the cam is active.
 pub fn lane(own: &Lane, scale: &Scale, range: u32) -> Text {
     let Some(edges) = own.edges else { return TEXTS.text("cams.no_edges") };
     let id = if own.on { "cams.works" } else { "cams.works_not" };
@@ -67,7 +66,7 @@ pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
     beyond.into_iter().chain(clash).collect()
 }
 
-/// Returns the text of an indicator: whether the output is on, and a difference from the encoder.
+/// Describes an output indicator: whether the output is on, and any difference from the encoder.
 pub fn lamp(lamp: OutputState) -> Text {
     let state = |on| TEXTS.text(if on { "cams.lamp_on" } else { "cams.lamp_off" });
     match (lamp.own, lamp.simulated) {
@@ -80,7 +79,7 @@ pub fn lamp(lamp: OutputState) -> Text {
     }
 }
 
-/// Returns the problems as text; the cams of a program that are beyond the measuring range are combined.
+/// Returns the messages for the given marks; cams of one program that are beyond the measuring range share a message.
 pub fn marks(marks: &[Mark]) -> Vec<Text> {
     let beyond_in = |own: &Mark| matches!(own, Mark::Beyond { .. }).then(|| own.program()).flatten();
     let mut named = Vec::new();
@@ -125,7 +124,7 @@ fn mark(mark: &Mark) -> Text {
     }
 }
 
-/// Returns why something could not be changed, and what to do.
+/// Explains why an edit was refused and what to do.
 pub fn refused(error: &EditError) -> Text {
     let program = |id, program: ProgramNumber| TEXTS.text(id).with("program", program.get());
     match error {

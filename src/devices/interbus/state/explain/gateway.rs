@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
 use crate::devices::interbus::state::TEXTS;
 
-/// Returns the text of a request to a gateway, as a part of a sentence.
+/// Describes a request to a gateway, worded as part of a sentence.
 pub(super) fn item_text(requested: RequestedItem) -> Text {
     let id = match requested {
         RequestedItem::Input { .. } => "ib_asked.input",
@@ -33,7 +33,7 @@ pub(super) fn exception_name(exception: Exception) -> Text {
     })
 }
 
-/// Returns the most likely cause, and what to do.
+/// Explains the most likely cause of an exception and what to do.
 pub fn exception(exception: Exception) -> Text {
     TEXTS.text(match exception.code() {
         0x01 => "ib_exception.function",
@@ -48,7 +48,7 @@ pub fn exception(exception: Exception) -> Text {
     })
 }
 
-/// Returns the text of the damage of a reply.
+/// Describes the damage to a reply.
 pub fn damage(damage: Damage) -> Text {
     match damage {
         Damage::NoFrame { bytes } => TEXTS.text("ib_damage.no_frame").with("bytes", bytes),

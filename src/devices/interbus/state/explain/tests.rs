@@ -163,14 +163,14 @@ fn an_interrupted_write_names_the_remaining_steps() {
         texts.iter().map(Text::terminal).collect()
     };
     for (kind, what) in [
-        (ChangeKind::Restore, "Restore the profile again"),
+        (ChangeKind::Restore, "restore the profile again"),
         (ChangeKind::Edits, "the command again"),
         (ChangeKind::Preset, "whether the position was set"),
-        (ChangeKind::Default, "to get the old ones back"),
+        (ChangeKind::Default, "to return to the previous values"),
     ] {
         let lines = told(2, EndState::AsFound, kind);
         assert!(lines.len() == 3 && lines[2].contains("b.ron") && lines[2].contains(what), "{lines:?}");
-        assert!(lines[0].contains("1 of 3") && lines[1].contains("runs again") && lines[1].contains("shift"));
+        assert!(lines[0].contains("1 of 3") && lines[1].contains("is running again") && lines[1].contains("shift"));
     }
     let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
     let lines = told(2, EndState::Unknown(standing), ChangeKind::Restore);

@@ -29,7 +29,7 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// Returns the text of an operation; each parameter, mask and edge separately.
+/// Describes an operation, with separate wording for each parameter, mask and edge.
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Parameterise(changes) => OpWords {
@@ -74,7 +74,7 @@ fn program(change: &ProgramChange) -> Vec<ChangeWords> {
     of_cams.chain(mask).chain(shift).collect()
 }
 
-/// Returns the text for a profile for another type of encoder.
+/// Returns the message for a profile of another encoder type.
 pub fn other_type(types: OtherType) -> Text {
     of_types("ib_review.other_type", types)
 }
@@ -129,7 +129,7 @@ pub fn plan(error: &PlanError) -> Text {
     }
 }
 
-/// Returns the warning that the stores of the EEPROM are limited, if a plan comes near the end.
+/// Returns a warning about the limited EEPROM write cycles if the plan comes close to the limit.
 pub fn wear(prepared: &Prepared) -> Option<Text> {
     let (id, after) = match prepared.wear()? {
         Wear::Known(after) => ("ib_stores.known", after),
@@ -150,15 +150,15 @@ pub(super) fn not_begun(why: &NotBegun) -> Text {
     }
 }
 
-/// Returns the text for a write that is done.
+/// Returns the message for a completed write.
 pub fn written(written: &Written) -> Text {
     // The values of the default are not known, so none is read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// Returns the text of an interrupted write: how far it got, why, in which state the encoder was left, and where the backup
-/// is.
+/// Describes an interrupted write: how far it got, why it stopped, the state of the encoder, and the location of the
+/// backup.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let Interrupted { done, unfinished, cause, end_state: left } = interrupted;
     let unclear = unfinished.as_ref().map(Op::items).unwrap_or_default();

@@ -16,18 +16,18 @@ pub enum ValueId {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
     pub place: ValueId,
-    /// Present value; `None`: not in the profile.
+    /// Present value, or `None` if the profile does not contain one.
     pub from: Option<u32>,
-    /// Edited value; `None`: to be removed from the profile.
+    /// Edited value, or `None` if the value is to be removed from the profile.
     pub to: Option<u32>,
 }
 
-/// The parameters that are set, in the manual's order.
+/// Parameters that can be set, in the manual's order.
 const SET: [Parameter; 5] =
     [Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift];
 
 impl ValueId {
-    /// Returns all values: the parameters, the shift, and by program and cam.
+    /// Iterates over all values: parameters, shift, then the cams by program and number.
     pub fn all() -> impl Iterator<Item = ValueId> {
         let cams = ProgramNumber::all().flat_map(|program| CamNumber::all().map(move |cam| (program, cam)));
         let cams = cams.flat_map(|(program, cam)| {
@@ -42,7 +42,7 @@ impl ValueId {
 }
 
 impl EditedValues {
-    /// Returns a value; `None`: it is not known.
+    /// Returns a value, or `None` if unknown.
     pub fn value(&self, place: ValueId) -> Option<u32> {
         match place {
             ValueId::Parameter(parameter) => self.image.parameters.value(parameter),
@@ -57,7 +57,7 @@ impl EditedValues {
 }
 
 impl Staged {
-    /// Returns how a value differs; `None` if it does not.
+    /// Returns the difference of a value, or `None` if the value is unchanged.
     pub fn differs(&self, place: ValueId) -> Option<Differs> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.value(place), wanted.value(place));
@@ -69,7 +69,7 @@ impl Staged {
         ValueId::all().filter_map(|place| self.differs(place)).collect()
     }
 
-    /// Returns whether a cam was edited, apart from its name. An inactive one that the profile did not contain does not
+    /// Returns whether a cam was edited, apart from its name. An inactive cam that the profile did not contain does not
     /// count.
     pub fn is_edited(&self, program: ProgramNumber, cam: CamNumber) -> bool {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };

@@ -6,10 +6,10 @@ use super::{BaseSource, EditedValues, Staged, edit};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, ProgramNumber, Value, WindowShift};
 
-/// Stored edit: the edited value, however it was reached. Numbers as in the manual.
+/// Edit in stored form: only the resulting value, with numbers as in the manual.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SavedEdit {
-    /// Steps and turns, which are one gear.
+    /// Steps and turns, which together form one gear.
     Gear(u32, u32),
     /// 3 clockwise, 4 counterclockwise.
     Direction(u32),
@@ -23,14 +23,14 @@ pub enum SavedEdit {
     /// Program and cam to be removed from the profile.
     NoCam(u8, u8),
     On(u8, u8, bool),
-    /// Program, cam, and its name, which may be empty.
+    /// Program, cam, and the cam name, which may be empty.
     Name(u8, u8, String),
     /// Program and its name, which may be empty.
     ProgramName(u8, String),
 }
 
 impl Staged {
-    /// Returns the edits for a draft on disk, including those that wait for their program.
+    /// Returns the edits to save as a draft, including those waiting for their program to be read.
     pub fn edits(&self) -> Vec<SavedEdit> {
         let mut kept = Vec::new();
         if let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) {
@@ -43,7 +43,8 @@ impl Staged {
         kept
     }
 
-    /// Takes edits from a draft, as one step. Those whose program was not read wait for it; invalid ones are dropped.
+    /// Applies the edits of a draft as one step. Edits of a program that has not been read wait for it; invalid edits
+    /// are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);
@@ -105,8 +106,8 @@ fn keep_program(base: &EditedValues, wanted: &EditedValues, program: ProgramNumb
 }
 
 impl SavedEdit {
-    /// Applies it to the edited values, unless a number is invalid. Values beyond the measuring range are applied
-    /// unchanged.
+    /// Applies the stored edit to the edited values, unless it contains an invalid number. Values beyond the measuring
+    /// range are applied unchanged.
     fn put(self, wanted: &mut EditedValues, ground: BaseSource) {
         let parameters = &mut wanted.image.parameters;
         match self {

@@ -6,20 +6,20 @@ use crate::devices::interbus::protocol::{
     Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
 };
 
-/// Edit. Each is one step, however much it changes.
+/// Edit of the encoder's values. Each edit is a single undo step, however much it changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Edit {
     /// Steps of the measuring range.
     Steps(u32),
     /// Turns until the position starts again.
     Revolutions(u32),
-    /// Set both at once, if they cannot be set one after the other.
+    /// Sets steps and turns together, for changes that are not possible one after the other.
     Gear {
         steps: u32,
         revolutions: u32,
     },
     Direction(Direction),
-    /// Set the preset, in steps. This does not fire it.
+    /// Sets the preset value in steps without firing the preset.
     Preset(u32),
     /// The zero shift, in steps.
     ZeroShift(u32),
@@ -30,15 +30,14 @@ pub enum Edit {
         edge: Edge,
         to: u32,
     },
-    /// Set both edges of a cam: entered, moved as a whole, or drawn.
+    /// Sets both edges of a cam that was entered, moved as a whole, or drawn.
     Cam {
         program: ProgramNumber,
         cam: CamNumber,
-        /// Its first position.
         start: u32,
-        /// Its last position; before the start if it continues over the end of the measuring range.
+        /// Last position of the cam; lies before the start if the cam continues across the end of the measuring range.
         stop: u32,
-        /// Activates it if it is not active yet.
+        /// Whether to activate the cam if it is not active yet.
         on: bool,
     },
     Switch {
@@ -47,35 +46,35 @@ pub enum Edit {
         /// Active if set.
         on: bool,
     },
-    /// Name of a cam; empty for none.
+    /// Sets the name of a cam; an empty name removes it.
     Name {
         program: ProgramNumber,
         cam: CamNumber,
         /// At most [`LONGEST_NAME`] characters.
         name: String,
     },
-    /// Name of a program; empty for none.
+    /// Sets the name of a program; an empty name removes it.
     ProgramName {
         program: ProgramNumber,
         /// At most [`LONGEST_NAME`] characters.
         name: String,
     },
-    /// Copy a program to another, with the names of its cams.
+    /// Copies a program to another, including its cam names.
     Copy {
         from: ProgramNumber,
         to: ProgramNumber,
     },
-    /// Mirror a program: positions count from the other end of the range. Inactive cams are mirrored too, unless they are
-    /// beyond the range.
+    /// Mirrors a program, so that positions count from the other end of the range. Inactive cams are mirrored too,
+    /// unless they are beyond the range.
     Mirror(ProgramNumber),
-    /// Shift a program by this number of steps; parts that leave the range at one end appear at the other. Inactive cams
-    /// are shifted too, unless they are beyond the range.
+    /// Shifts a program by a number of steps; parts that leave the range at one end reappear at the other. Inactive
+    /// cams are shifted too, unless they are beyond the range.
     Rotate {
         program: ProgramNumber,
-        /// Later by this number of steps; negative for earlier.
+        /// Steps to shift towards later positions; negative for earlier ones.
         by: i64,
     },
-    /// Programs as a table has them.
+    /// Sets programs from an imported table.
     Table(Vec<Filled>),
 }
 
@@ -90,10 +89,10 @@ pub enum EditError {
     /// The window's shift, which is read with a program, was not read.
     #[error("the shift of the window has not been read")]
     ShiftNotRead,
-    /// The profile does not contain this cam.
+    /// The profile does not contain the cam.
     #[error("cam {} of program {} has no edges", cam.get(), program.get())]
     NoCam { program: ProgramNumber, cam: CamNumber },
-    /// Steps and turns are not one.
+    /// Steps and turns do not form a valid gear.
     #[error(transparent)]
     Gear(#[from] GearError),
     #[error(transparent)]
@@ -102,7 +101,7 @@ pub enum EditError {
     Edge {
         edge: Edge,
         to: u32,
-        /// The last position.
+        /// Last position of the measuring range.
         last: u32,
     },
     /// An active cam is beyond the measuring range, so its program can be neither mirrored nor shifted.
@@ -110,10 +109,10 @@ pub enum EditError {
     Beyond {
         program: ProgramNumber,
         cam: CamNumber,
-        /// The last position.
+        /// Last position of the measuring range.
         last: u32,
     },
-    /// A name is too long, or no line of text.
+    /// A name is too long or is not a single line.
     #[error("a name must be a single line of at most {LONGEST_NAME} characters")]
     Name,
 }
@@ -203,7 +202,6 @@ fn within(parameter: Parameter, value: u32, high: u32) -> Result<u32, EditError>
     if value <= high { Ok(value) } else { Err(OutOfRange { parameter, value, low: 0, high }.into()) }
 }
 
-/// Returns the last position of the measuring range.
 const fn last(wanted: &EditedValues) -> u32 {
     wanted.range().saturating_sub(1)
 }
@@ -213,7 +211,7 @@ fn position(edge: Edge, to: u32, wanted: &EditedValues) -> Result<Value, EditErr
     Value::new(to).filter(|_| to <= last).ok_or(EditError::Edge { edge, to, last })
 }
 
-/// Returns a program to be changed. The first edit adds it to a profile.
+/// Returns a program for editing. The first edit of a missing program adds it to the profile.
 pub(super) fn program_mut(
     after: &mut EditedValues,
     number: ProgramNumber,
@@ -260,7 +258,7 @@ fn fill(after: &mut EditedValues, filled: &Filled, ground: BaseSource) -> Result
     Ok(())
 }
 
-/// Returns a name without blanks around it.
+/// Validates a name and returns it without surrounding blanks.
 pub(super) fn checked_name(name: &str) -> Result<String, EditError> {
     let name = name.trim();
     if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {

@@ -4,13 +4,14 @@ use super::EditedValues;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, ProgramNumber};
 
-/// Finding that the user should check. An edit may cause it: fewer steps leave cams beyond the range.
+/// Finding that the user should check. Edits can cause findings: with fewer steps, for example, cams may end up beyond
+/// the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     /// Steps and turns are no gear.
     Gear(GearError),
     Preset {
-        /// The last position.
+        /// Last position of the measuring range.
         last: u32,
     },
     /// A cam that works has an edge beyond the measuring range.
@@ -19,15 +20,15 @@ pub enum Mark {
         cam: CamNumber,
         /// The edge; the start if both are concerned.
         edge: Edge,
-        /// The last position.
+        /// Last position of the measuring range.
         last: u32,
     },
-    /// Two active cams of one name are on at the same positions: pulses of one track should not overlap. The encoder has no
+    /// Two active cams of the same name overlap, although the pulses of one track should not. The encoder itself has no
     /// such rule.
     Clash {
         program: ProgramNumber,
         first: CamNumber,
-        /// The other.
+        /// Second of the overlapping cams.
         second: CamNumber,
         /// The first position at which both are on.
         at: u32,
@@ -85,12 +86,12 @@ impl EditedValues {
     }
 }
 
-/// Returns whether two names mean one track, ignoring case.
+/// Returns whether two names denote the same track, ignoring case.
 pub(super) fn is_one_track(one: &str, other: &str) -> bool {
     one.trim().to_lowercase() == other.trim().to_lowercase()
 }
 
-/// Returns the first position at which both are on: the start of one of them.
+/// Returns the first position covered by both cams, which is the start of one of them.
 fn first_common(one: Cam, other: Cam) -> Option<u32> {
     let wrapped = one.wraps() && other.wraps();
     let begins = [one.start, other.start].into_iter().filter(|at| one.is_on(*at) && other.is_on(*at));

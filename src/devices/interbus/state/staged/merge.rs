@@ -4,7 +4,7 @@ use super::EditedValues;
 use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber};
 
-/// Returns the values read, over the known ones where nothing was read.
+/// Overlays newly read values on the known ones, which remain wherever nothing was read.
 pub(super) fn over(known: &Image, read: Image) -> Image {
     let mut programs = read.programs;
     for (own, known) in programs.iter_mut().zip(&known.programs) {
@@ -13,7 +13,7 @@ pub(super) fn over(known: &Image, read: Image) -> Image {
     Image { parameters: read.parameters, shift: read.shift.or(known.shift), programs }
 }
 
-/// Moves the edits made against `before` to the values of `now`.
+/// Transfers the edits made against `before` to the values of `now`.
 pub(super) fn rebase(own: &mut EditedValues, before: &EditedValues, now: &EditedValues) {
     let (parameters, was, is) = (&mut own.image.parameters, &before.image.parameters, &now.image.parameters);
     follow(&mut parameters.steps, &was.steps, &is.steps);
@@ -55,7 +55,7 @@ fn rebase_program(program: &mut Program, was: &Program, is: &Program) {
     program.mask = program.mask & edited | is.mask & !edited;
 }
 
-/// Takes a new value unless the old one was edited.
+/// Returns the new value, unless the old one was edited.
 fn follow<T: PartialEq + Clone>(own: &mut T, was: &T, is: &T) {
     if own == was {
         own.clone_from(is);

@@ -15,7 +15,7 @@ use crate::ui::{Theme, icons};
 pub(super) struct CamChartUiState {
     ring: bool,
     snaps: bool,
-    /// The visible part of the range; `None`: all of it.
+    /// Visible part of the range, or `None` for all of it.
     stretch: Option<Stretch>,
     selected: Option<CamNumber>,
 }

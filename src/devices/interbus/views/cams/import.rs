@@ -13,7 +13,7 @@ use crate::ui::{Theme, icons};
 /// Height of the list of problems and roundings.
 const LIST: f32 = 200.0;
 
-/// Handles a table pasted outside of a text entry.
+/// Imports a table that is pasted while no text field has the focus.
 pub(super) fn pasted(ui: &Ui, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     if ui.ctx().text_edit_focused() || encoder.staged.wanted().is_none() {
         return;

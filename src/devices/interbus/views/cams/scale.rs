@@ -9,7 +9,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, folding_card, paragraph, problem_below, settled_entry};
 
-/// Entered text that does not take effect yet.
+/// Entered text that has not taken effect yet.
 #[derive(Default)]
 pub(super) struct CamScaleUiState {
     steps: Option<(String, Option<Text>)>,

@@ -15,13 +15,13 @@ use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus,
 use crate::ui::controls::{card, name, paragraph, problem, settled_entry};
 use crate::ui::{Theme, icons};
 
-/// Entered text that does not take effect yet.
+/// Entered text that has not taken effect yet.
 #[derive(Default)]
 pub(super) struct CamTableUiState {
     drafts: BTreeMap<(ProgramNumber, CamNumber, Column), Draft>,
 }
 
-/// Entered text, with the reason if it was refused.
+/// Entered text, and the reason if it was refused.
 type Draft = Option<(String, Option<Text>)>;
 
 /// The entries of a row.

@@ -18,41 +18,41 @@ pub(crate) struct CamChart<'a> {
     /// The edited program, also during a drag.
     pub(crate) chart: &'a Chart,
     pub(crate) scale: &'a Scale,
-    /// Position of the encoder; `None` if not known.
+    /// Encoder position, if known.
     pub(crate) position: Option<u32>,
-    /// The outputs reported by the encoder, bit i for cam i; `None`: not reported.
+    /// Outputs reported by the encoder (bit i for cam i), or `None` if not reported.
     pub(crate) own: Option<u8>,
     pub(crate) selected: Option<CamNumber>,
     pub(crate) movable: bool,
-    /// Edges snap to nearby targets; holding Alt disables this.
+    /// Whether edges snap to nearby targets; holding Alt disables snapping.
     pub(crate) snaps: bool,
 }
 
 /// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CamEvent {
-    /// During a drag: the cam would get these edges. Sent in every frame until the drag ends.
+    /// Edges that the cam would get if the drag ended now. Sent in every frame until the drag ends.
     Preview(CamNumber, Cam),
-    /// The cam is to get these edges, which differ from the present ones.
+    /// The user moved the cam to edges that differ from the present ones.
     Moved {
         cam: CamNumber,
         to: Cam,
         drawn: bool,
     },
-    /// The cam is to work, or not.
+    /// The user switched the cam on or off.
     Switched(CamNumber, bool),
     Selected(CamNumber),
     Viewed(VisibleRange),
 }
 
-/// Something that is dragged, from one drawing to the next.
+/// Drag in progress, kept from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drag {
     pub(super) hold: Hold,
-    /// The position under the pointer where it was pressed, and the present one; around the range more than once.
+    /// Position under the pointer when the drag started.
     pub(super) from: f64,
     pub(super) at: f64,
-    /// The target of the drag; `None` if it was cancelled.
+    /// Target of the drag, or `None` if it was cancelled.
     pub(super) to: Option<Cam>,
 }
 
@@ -61,7 +61,7 @@ pub(super) fn ink(theme: &Theme, cam: CamNumber) -> Color32 {
 }
 
 impl CamChart<'_> {
-    /// Returns the cam after dragging it from one position to another.
+    /// Returns the cam after a drag from one position to another.
     pub(super) fn pulled(&self, hold: Hold, from: f64, at: f64, snap: &Snap) -> Option<Cam> {
         let range = self.chart.range;
         let own = self.chart.lane(hold.cam())?.edges;
@@ -84,7 +84,7 @@ impl CamChart<'_> {
         }
     }
 
-    /// Returns the effect of a drag: the preview while the pointer is down, and the result.
+    /// Returns the event of a drag: a preview while the pointer is down, then the result.
     pub(super) fn dragged(&self, ui: &Ui, base: Id, response: &Response, drag: Drag, snap: &Snap) -> Option<CamEvent> {
         let given_up = ui.input(|input| input.key_pressed(Key::Escape)) || is_given_up(ui, base);
         let snap = if self.snaps && !ui.input(|input| input.modifiers.alt) { *snap } else { Snap::OFF };
@@ -107,13 +107,14 @@ impl CamChart<'_> {
         to.map(|to| CamEvent::Preview(cam, to))
     }
 
-    /// Returns the program as it would be while something is dragged.
+    /// Returns the program as it looks during a drag.
     pub(super) fn shown(&self, drag: Option<Drag>) -> Option<Chart> {
         let drag = drag?;
         Some(self.chart.with(drag.hold.cam(), drag.to?))
     }
 
-    /// Handles the keyboard on a part: by one step or to the next line, on and off.
+    /// Handles the arrow keys, which move a part by one step or to the next grid line, and the keys that switch a cam
+    /// on and off.
     pub(super) fn keys(&self, ui: &Ui, response: &Response, hold: Hold, apart: f64) -> Option<CamEvent> {
         if !response.has_focus() || !self.movable {
             return None;
@@ -154,7 +155,7 @@ impl CamChart<'_> {
         (to != own).then_some(CamEvent::Moved { cam, to, drawn: false })
     }
 
-    /// Sets the text of an edge for screen readers, and handles their input.
+    /// Describes an edge to screen readers and handles their input.
     pub(super) fn tell_edge(
         &self,
         ui: &Ui,
@@ -227,7 +228,7 @@ impl CamChart<'_> {
         });
     }
 
-    /// Draws the target of a drag as text, always within the available room.
+    /// Draws the target of a drag as a label, always within the available area.
     pub(super) fn ghost(&self, theme: &Theme, painter: &Painter, drag: &Drag, near: Pos2) {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;

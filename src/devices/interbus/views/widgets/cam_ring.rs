@@ -26,11 +26,11 @@ use crate::ui::widgets::focus_ring;
 
 /// The least side of the square.
 const LEAST: f32 = 160.0;
-/// Radius of the innermost circle, as a share of the outer radius.
+/// Radius of the innermost circle as a fraction of the outer radius.
 const INNER: f32 = 0.34;
-/// Room around it for numbers.
+/// Margin around the ring for its numbers.
 const NUMBERS: f32 = 26.0;
-/// Width of the grab area of an edge.
+/// Width of an edge's grab area.
 const GRIP: f32 = 12.0;
 /// Maximum number of numbers around the ring.
 const LINES: f64 = 12.0;
@@ -43,7 +43,7 @@ struct Dial {
 }
 
 impl Dial {
-    /// Returns a place on a circle, the range's beginning at the top.
+    /// Returns a point on a circle; the range begins at the top.
     fn at(self, position: f64, radius: f32) -> Pos2 {
         let angle = (position / self.range * std::f64::consts::TAU) as f32;
         self.middle + Vec2::new(angle.sin(), -angle.cos()) * radius
@@ -56,7 +56,7 @@ impl Dial {
         part.rem_euclid(1.0) * self.range
     }
 
-    /// Returns the width of a circle with the gap to the next one.
+    /// Returns the distance between adjacent circles: the width of one plus the gap.
     fn pitch(self) -> f32 {
         self.radius * (1.0 - INNER) / Program::CAMS as f32
     }
@@ -71,7 +71,7 @@ impl Dial {
         if (0.0..Program::CAMS as f32).contains(&from_outside) { CamNumber::new(from_outside as u8) } else { None }
     }
 
-    /// Returns the shorter way from one position to another, around the ring.
+    /// Returns the signed distance from one position to another, the shorter way around the ring.
     fn turned(self, from: f64, to: f64) -> f64 {
         (to - from + self.range / 2.0).rem_euclid(self.range) - self.range / 2.0
     }
@@ -82,7 +82,6 @@ impl Dial {
     }
 }
 
-/// The context of all functions here.
 struct Ring<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
@@ -92,7 +91,8 @@ struct Ring<'a> {
     base: Id,
 }
 
-/// Draws the ring and returns the user's action. One ring per `Ui`: another needs its own id (`push_id`).
+/// Draws the ring and returns the user's action. Each `Ui` can hold one ring; further rings need their own id
+/// (`push_id`).
 pub(crate) fn cam_ring(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_ring");
     let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
@@ -190,7 +190,8 @@ impl Ring<'_> {
         Some(self.dial.at(f64::from(at + beyond), self.dial.circle(cam)))
     }
 
-    /// Handles the pointer around the ring: in every frame by the shorter way from its previous place.
+    /// Handles a drag around the ring, following the pointer in every frame by the shorter way from its previous
+    /// position.
     fn pulled(&self, response: &Response, hold: Hold, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;
@@ -288,7 +289,7 @@ impl Ring<'_> {
     }
 }
 
-/// Returns the place of the number of a cam: at the start of the range.
+/// Returns where a cam's number is drawn: at the start of the range.
 fn pos_of_name(dial: Dial, cam: CamNumber) -> Pos2 {
     dial.middle - Vec2::new(0.0, dial.circle(cam))
 }

@@ -24,17 +24,17 @@ use crate::ui::widgets::{BitCell, series};
 pub(crate) struct WordLayout<'a> {
     pub(crate) label: &'a str,
     pub(crate) shift: WindowShift,
-    /// A received cam output word; `None`: the layout only.
+    /// Received cam output word, or `None` to draw only the layout.
     pub(crate) word: Option<u32>,
-    /// Steps of the measuring range: bits of the position above it are always 0.
+    /// Measuring range in steps. Position bits above the range are always 0.
     pub(crate) range: u32,
 }
 
-/// Bits that are of one kind.
+/// Adjacent bits of the same kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Group {
     kind: Kind,
-    /// The highest bit of the word, and the lowest.
+    /// Highest bit of the group within the word.
     high: u8,
     low: u8,
 }
@@ -50,12 +50,12 @@ enum Kind {
 /// Widths that a cell may have.
 const LEAST: f32 = 17.0;
 const MOST: f32 = 26.0;
-/// Heights of the numbers, of a cell, of the lane with the names, and between two rows.
+/// Height of the bit numbers.
 const NUMBERS: f32 = 15.0;
 const CELL: f32 = 24.0;
 const NAMES: f32 = 20.0;
 const GAP: f32 = 8.0;
-/// Bits of the word, and of the position.
+/// Number of bits in a word.
 const BITS: u8 = 32;
 const POSITION: u8 = Value::BITS as u8;
 
@@ -104,7 +104,7 @@ impl WordLayout<'_> {
         u8::try_from(high).ok().zip(u8::try_from(mask.trailing_zeros()).ok())
     }
 
-    /// Returns the name of a group, with its bits in the word.
+    /// Returns the name of a group, including its bit numbers in the word.
     fn name(&self, group: Group) -> Text {
         match group.kind {
             Kind::Invalid => TEXTS.text("cams.word_invalid"),
@@ -157,7 +157,7 @@ impl Cells {
         Vec2::new(f32::from(self.columns) * self.cell, lines + CELL * f32::from(self.position_lines()))
     }
 
-    /// The position has its bits right-justified below the word's.
+    /// Returns the number of lines for the position's bits, which are right-justified below the word's.
     const fn position_lines(&self) -> u8 {
         POSITION.div_ceil(self.columns)
     }
@@ -184,7 +184,7 @@ impl Cells {
         Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL - 1.0))
     }
 
-    /// Returns the cells from one bit of the word down to another, one rectangle a line.
+    /// Returns the cells for bits `high` down to `low` of the word, merged into one rectangle per line.
     fn runs(&self, high: u8, low: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for bit in (low..=high).rev() {
@@ -229,7 +229,7 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
     ui.add(egui::Label::new(theme.caption(say(theme, "cams.word_of_position"))).wrap());
 }
 
-/// Returns a group with its place in the word and, if a word was received, its bits.
+/// Describes a group with its location in the word and, if a word was received, its bits.
 fn tells(theme: &Theme, layout: &WordLayout<'_>, group: Group) -> String {
     let name = theme.words(&layout.name(group));
     let place = if group.high == group.low {
@@ -262,7 +262,7 @@ fn word_bit(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, bit: u8, rect: Rect
     painter.text(above, Align2::CENTER_CENTER, bit.to_string(), font, theme.palette.muted.into());
 }
 
-/// Draws a bracket below a group with its name, as far as that fits.
+/// Draws a bracket below a group, labelled with as much of its name as fits.
 fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells, group: Group) {
     let painter = ui.painter();
     let ink = group.kind.ink(theme);
@@ -280,7 +280,7 @@ fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells, group: G
     }
 }
 
-/// Draws the position's own bits: those sent, those left out, those unused by the range.
+/// Draws the position's own bits: those sent, those left out, and those unused by the range.
 fn position(painter: &Painter, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells) {
     let mask = layout.shift.mask();
     let last = layout.range.saturating_sub(1);

@@ -117,7 +117,7 @@ pub fn c99(layout: &Layout, title: &str) -> String {
     text.replace("fold, digit;", "fold = 0, digit = 0;")
 }
 
-/// Returns the flags that a frame of this layout may raise: name, value, meaning.
+/// Returns the flags that a frame of the given layout may raise, each with its name, value and meaning.
 pub(super) fn flags(layout: &Layout) -> Vec<(String, Flags, String)> {
     let descriptor = layout.descriptor();
     let errors = descriptor.errors.iter().enumerate();

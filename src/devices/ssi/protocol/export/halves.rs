@@ -30,7 +30,6 @@ enum Language {
     Scl,
 }
 
-/// Bits of half a word.
 const HALF: u8 = 32;
 
 struct Halves {
@@ -39,7 +38,7 @@ struct Halves {
     is_wide: bool,
 }
 
-/// The halves of a word; none: it is 0.
+/// The two halves of a word. A half that is `None` is 0.
 struct Pair {
     high: Option<String>,
     low: Option<String>,
@@ -109,14 +108,15 @@ impl Halves {
         Ok(Halves { language, is_wide: layout.clocks() > HALF })
     }
 
-    /// Says into which bit the first one of a frame comes.
+    /// Returns a comment that names the bit in which the first bit of a frame is stored.
     fn first_bit(&self, layout: &Layout) -> String {
         let clocks = layout.clocks();
         let (bit, name) = if self.is_wide { (clocks - 1 - HALF, "frame_high") } else { (clocks - 1, "frame") };
         format!("{clocks} clocks; the first bit received is bit {bit} of {name}.")
     }
 
-    /// The variables of the function block: of the auxiliary ones those that its statements use.
+    /// Writes the variable declarations of the function block. Auxiliary variables are declared only if a statement
+    /// uses them.
     fn variables(&self, text: &mut String, lines: &[String], [indent, word, number, truth, auxiliary]: [&str; 5]) {
         let mut section = |kind: &str, rows: &[(String, &str)]| {
             let _ = writeln!(text, "{kind}");
@@ -175,7 +175,7 @@ impl Halves {
     }
 }
 
-/// Both halves; where one is 0, the other.
+/// Joins two half-word expressions with an operator. If one is `None` (zero), the result is the remaining operand.
 fn joined(a: Option<String>, b: Option<String>, operator: &str) -> Option<String> {
     match (a, b) {
         (Some(a), Some(b)) => Some(format!("({a} {operator} {b})")),
@@ -198,7 +198,7 @@ fn masked(a: Option<&String>, b: Option<&String>) -> Option<String> {
 }
 
 impl Pair {
-    /// Compares the halves of both that are not 0 anyway.
+    /// Compares two words half by half, skipping halves that are zero in both.
     fn compared(&self, other: &Pair, operator: &str, between: &str, none: &str) -> String {
         let halves = [(&self.high, &other.high), (&self.low, &other.low)].into_iter();
         let halves = halves.filter(|(a, b)| a.is_some() || b.is_some());
@@ -282,7 +282,8 @@ impl Dialect for Halves {
         format!("{name} := {value};")
     }
 
-    /// What has no upper half stays below 32 bits: what a shift carries there is always 0.
+    /// Assigns a word. A variable without an upper half never exceeds 32 bits, so bits carried into the upper half by a
+    /// shift are always 0.
     fn assign_word(&self, name: &'static str, value: &Pair) -> Vec<String> {
         let text = |half: &Option<String>| half.clone().unwrap_or_else(|| NONE.to_owned());
         match self.half_names(name) {
@@ -322,7 +323,7 @@ impl Dialect for Halves {
     }
 }
 
-/// A variable stands in a line, and not only as a part of another's name.
+/// Returns whether a line uses the given variable as a whole identifier rather than as part of a longer name.
 fn mentions(line: &str, name: &str) -> bool {
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     line.split(|c| !is_name(c)).any(|word| word == name)
@@ -332,7 +333,8 @@ fn one_line(text: &str) -> String {
     text.replace(['\n', '\r'], " ")
 }
 
-/// Variables of a block of SCL are marked with `#`; all of them are in small letters, and nothing else is.
+/// Prefixes local variables with `#`, as SCL requires. In the generated code, exactly the variables start with a
+/// lowercase letter.
 fn local(line: &str) -> String {
     let mut out = String::new();
     let mut word = String::new();

@@ -96,7 +96,7 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     Ok(words.collect())
 }
 
-/// Returns a name that a pin can have and no other has yet.
+/// Returns a valid pin name that is not taken yet.
 fn pin(name: &str, taken: &mut Vec<String>) -> String {
     let is_known = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.');
     let letters = name.chars().map(|letter| if is_known(letter) { letter.to_ascii_lowercase() } else { '-' });

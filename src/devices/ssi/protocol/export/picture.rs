@@ -85,7 +85,6 @@ pub struct PictureLabel {
 
 /// Distance of everything from the edges.
 pub(super) const MARGIN: u32 = 16;
-/// Lines and texts that are not the main thing.
 pub(super) const FAINT: &str = "#555";
 
 const FONT: &str = "font-family=\"Inter, Arial, sans-serif\"";

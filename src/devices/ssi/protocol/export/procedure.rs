@@ -6,9 +6,9 @@ use crate::devices::ssi::protocol::descriptor::Coded;
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 use crate::devices::ssi::protocol::range::{Fraction, Range};
 
-/// The syntax of a language. A word holds the bits of a frame or a part of them; a number is text in any language.
+/// Syntax of a target language. A word holds all or part of a frame's bits; a number is plain text in every language.
 pub(super) trait Dialect {
-    /// An expression whose value is a word.
+    /// Expression that evaluates to a word.
     type Word;
     /// Returns the variable as a word expression.
     fn name(&self, name: &'static str) -> Self::Word;
@@ -33,8 +33,8 @@ pub(super) trait Dialect {
     fn both(&self, a: &str, b: &str) -> String;
 }
 
-/// Writes statements that read `frame` and set the words `word`, `code`, `flags`, the numbers `position`, `turns`, `steps`,
-/// and `valid`. `fold` and `digit` are auxiliary words.
+/// Writes the statements that read `frame` and set the words `word`, `code` and `flags`, the numbers `position`,
+/// `turns` and `steps`, and `valid`. `fold` and `digit` are auxiliary words.
 pub(super) fn statements<D: Dialect>(layout: &Layout, dialect: &D) -> Vec<String> {
     let mut writer = Writer { dialect, lines: Vec::new() };
     writer.frame(layout);
@@ -144,7 +144,7 @@ impl<D: Dialect> Writer<'_, D> {
         }
     }
 
-    /// Gray, as a part of the word.
+    /// Writes the Gray conversion of a code that occupies only part of the word.
     fn ungray_inside(&mut self, layout: &Layout) {
         let d = self.dialect;
         let (bits, behind) = layout.gray;

@@ -10,7 +10,7 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::timing::Times;
 
-/// The location of the position and the other bits, counted as modules count: bit 0 is the last one received.
+/// Locations of the position and the remaining bits, numbered as interface modules do: bit 0 is the last bit received.
 struct Places {
     frame: u8,
     lowest: u8,
@@ -130,7 +130,7 @@ fn is_gray(layout: &Layout) -> bool {
     layout.descriptor().code == Code::Gray
 }
 
-/// The number of a code: 1 for Gray.
+/// Returns the code setting: 1 for Gray, 0 for binary.
 fn code_number(layout: &Layout) -> Setting {
     let (number, value) = if is_gray(layout) { (1, SettingMeaning::Gray) } else { (0, SettingMeaning::Binary) };
     Setting::Said(ExportText::Setting(number, value))

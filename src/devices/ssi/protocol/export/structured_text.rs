@@ -111,7 +111,7 @@ pub fn structured_text(layout: &Layout, title: &str) -> String {
     text
 }
 
-/// `WORD` is a type there.
+/// Renames the variable `word` to `word_`, because `WORD` is a type in structured text.
 fn own_names(line: &str) -> String {
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut out = String::new();

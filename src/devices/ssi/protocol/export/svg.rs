@@ -14,7 +14,7 @@ const CLOCK: &str = "#1a5fb4";
 const DATA: &str = "#26a269";
 const BITS: &str = "#b8dcff";
 
-/// Returns a field's colour on paper: light enough for black text on it.
+/// Returns a field's print colour, light enough for black text.
 fn colour(role: Role) -> &'static str {
     match role {
         Role::Zero => "#eeeeee",
@@ -38,7 +38,7 @@ fn family(role: Role) -> &'static str {
     }
 }
 
-/// The name of what a clock carries, as [`Layout::role_name`], in these words.
+/// Returns the name of a clock's content, like [`Layout::role_name`] but with the given wording.
 pub(super) fn role_name(layout: &Layout, role: Role, say: Say<'_>) -> String {
     match role {
         Role::Parity => say(&ExportText::ParityBit),

@@ -7,7 +7,7 @@ use crate::devices::ssi::protocol::range::Range;
 /// A setting left as delivered.
 type Leave = fn(&mut Settings);
 
-/// Each setting, in the order in which they are omitted.
+/// Functions that clear one setting each, in the order in which they are tried.
 const LEAVE: [Leave; 12] = [
     |settings| settings.clocks = None,
     |settings| settings.align = None,
@@ -42,7 +42,7 @@ impl Family {
         settings.resolve(self).is_ok_and(|resolved| resolved.layout.descriptor() == frame)
     }
 
-    /// Leaves out one setting after the other that is so without it.
+    /// Omits every setting that is not needed to produce the given frame.
     fn fewest(&self, settings: Settings, frame: &Descriptor) -> Settings {
         LEAVE.iter().fold(settings, |settings, leave| {
             let mut fewer = settings.clone();
@@ -51,7 +51,7 @@ impl Family {
         })
     }
 
-    /// Returns the settings that a frame shows: all but the alignment of its bits.
+    /// Returns the settings that can be read off a frame, which is all but the bit alignment.
     fn shown_settings(&self, frame: &Descriptor) -> Settings {
         let asked = Settings {
             code: Some(frame.code),

@@ -290,7 +290,7 @@ fn limit(family: &Family, field: SettingName, (least, most): (u64, u64), value: 
     }
 }
 
-/// Returns the zeros before the position; `None` if it has no place there.
+/// Returns the number of zeros before the position, or `None` if the position does not fit.
 fn lead(align: Align, range: &Range, bits: u8) -> Option<u8> {
     let tree = |slot: u8, behind: u8| match *range {
         Range::Bits { multiturn, singleturn } if bits == multiturn + singleturn && singleturn <= behind => {
@@ -311,7 +311,7 @@ fn fits(frame: &Frame, lead: u8, bits: u8) -> bool {
     lead + bits <= frame.area.unwrap_or(bits)
 }
 
-/// Returns the error bits of a frame at their places; `behind` is the position's last clock.
+/// Returns the error bits of a frame with their clocks; `behind` is the position's last clock.
 fn placed(frame: &Frame, place: ErrorPlace, behind: u8) -> Vec<ErrorBit> {
     let first = frame.errors.iter().map(|bit| bit.clock).min().unwrap_or(1);
     let moved = |bit: &ErrorBit| match place {

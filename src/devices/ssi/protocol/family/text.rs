@@ -92,7 +92,7 @@ impl Settings {
     }
 }
 
-/// The words for a value in text: the preferred one, and others that are accepted.
+/// Keywords for a value: the preferred one, and accepted alternatives.
 trait Words: Copy + PartialEq + 'static {
     const ALL: &'static [(&'static str, Self)];
 

@@ -11,15 +11,15 @@ use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit, Mea
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
-/// Number of widths and shares of them that are proposed.
+/// Number of position widths to propose, and of turn/step splits per width.
 const WIDTHS: usize = 4;
 const SHARES: usize = 3;
-/// Of a thousand frames, those in which a bit must differ to count as active.
+/// Minimum number of frames per thousand in which a bit must differ to count as active.
 const SPOKE_PERMILLE: usize = 5;
 const ALWAYS_HIGH: f64 = 0.7;
 const PARITY: f64 = 0.5;
 
-/// Tries encoders of no family that send this many clocks.
+/// Tries frames that belong to no family and have the given number of clocks.
 pub(super) fn any_other(
     take: &mut Take<'_>,
     read: &Read,
@@ -73,7 +73,7 @@ pub(super) fn any_other(
     }
 }
 
-/// Returns the alternatives to a parity bit: a zero after the position, or an error bit included in the code.
+/// Returns the alternatives to a parity bit: a trailing zero, or an error bit covered by the code.
 fn over_zero(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
     let none = Descriptor { parity: None, ..frame.clone() };
     let mut errors = frame.errors.clone();
@@ -84,7 +84,7 @@ fn over_zero(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
     ]
 }
 
-/// Returns the possible ranges of the numbers of a reading with this many bits.
+/// Returns the possible ranges for a reading with the given number of bits.
 fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
     let reading = &read.reading;
     if let Some((steps, _)) = reading.steps {
@@ -107,8 +107,8 @@ fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
         .collect()
 }
 
-/// Returns bits outside the position: those that are always 1 (no code may cover a bit that is always 0), those that were
-/// active, and those that are not explained.
+/// Returns the bits outside the position: bits that are always 1 (which no code may cover), bits that were active, and
+/// unexplained bits.
 fn fixed_bits(words: &FrameSet, read: &Read, lead: u8, inverted: bool) -> Vec<ErrorBit> {
     let reading = &read.reading;
     let mut bits = Vec::new();

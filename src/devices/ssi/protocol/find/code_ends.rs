@@ -5,12 +5,11 @@ use super::motion::{Motion, median};
 use super::reading::{Read, Reading};
 use crate::devices::ssi::protocol::code::Code;
 
-/// Ends that are tried.
 const TRIED: usize = 40;
-/// Ends with which the motion takes no more bits than this fit as well.
+/// Tolerance in bits within which a range end still counts as a fit.
 const AS_WELL_BITS: f64 = 10.0;
 
-/// Returns codes with the possible numbers of steps: the most usual, and the last.
+/// Returns the candidate codes, each with the most usual and the last possible number of steps.
 pub(super) fn ends(read: &Read) -> Vec<(Code, (u64, u64))> {
     let whole = read.reading.round();
     if whole == 0 || read.reading.steps.is_some() {
@@ -32,8 +31,8 @@ pub(super) fn ends(read: &Read) -> Vec<(Code, (u64, u64))> {
     found
 }
 
-/// Returns the lowest and the highest number of all frames that follow from others, and of nearly all: a disturbed one may
-/// seem to follow.
+/// Returns the lowest and highest number, once for all frames that follow from others and once for nearly all of them,
+/// because a disturbed frame may seem to follow.
 fn extremes(read: &Read) -> Vec<(u64, u64)> {
     let good = |frame: &usize| read.motion.is_good(*frame);
     let frames = (0..read.numbers.len()).filter(good);
@@ -44,8 +43,8 @@ fn extremes(read: &Read) -> Vec<(u64, u64)> {
     [0, few].into_iter().filter_map(pair).collect()
 }
 
-/// Returns the number of steps with which the motion is most even: the most usual of the possible ones, and the last of
-/// them. None if none is better than the complete range of the bits.
+/// Returns the numbers of steps with the most even motion: the most usual candidate and the last. `None` if no
+/// candidate beats the full range of the bits.
 fn best(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
     let lowest = *least.iter().min()?;
     let fits = |steps: &u64| {
@@ -130,7 +129,7 @@ fn usual(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
     all
 }
 
-/// Returns how unusual this number of steps is in orders.
+/// Ranks how unusual a number of steps is: 0 for a usual one, up to 5.
 pub(super) fn unusual(steps: u64) -> u8 {
     if !usual(steps..=steps).is_empty() || steps.is_power_of_two() {
         return 0;

@@ -6,16 +6,16 @@ use std::collections::HashMap;
 use crate::devices::ssi::protocol::code::ones;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 
-/// A bit that differs from its usual value in no more frames in a row than this was disturbed, or is an error bit.
+/// Maximum number of consecutive deviating frames for a bit to count as disturbed or as an error bit.
 const SHORT: usize = 2;
-/// Of a hundred frames, those in which a bit may differ from its usual value and still count as constant.
+/// Percentage of frames in which a bit may deviate from its usual value and still count as constant.
 const RARE_PERCENT: usize = 25;
-/// Of a hundred frames, those in which a second word may differ from the first.
+/// Percentage of frames in which the second word may differ from the first.
 const REPEAT_PERCENT: usize = 10;
-/// A shorter word is not looked for twice.
+/// Minimum width in bits for a word to be recognized as repeated.
 const LEAST_WORD: u8 = 4;
 
-/// Frames of the same number of clocks, in the order of reading.
+/// Frames with a common number of clocks, in the order received.
 pub(super) struct FrameSet {
     words: Vec<u64>,
     pub(super) clocks: u8,
@@ -28,9 +28,9 @@ pub(super) struct Bit {
     pub(super) usual: bool,
     /// Number of frames in which the bit has the opposite value.
     pub(super) unusual: usize,
-    /// From a frame to the next, how often it changed.
+    /// Number of changes between consecutive frames.
     pub(super) changes: usize,
-    /// It took the other value for longer than a disturbance lasts.
+    /// Whether the bit held its unusual value for longer than a disturbance lasts.
     pub(super) moves: bool,
 }
 
@@ -42,7 +42,7 @@ impl FrameSet {
         FrameSet { words, clocks, bits }
     }
 
-    /// The first words of frames that carry each word twice.
+    /// Returns the first words of frames that carry each word twice.
     pub(super) fn first_words(&self, repeat: Repeat) -> Self {
         let words: Vec<u64> = self.words.iter().map(|word| word >> (self.clocks - repeat.word)).collect();
         FrameSet::new(&words, repeat.word)
@@ -52,12 +52,12 @@ impl FrameSet {
         &self.words
     }
 
-    /// Returns the behaviour of the bit on this clock, counted from 1.
+    /// Returns the behaviour of the bit on the given clock, counted from 1.
     pub(super) fn bit(&self, clock: u8) -> Bit {
         usize::from(clock).checked_sub(1).and_then(|index| self.bits.get(index)).copied().unwrap_or_default()
     }
 
-    /// Clocks with what their bits did.
+    /// Iterates over the clocks and the behaviour of their bits.
     pub(super) fn bits(&self) -> impl DoubleEndedIterator<Item = (u8, Bit)> + '_ {
         (1..=self.clocks).map(|clock| (clock, self.bit(clock)))
     }
@@ -72,7 +72,8 @@ impl FrameSet {
         self.counts().len()
     }
 
-    /// Nearly all frames are among a few: the shaft stood or trembled, whatever else disturbances made of it.
+    /// Returns whether nearly all frames share a few values, because the shaft stood still or trembled; disturbed
+    /// frames are tolerated.
     pub(super) fn is_standing(&self) -> bool {
         let mut counts: Vec<usize> = self.counts().into_values().collect();
         counts.sort_unstable_by(|a, b| b.cmp(a));
@@ -86,7 +87,7 @@ impl FrameSet {
         counts
     }
 
-    /// The first words are followed by the same bits once more.
+    /// Returns the repetition if the frames carry each word twice.
     pub(super) fn repeat(&self) -> Option<Repeat> {
         let moving = |from: u8, to: u8| (from..=to).filter(|clock| self.bit(*clock).moves).count();
         (LEAST_WORD..self.clocks).find_map(|behind| {
@@ -98,7 +99,7 @@ impl FrameSet {
         })
     }
 
-    /// The second word of a frame is as the first.
+    /// Returns whether the second word of a frame equals the first.
     pub(super) fn is_repeated(&self, frame: u64, repeat: Repeat) -> bool {
         let first = frame >> (self.clocks - repeat.word);
         let second = frame >> (self.clocks - 2 * repeat.word - repeat.gap);
@@ -109,7 +110,7 @@ impl FrameSet {
         (word >> (self.clocks - parity.clock)).count_ones().is_multiple_of(2) == parity.even
     }
 
-    /// Returns whether two clocks carry the same in nearly all frames.
+    /// Returns whether two clocks carry equal bits in nearly all frames.
     fn same(&self, one: u8, other: u8) -> bool {
         let differs = |word: &&u64| (*word >> (self.clocks - one) ^ *word >> (self.clocks - other)) & 1 == 1;
         self.words.iter().filter(differs).count() * 100 <= REPEAT_PERCENT * self.words.len()
@@ -131,13 +132,13 @@ impl Bit {
         Bit { usual, unusual, changes, moves: longest > SHORT || unusual * 100 > RARE_PERCENT * words.len() }
     }
 
-    /// Bits that it takes to say what it did, where nothing else says so.
+    /// Returns the information in bits needed to describe a bit that nothing else explains.
     pub(super) fn cost(&self, frames: usize) -> f64 {
         entropy(self.changes, frames)
     }
 }
 
-/// Bits that it takes to say which `some` of `all` were meant.
+/// Returns the information in bits needed to select `some` items out of `all`.
 pub(super) fn entropy(some: usize, all: usize) -> f64 {
     if some == 0 || some >= all {
         return 0.0;

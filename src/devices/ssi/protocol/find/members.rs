@@ -16,7 +16,7 @@ pub(super) const EXCHANGED: f64 = 2.0;
 pub(super) const PADDED: f64 = 1.5;
 const NEVER_ODD: f64 = 8.0;
 
-/// A layout that reads frames in a certain way.
+/// A layout that matches a particular reading of the frames.
 #[derive(Clone, Debug)]
 pub(super) struct Member {
     pub(super) family: Option<(String, Settings)>,
@@ -25,10 +25,10 @@ pub(super) struct Member {
     pub(super) trial: Trial,
 }
 
-/// Takes a layout with its weight, if it fits.
+/// Callback that receives a candidate layout and its weight, and keeps it if it fits.
 pub(super) type Take<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 'a;
 
-/// Returns the layouts that read in this way and result in the motion of the probe's reading; in no order.
+/// Returns the layouts that match the given reading and reproduce the probe's motion, in no particular order.
 pub(super) fn members(
     probe: &Probe<'_>,
     read: &Read,
@@ -66,19 +66,19 @@ fn inversions(read: &Read) -> &'static [bool] {
     }
 }
 
-/// Returns the parity of the bits as sent by the encoder: exchanged wires invert that of an odd number of bits.
+/// Returns the parity as sent by the encoder. Swapped wires invert the parity of an odd number of bits.
 pub(super) fn sent_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
     let turned = |parity: Parity| inverted && parity.clock % 2 == 1;
     reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
 }
 
-/// Returns the alternative to an even parity after Gray: a zero covered by the code. Both are the lowest bit of the
-/// position.
+/// Returns the even parity bit after Gray that may just as well be a zero covered by the code: either looks like the
+/// lowest position bit.
 pub(super) fn goes_over_zero(reading: &Reading, inverted: bool) -> Option<Parity> {
     sent_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }
 
-/// Returns whether nearly all steps are even, so that the lowest bit has no information.
+/// Returns whether nearly all steps are even, so that the lowest bit carries no information.
 pub(super) fn never_odd(read: &Read) -> bool {
     let steps = read.motion.steps.iter().zip(&read.motion.uneven);
     let steps = steps.filter(|(_, uneven)| uneven.unsigned_abs() <= read.motion.limit).filter_map(|(step, _)| *step);

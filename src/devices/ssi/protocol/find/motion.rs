@@ -1,23 +1,23 @@
 //! Measures how evenly a shaft turns when frames are read as certain numbers: the information required for each number,
 //! given the previous ones. A misread number jumps and requires its full information.
 
-/// Number of differences that share one median.
+/// Number of differences per median.
 const BLOCK: usize = 16;
-/// Bits for the choice of the size group of differences.
+/// Cost in bits of choosing a size group for the differences.
 const MODEL_BITS: f64 = 8.0;
 /// Information of a frame whose number is invalid, in bits.
 const NONE_BITS: f64 = 16.0;
 
-/// The motion that numbers make.
+/// Motion described by a sequence of numbers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
     /// Information needed in all, in bits.
     pub(super) bits: f64,
     /// Steps from a frame to the next, in the middle.
     pub(super) median: i64,
-    /// For each frame but the first: the steps from the one before; none if one of the two is no number.
+    /// Steps since the previous frame, for each frame but the first; `None` if either frame has no valid number.
     pub(super) steps: Vec<Option<i64>>,
-    /// For each of them: the difference from its neighbours.
+    /// Deviation of each step from its neighbours.
     pub(super) uneven: Vec<i64>,
     pub(super) limit: u64,
     pub(super) jumps: usize,
@@ -26,7 +26,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Analyses numbers that wrap after `round`; 0: after all 64 bits.
+    /// Analyses numbers that wrap after `round`, or after 64 bits if `round` is 0.
     pub(super) fn of(numbers: &[Option<u64>], round: u64) -> Self {
         let steps: Vec<Option<i64>> = numbers
             .iter()
@@ -59,26 +59,26 @@ impl Motion {
         }
     }
 
-    /// Returns whether the step to this frame (counted from 1, the second one) is no jump.
+    /// Returns whether the step to the given frame is not a jump. Steps count from 1, for the second frame.
     pub(super) fn is_even(&self, index: usize) -> bool {
         let within = self.uneven.get(index).is_some_and(|uneven| uneven.unsigned_abs() <= self.limit);
         within && self.steps.get(index).is_some_and(Option::is_some)
     }
 
-    /// Returns the number of frames that follow from the previous one or lead to the next.
+    /// Returns the number of frames that follow from the previous frame or lead to the next.
     pub(super) fn explained(&self) -> usize {
         let frames = self.steps.len() + 1;
         (0..frames).filter(|index| self.is_good(*index)).count()
     }
 
-    /// Returns whether the frame follows from the previous one, or the next from it.
+    /// Returns whether the frame follows from the previous one or leads to the next.
     pub(super) fn is_good(&self, frame: usize) -> bool {
         frame.checked_sub(1).is_some_and(|before| self.is_even(before)) || self.is_even(frame)
     }
 }
 
-/// Returns the bits for all differences: for each, its size group, by the frequency of the group, and its place in the
-/// group.
+/// Returns the cost in bits of all differences. Each is encoded as its size group, weighted by frequency, and an index
+/// within the group.
 fn cost(uneven: &[i64]) -> f64 {
     // Sizes in bits, separately below and above 0.
     let mut groups = [0_usize; 130];
@@ -97,7 +97,7 @@ fn cost(uneven: &[i64]) -> f64 {
     which + within as f64 + MODEL_BITS * met().count() as f64
 }
 
-/// Returns the shortest way of a step around the end.
+/// Returns the shortest equivalent of a step, across the wrap-around if need be.
 pub(super) fn nearest(step: u64, round: u64) -> i64 {
     if round == 0 {
         return step as i64;
@@ -107,7 +107,7 @@ pub(super) fn nearest(step: u64, round: u64) -> i64 {
     i64::try_from(short).unwrap_or(0)
 }
 
-/// Returns the middle value; 0 for none.
+/// Returns the median, or 0 if the slice is empty.
 pub(super) fn median(values: &mut [i64]) -> i64 {
     let middle = values.len() / 2;
     if values.is_empty() { 0 } else { *values.select_nth_unstable(middle).1 }

@@ -13,7 +13,7 @@ use crate::devices::ssi::protocol::range::Range;
 /// Weight of a setting that was changed.
 const CHANGED: f64 = 0.8;
 
-/// Tries every frame that the family can send, with its place among the families.
+/// Tries every frame that the family can send, and tags each with the family's index.
 pub(super) fn of_family(
     take: &mut Take<'_>,
     read: &Read,
@@ -85,7 +85,7 @@ pub(super) fn of_family(
     }
 }
 
-/// Returns the numbers of bits with which a family's position ends at the end of the reading, or one clock before it.
+/// Returns the settings whose position ends at the last clock of the reading, or one clock earlier.
 fn resolutions(turns: &[Option<u8>], family: &Family, common: &Settings, (last, align): (u8, Align)) -> Vec<Settings> {
     let (least, _, most) = family.singleturn;
     let late = u8::from(common.shift);

@@ -26,7 +26,7 @@ const TURNS: [(u8, f64); 9] =
 /// Bits of steps below which multiturn encoders are not built.
 const FEW_STEPS: u8 = 8;
 
-/// Returns how unusual these bits of turns and steps are together.
+/// Returns how unusual a combination of turn bits and step bits is.
 pub(super) fn widths(multiturn: u8, singleturn: u8) -> f64 {
     let of = |table: &[(u8, f64)], bits: u8, other: f64| {
         table.iter().find(|(known, _)| *known == bits).map_or(other, |(_, weight)| *weight)
@@ -36,7 +36,7 @@ pub(super) fn widths(multiturn: u8, singleturn: u8) -> f64 {
     of(&STEPS, singleturn, 2.5) + of(&TURNS, multiturn, 2.5) + few + many
 }
 
-/// Returns the most usual ways to share bits among turns and steps, the most usual first.
+/// Returns the most usual ways to split bits between turns and steps, the most usual first.
 pub(super) fn shares(bits: u8, most: usize) -> Vec<(u8, u8)> {
     let mut all: Vec<(u8, u8)> =
         (0..bits).map(|turns| (turns, bits - turns)).filter(|(turns, steps)| *turns <= 32 && *steps <= 32).collect();

@@ -8,28 +8,28 @@ use crate::devices::ssi::protocol::layout::{Flags, Layout};
 
 /// Frames that a layout is tried with.
 const TRIED: usize = 96;
-/// Of a hundred of these, those that may not fit.
+/// Percentage of the tried frames that may fail to fit.
 const MISFITS_PERCENT: usize = 4;
 
 /// The result of a layout for the frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Trial {
     pub(super) positions: Vec<u64>,
-    /// Whether its positions decrease where those of the reading increase.
+    /// Whether positions decrease where those of the reading increase.
     pub(super) backwards: bool,
     pub(super) never_odd: bool,
 }
 
-/// Frames with the steps between them.
+/// Frames and the steps between them, against which layouts are tried.
 pub(super) struct Probe<'a> {
     seen: &'a FrameSet,
     read: &'a Read,
-    /// Places of frames whose next one follows evenly, and whether the end of the range is passed there.
+    /// Indices of frames whose successor follows evenly, each with whether the range wraps between the two.
     pairs: Vec<(usize, bool)>,
 }
 
 impl<'a> Probe<'a> {
-    /// Creates the probe; `read` was made from `words`: the frames of `seen`, or the first words in them.
+    /// Creates a probe. `read` must have been made from `words`, which are the frames of `seen` or their first words.
     pub(super) fn new(seen: &'a FrameSet, words: &FrameSet, repeat: Option<Repeat>, read: &'a Read) -> Self {
         let again = |frame: u64| repeat.is_none_or(|repeat| seen.is_repeated(frame, repeat));
         let usual = |word: u64| {
@@ -62,7 +62,7 @@ impl<'a> Probe<'a> {
         self.seen.clocks
     }
 
-    /// Tries a layout whose steps are those of the reading: forwards or backwards, in the same or in halved steps.
+    /// Tries a layout whose steps match the reading's, forwards or backwards, at full or half scale.
     pub(super) fn trial(&self, layout: &Layout) -> Option<Trial> {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let invalid = layout.descriptor().errors.iter().enumerate().filter(|(_, bit)| bit.meaning == Meaning::Invalid);
@@ -100,11 +100,11 @@ impl<'a> Probe<'a> {
     }
 }
 
-/// The conversion of a reading's steps to those of a layout.
+/// Conversion from a reading's steps to a layout's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scale {
     backwards: bool,
-    /// Number of doublings from the reading's steps to the layout's; negative in the other direction.
+    /// Number of doublings from the reading's steps to the layout's; negative for halvings.
     twice: i8,
 }
 

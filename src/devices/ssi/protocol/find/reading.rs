@@ -9,16 +9,16 @@ use super::motion::Motion;
 use crate::devices::ssi::protocol::code::{Code, Coding, ones, ungray};
 use crate::devices::ssi::protocol::descriptor::Parity;
 
-/// Number of frames with which every reading is tried first, in runs of consecutive frames.
+/// Number of frames in the first trial of each reading, taken in runs of consecutive frames.
 const TRIED: usize = 620;
 const RUN: usize = 31;
-/// Ways that are tried with all frames.
+/// Number of best readings that are tried with all frames.
 const BEST: usize = 8;
-/// Other ends are searched for readings that need no more bits than these beyond the best.
+/// Maximum excess over the best reading, in bits, for a reading to be tried with other range ends.
 const NEAR_BITS: f64 = 400.0;
-/// A clock with fewer changes of a thousand frames is not the lowest bit of a shaft that turns.
+/// Minimum number of changes per thousand frames for a clock to carry the lowest bit of a turning shaft.
 const LAST_PERMILLE: usize = 10;
-/// Of a hundred frames, those in which a parity has to be right.
+/// Minimum percentage of frames with correct parity.
 const PARITY_PERCENT: usize = 85;
 /// Bits for a less usual property.
 const INVERTED_BITS: f64 = 2.0;
@@ -29,7 +29,7 @@ const END_BITS: f64 = 12.0;
 const UNUSUAL_END_BITS: f64 = 4.0;
 const UNEXPLAINED_BITS: f64 = 24.0;
 
-/// A way to read frames.
+/// An interpretation of frames as positions.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Reading {
     /// Every bit upside down.
@@ -39,17 +39,17 @@ pub(super) struct Reading {
     pub(super) first: u8,
     /// The clock of the lowest bit.
     pub(super) last: u8,
-    /// First and last clock of a gap that does not belong to the position.
+    /// First and last clock of a gap within the position, if any.
     pub(super) gap: Option<(u8, u8)>,
     pub(super) parity: Option<Parity>,
-    /// Number after which positions start again: least and most possible; `None`: the complete range of the bits.
+    /// Least and greatest possible number of steps before positions wrap, or `None` for the full range of the bits.
     pub(super) steps: Option<(u64, u64)>,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct Read {
     pub(super) reading: Reading,
-    /// Gray excess: as in the complete code.
+    /// Decoded numbers. For Gray excess, they are numbers of the full Gray code.
     pub(super) numbers: Vec<Option<u64>>,
     pub(super) motion: Motion,
     /// Information needed in all, in bits.
@@ -60,12 +60,11 @@ pub(super) struct Read {
 }
 
 impl Reading {
-    /// Returns the number of bits of a number.
     pub(super) fn width(&self) -> u8 {
         self.last + 1 - self.first - self.gap.map_or(0, |(from, to)| to + 1 - from)
     }
 
-    /// Returns the number after which positions start again; 0: after 64 bits.
+    /// Returns the number after which positions wrap, or 0 for 64 bits.
     pub(super) fn round(&self) -> u64 {
         match (self.steps, self.code) {
             (Some((least, _)), _) => least,
@@ -93,7 +92,7 @@ impl Reading {
         }
     }
 
-    /// Returns the number in each word; none if the bits are no digits.
+    /// Returns the number in each word, or `None` where the bits are not valid digits.
     pub(super) fn numbers(&self, words: &[u64], clocks: u8) -> Vec<Option<u64>> {
         let digits = Coding::new(Code::Bcd, self.whole() - 1).ok().filter(|_| self.code == Code::Bcd);
         let all = ones(self.last + 1 - self.first);
@@ -119,7 +118,7 @@ impl Reading {
         (self.first..=self.last).contains(&clock) && self.gap.is_none_or(|(from, to)| !(from..=to).contains(&clock))
     }
 
-    /// Returns whether the constant bits outside the position have their usual values in this frame.
+    /// Returns whether all constant bits outside the position have their usual values in the given frame.
     fn is_usual(&self, seen: &FrameSet, index: usize) -> bool {
         let word = seen.words().get(index);
         let usual = |word: &u64, clock: u8| (word >> (seen.clocks - clock) & 1 == 1) == seen.bit(clock).usual;
@@ -127,7 +126,7 @@ impl Reading {
         word.is_some_and(|word| (1..=seen.clocks).filter(constant).all(|clock| usual(word, clock)))
     }
 
-    /// Returns the last run of clocks up to the lowest bit that never moved.
+    /// Returns the last run of clocks before the lowest bit that never moved.
     pub(super) fn unmoved(&self, seen: &FrameSet) -> Option<(u8, u8)> {
         let to = (1..self.last).rev().find(|clock| !seen.bit(*clock).moves)?;
         let from = (1..=to).rev().take_while(|clock| !seen.bit(*clock).moves).last()?;
@@ -162,7 +161,7 @@ impl Reading {
         (bits + unusual.iter().filter(|(is, _)| *is).map(|(_, bits)| bits).sum::<f64>(), unexplained)
     }
 
-    /// Returns the parity bit after the position, if there is one.
+    /// Returns the parity bit after the position, if any.
     fn parity_behind(&self, seen: &FrameSet) -> Option<Parity> {
         let clock = (self.last + 1..=seen.clocks).find(|clock| seen.bit(*clock).moves)?;
         let frames = seen.words().len();
@@ -190,7 +189,7 @@ impl Read {
         self.bits - UNEXPLAINED_BITS * self.unexplained.len() as f64
     }
 
-    /// Returns whether the numbers wrap between this frame and the next while the motion continues.
+    /// Returns whether the numbers wrap between the given frame and the next while the motion continues.
     pub(super) fn passes_end(&self, index: usize) -> bool {
         let pair = self.numbers.get(index).copied().flatten().zip(self.numbers.get(index + 1).copied().flatten());
         let step = self.motion.steps.get(index).copied().flatten();
@@ -203,7 +202,7 @@ fn right(seen: &FrameSet, parity: Parity) -> usize {
     seen.words().iter().filter(|word| seen.is_right(**word, parity)).count()
 }
 
-/// Returns the ways in which the shaft turned most evenly, the best first.
+/// Returns the readings that yield the most even motion, the best first.
 pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
     let frames = seen.words().len();
     let sample = sample(seen.words());
@@ -235,7 +234,8 @@ pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
     all
 }
 
-/// Returns whether a bit before the position changed exactly at the ends of the numbers, and is therefore their highest.
+/// Returns whether a bit before the position changes exactly where the numbers wrap, and is therefore their highest
+/// bit.
 fn leaves_out_highest(seen: &FrameSet, read: &Read) -> bool {
     let round = read.reading.round();
     let moving = (1..read.reading.first).rev().find(|clock| seen.bit(*clock).moves);
@@ -251,7 +251,7 @@ fn leaves_out_highest(seen: &FrameSet, read: &Read) -> bool {
     at_end * 2 >= changes && near * 4 < round
 }
 
-/// Returns every possible layout: from each clock that moved first to each that could be the lowest bit.
+/// Returns every possible reading, from each clock that moved first to each clock that could carry the lowest bit.
 fn ways(seen: &FrameSet) -> Vec<Reading> {
     let moving: Vec<u8> = seen.bits().filter(|(_, bit)| bit.moves).map(|(clock, _)| clock).collect();
     let often = LAST_PERMILLE * seen.words().len() / 1000;
@@ -299,7 +299,7 @@ fn gap(seen: &FrameSet, first: u8, last: u8) -> Option<(u8, u8)> {
     longest
 }
 
-/// Runs of frames that follow each other, from everywhere.
+/// Returns runs of consecutive frames, spread over the whole recording.
 fn sample(words: &[u64]) -> Vec<u64> {
     if words.len() <= TRIED {
         return words.to_vec();

@@ -7,20 +7,19 @@ use super::reading::Read;
 use super::{CLASSES, Class, Evidence, Group, Open, Proposal, Uncertainty, WEIGHT_BITS};
 use crate::devices::ssi::protocol::range::Range;
 
-/// Bits by which the first class has to be ahead of the next.
+/// Minimum lead of the first class over the next, in bits.
 const LEAD_BITS: f64 = 100.0;
 /// Largest part of the numbers' bits that an even motion needs.
 const EVEN: f64 = 0.7;
-/// The same for a certain result.
+/// Maximum share of the numbers' bits that an even motion may need for a certain result.
 const SURE_EVEN: f64 = 0.35;
-/// Of a hundred frames, those that may jump or not fit.
+/// Percentage of frames that may jump or fail to fit.
 const DISTURBED_PERCENT: usize = 15;
-/// Least number of frames and of moved bits for a certain result.
+/// Minimum number of frames for a certain result, and of bits that moved.
 const SURE_FRAMES: usize = 200;
 const SURE_BITS: u8 = 5;
 /// Number of different frames for certainty.
 const SURE_DIFFERENT: usize = 64;
-/// Members of a class that are shown.
 const MEMBERS: usize = 200;
 
 /// Returns why the first group is not certain.
@@ -41,7 +40,7 @@ pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
     (!proven).then_some(Uncertainty::Open)
 }
 
-/// Returns whether jumps have the same size: then they are no disturbances, and the code is another.
+/// Returns whether many jumps have a common size, which points to a wrong code rather than to disturbances.
 fn jumps_alike(read: &Read) -> bool {
     let mut sizes: Vec<u64> = read.motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     sizes.retain(|size| *size > read.motion.limit);
@@ -51,7 +50,7 @@ fn jumps_alike(read: &Read) -> bool {
     alike.is_some_and(|alike| alike > 4 && alike * 4 > sizes.len())
 }
 
-/// Returns whether the motion needs less than this part of the information of its single numbers.
+/// Returns whether the motion needs less than the given share of the information in its individual numbers.
 fn is_even(read: &Read, frames: usize, part: f64) -> bool {
     let disturbed = read.motion.jumps / 2 + read.motion.nones;
     read.motion.bits < part * f64::from(read.reading.width()) * frames as f64
@@ -92,7 +91,7 @@ fn unproven(words: &FrameSet, group: &Group) -> Vec<Open> {
     open
 }
 
-/// Returns the least and the greatest number of steps: fewer are possible if the first or the last never occurred.
+/// Returns the least and greatest possible number of steps, which differ if the first or last position never occurred.
 fn steps(read: &Read) -> Option<(u64, u64)> {
     let allowed = read.reading.allowed();
     let (first, last) = match read.reading.steps {
@@ -110,7 +109,7 @@ fn steps(read: &Read) -> Option<(u64, u64)> {
     Some((one.min(other).min((last + 1 - first).saturating_sub(2 * unseen)), one.max(other)))
 }
 
-/// Returns whether steps have different lengths, so that a lower bit would have been seen.
+/// Returns whether step sizes vary enough that a lower bit would have been noticed.
 pub(super) fn is_varied(read: &Read) -> bool {
     let even = read.motion.uneven.iter().filter(|uneven| uneven.unsigned_abs() <= read.motion.limit);
     let (mut all, mut other) = (0, 0);
@@ -121,7 +120,6 @@ pub(super) fn is_varied(read: &Read) -> bool {
     other * 50 >= all
 }
 
-/// Returns the groups as they are shown.
 pub(super) fn classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> {
     let mut last = 1.0_f64;
     let mut classes = Vec::new();
@@ -157,7 +155,7 @@ fn evidence(words: &FrameSet, group: &Group, most: f64) -> Evidence {
     }
 }
 
-/// Returns the motions that would separate the members, or prove them.
+/// Returns the motions that would tell the members apart or prove them.
 fn open(words: &FrameSet, group: &Group) -> Vec<Open> {
     let mut open = unproven(words, group);
     let members = &group.members;

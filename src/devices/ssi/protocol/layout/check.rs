@@ -142,7 +142,6 @@ pub enum WordOperation {
     Shifted,
 }
 
-/// The clocks of a word and their contents.
 struct Clocks {
     clocks: u8,
     taken: Vec<(u8, ClockUse)>,
@@ -244,7 +243,7 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     })
 }
 
-/// Returns the location of the code word's bits in a word.
+/// Returns the location of the code word's bits within a word.
 fn parts(descriptor: &Descriptor, coding: &Coding) -> Result<[Part; 2], LayoutError> {
     let bits = coding.bits();
     let lead = descriptor.lead.saturating_add(descriptor.between);
@@ -274,7 +273,7 @@ fn parts(descriptor: &Descriptor, coding: &Coding) -> Result<[Part; 2], LayoutEr
     Ok([high, low])
 }
 
-/// Returns the bits of a code word at their places.
+/// Moves the bits of a code word to their locations.
 fn placed(parts: &[Part; 2], code: u64) -> u64 {
     parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word)
 }

@@ -2,11 +2,11 @@
 
 use crate::devices::ssi::protocol::{Code, Coding, Descriptor, LayoutError, Range};
 
-/// Returns the frame with these positions in this code. Zeros after the position absorb the change, if there are any;
+/// Returns the frame with other positions in the given code. Zeros after the position absorb the change, if present;
 /// otherwise the parts after the position move, and the frame becomes longer or shorter.
 ///
 /// # Errors
-/// No such positions or code words. Whether the frame is possible is checked by its user.
+/// The positions or code words are impossible. The caller must check whether the frame as a whole is possible.
 pub(super) fn with_positions(before: &Descriptor, range: Range, code: Code) -> Result<Descriptor, LayoutError> {
     let bits_before = bits(&before.range, before.code)?;
     let bits_now = bits(&range, code)?;

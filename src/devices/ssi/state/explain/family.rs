@@ -7,12 +7,12 @@ use crate::devices::ssi::protocol::{Family, FamilyError, FamilyProblem};
 use crate::devices::ssi::state::TEXTS;
 use crate::store::StoreError;
 
-/// Returns the text for a note or the source of a family.
+/// Returns the translated note or source reference of a family.
 pub fn note(family: &Family, words: &str) -> Text {
     Text::new("plain.words").with_name("words", words, family.german(words))
 }
 
-/// Returns the text for a family of the user's own that cannot be read or used.
+/// Returns the message for a user-defined family that cannot be read or used.
 pub fn store(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<FamilyError>() {

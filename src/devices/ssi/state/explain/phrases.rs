@@ -79,7 +79,10 @@ fn nested_phrases_are_translated_to_german() {
             LayoutError::Behind { name: ClockUse::Parity, clock: 30, clocks: 15 },
             "Takt 30 mit dem Paritätsbit liegt hinter den 15 Takten",
         ),
-        (LayoutError::Many { what: RepeatedPart::Patterns, limit: 32, count: 33 }, "höchstens 32 Muster, nicht 33"),
+        (
+            LayoutError::Many { what: RepeatedPart::Patterns, limit: 32, count: 33 },
+            "höchstens 32 Muster möglich, nicht 33",
+        ),
     ];
     for (error, german) in cases {
         let words = layout(&error).words(German);

@@ -10,12 +10,12 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
 
-/// Returns the text for a frame that cannot work.
+/// Returns the message for an impossible frame.
 pub fn layout(error: &LayoutError) -> Text {
     refused(layout_reason(error))
 }
 
-/// Returns the text for settings that a family does not have.
+/// Returns the message for settings that a family does not support.
 pub fn settings(error: &SettingsError) -> Text {
     refused(settings_reason(error))
 }
@@ -54,7 +54,8 @@ pub(super) fn settings_reason(error: &SettingsError) -> Text {
     }
 }
 
-/// Returns the text for a format string of LinuxCNC that is not a frame, or a frame that has none.
+/// Returns the message for a LinuxCNC format string that is not a frame, or for a frame that no format string can
+/// express.
 pub fn format(error: &FormatError) -> Text {
     let why = match error {
         FormatError::Cannot(what) => {
@@ -84,7 +85,7 @@ pub fn wide(error: WideNumbers) -> Text {
     }
 }
 
-/// Returns why a text is not a frame.
+/// Returns the message for a string that is not a valid frame.
 pub fn frame_text(error: &FrameTextError) -> Text {
     match error {
         FrameTextError::Form(text) => TEXTS.text("ssi_trial.form").with("text", text),

@@ -30,7 +30,7 @@ pub(super) fn groups(designer: &Designer, family: &Family, settings: &Settings) 
     vec![Group { title: "ssi_form.position", rows: position }, Group { title: "ssi_form.frame", rows: frame }]
 }
 
-/// Returns the settings with another entry; `None` if it is not possible there.
+/// Returns the family settings after an entry, or `None` if the field does not apply.
 pub(super) fn entered(
     designer: &Designer,
     family: &Family,
@@ -104,7 +104,7 @@ pub(super) fn entered(
     Some(next)
 }
 
-/// Returns the kinds of positions that its encoders can have.
+/// Returns the kinds of range available in a family.
 fn kinds(family: &Family) -> Vec<RangeKind> {
     if family.step_nanometres.is_some() {
         return vec![RangeKind::Length];
@@ -114,7 +114,6 @@ fn kinds(family: &Family) -> Vec<RangeKind> {
     std::iter::once(RangeKind::Bits).chain(steps).chain(round).collect()
 }
 
-/// Returns the possible places of the error bits.
 fn places(designer: &Designer, family: &Family) -> Vec<ErrorPlace> {
     let bits = designer.layout().coding().bits();
     let frame: Option<&Frame> = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());

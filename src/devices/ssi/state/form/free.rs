@@ -65,7 +65,7 @@ fn error(index: usize, bit: &ErrorBit) -> Group {
     }
 }
 
-/// Applies an entry; `None` if it is not possible there.
+/// Applies an entry to a frame without a family, or returns `None` if the field does not apply.
 pub(super) fn entered(designer: &Designer, field: Field, input: &Input) -> Option<Edit> {
     let before = &designer.design().profile.descriptor;
     if let Some(range) = range_entered(&before.range, field, input) {
@@ -115,7 +115,6 @@ pub(super) fn entered(designer: &Designer, field: Field, input: &Input) -> Optio
     Some(Edit::Frame(Box::new(next)))
 }
 
-/// Returns the range with other positions.
 fn range_entered(range: &Range, field: Field, input: &Input) -> Option<Range> {
     if let (Field::Range, Input::Choice(kind)) = (field, input) {
         let bits = range.bits().unwrap_or(12);
@@ -147,7 +146,7 @@ fn range_entered(range: &Range, field: Field, input: &Input) -> Option<Range> {
     })
 }
 
-/// Returns the frame with this number of zeros before the position and in it; the parts after it move along.
+/// Returns the frame with the given numbers of zeros before and within the position. The parts behind them shift along.
 fn pushed(before: &Descriptor, lead: u8, between: u8) -> Option<Descriptor> {
     let by = i16::from(lead) + i16::from(between) - i16::from(before.lead) - i16::from(before.between);
     let moved = |clock: u8| u8::try_from(i16::from(clock) + by).ok();
@@ -194,7 +193,7 @@ fn with_parity(mut next: Descriptor, choice: usize) -> Option<Descriptor> {
 }
 
 impl Designer {
-    /// Returns the frame with one more error bit after the others; `None` if it has the maximum.
+    /// Returns the frame with another error bit appended, or `None` if the maximum has been reached.
     pub fn with_error_bit(&self) -> Option<Descriptor> {
         let mut next = self.design().profile.descriptor.clone();
         if next.errors.len() >= MOST_ERRORS || next.repeat.is_some() || next.clocks >= 64 {
@@ -213,7 +212,7 @@ impl Designer {
         Some(next)
     }
 
-    /// Returns the frame without an error bit; its clock stays, as a zero.
+    /// Returns the frame with an error bit removed; its clock remains as a zero.
     pub fn without_error_bit(&self, index: usize) -> Descriptor {
         let mut next = self.design().profile.descriptor.clone();
         if index < next.errors.len() {

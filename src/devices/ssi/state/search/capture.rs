@@ -6,7 +6,7 @@ use crate::app::Text;
 use crate::devices::ssi::protocol::Levels;
 use crate::devices::ssi::state::TEXTS;
 
-/// The rows of a file, with their numbers, and what stands above them.
+/// Numbered rows of a file and the heading above them.
 struct Table<'t> {
     heading: Vec<&'t str>,
     delimiter: char,
@@ -17,20 +17,20 @@ struct Table<'t> {
 /// The meaning of the first column.
 #[derive(Clone, Copy)]
 enum Times {
-    /// A time in units of so many seconds.
+    /// A time column, with its unit in seconds.
     Column(f64),
-    /// There is none: a row for each sample, so many seconds apart.
+    /// No time column; one row per sample at the given interval in seconds.
     Samples(f64),
 }
 
-/// Words for the clock and the data in the names of channels.
+/// Substrings that identify the clock and data channels by name.
 const CLOCK: [&str; 4] = ["clk", "clock", "takt", "sck"];
 const DATA: [&str; 2] = ["dat", "miso"];
 
-/// The levels of both lines; `None`: the text is no export of a logic analyser.
+/// Parses the levels of both lines, or returns `None` if the text is not a logic analyser export.
 ///
 /// # Errors
-/// It is one that cannot be used: which line, why, and what to do.
+/// The export is unusable. The message names the line, the reason and a remedy.
 pub(super) fn levels(text: &str) -> Option<Result<Vec<Levels>, Text>> {
     let table = Table::of(text)?;
     Some(table.times().and_then(|times| table.levels(times)))
@@ -138,7 +138,8 @@ impl<'t> Table<'t> {
         Ok(levels)
     }
 
-    /// The channels of the clock and the data: by their names, else the two that change, of which the clock does more often.
+    /// Returns the clock and data channels, identified by name. Failing that, of the two channels that change, the
+    /// clock is the one that changes more often.
     fn lines(&self, skipped: usize, read: &[(f64, Vec<Option<bool>>)]) -> Result<(usize, usize), Text> {
         let names: Vec<String> = self.heading.iter().skip(skipped).map(|name| name.to_lowercase()).collect();
         let named = |words: &[&str]| names.iter().position(|name| words.iter().any(|word| name.contains(word)));
@@ -176,8 +177,8 @@ fn is_time(name: &str) -> bool {
     name.to_ascii_lowercase().starts_with("time")
 }
 
-/// The unit of a column of times in seconds, by its name: `Time [s]`; of sigrok `nanoseconds`, or `Time` alone, whose unit
-/// depends on the sample rate.
+/// Returns the unit of a time column in seconds, derived from its name: `Time [s]`, sigrok's `nanoseconds`, or a plain
+/// `Time` whose unit depends on the sample rate.
 fn time_unit(name: &str, rate_hz: Option<f64>) -> Option<f64> {
     const UNITS: [(&str, &str, f64); 5] = [
         ("s", "seconds", 1.0),

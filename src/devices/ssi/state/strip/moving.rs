@@ -4,9 +4,9 @@
 use super::{Handle, Parts, has_words};
 use crate::devices::ssi::protocol::{Coded, Descriptor, Layout, Parity, Pattern, Range, Repeat, Word};
 
-/// Returns the frame after moving a part to a clock, or as near to it as possible. Parts beyond its neighbours stay, except
-/// that error and parity bits directly after the position move with its end if they are `following`. A bit moved to another
-/// one exchanges places with it.
+/// Returns the frame after moving a part to a clock, or as close to it as possible. Parts beyond its neighbours stay,
+/// except that error and parity bits directly after the position move with its end if `following` is set. A bit moved
+/// onto another swaps places with that bit.
 #[must_use]
 pub fn moved(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout {
     let Some(at) = clock(layout, handle) else { return layout.clone() };
@@ -17,7 +17,7 @@ pub fn moved(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout
     tried.next().unwrap_or_else(|| layout.clone())
 }
 
-/// Returns the movable parts of a frame, from its first clock to its last.
+/// Returns the movable parts of a frame, in clock order.
 pub(super) fn handles(layout: &Layout) -> Vec<Handle> {
     let descriptor = layout.descriptor();
     let mut handles = vec![Handle::Position];
@@ -42,7 +42,7 @@ pub(super) fn handles(layout: &Layout) -> Vec<Handle> {
     handles
 }
 
-/// Returns the clock of a part; `None` if the frame does not have it.
+/// Returns the clock of a part, or `None` if the frame lacks that part.
 pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
     let descriptor = layout.descriptor();
     let begins = descriptor.lead + u8::from(descriptor.shift_right);
@@ -71,7 +71,7 @@ pub(super) enum Single {
     Parity,
 }
 
-/// Returns the error and parity bits after the position without a zero before or between them.
+/// Returns the error and parity bits that directly follow the position, up to the first zero.
 pub(super) fn chain(layout: &Layout) -> Vec<Single> {
     let descriptor = layout.descriptor();
     let mut next = end(layout) + 1;
@@ -88,7 +88,7 @@ fn single_on(descriptor: &Descriptor, clock: u8) -> Option<Single> {
     error.or_else(|| descriptor.parity.filter(|parity| parity.clock == clock).map(|_| Single::Parity))
 }
 
-/// Returns the last clock of the position; bits shifted out of its area have none.
+/// Returns the last clock of the position. Bits shifted out of the position area have no clock.
 pub(super) fn end(layout: &Layout) -> u8 {
     let descriptor = layout.descriptor();
     let late = u8::from(descriptor.shift_right);
@@ -100,7 +100,7 @@ const fn area_counts(descriptor: &Descriptor) -> bool {
     descriptor.shift_right || !matches!(descriptor.coded, Coded::Position)
 }
 
-/// Returns the frame with a part moved from a clock to another, valid or not; `None` if it cannot be expressed.
+/// Returns the frame with a part moved between two clocks, valid or not, or `None` if the result cannot be expressed.
 fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) -> Option<Descriptor> {
     let by = i16::from(to) - i16::from(at);
     let mut new = layout.descriptor().clone();
@@ -153,7 +153,7 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
     Some(new)
 }
 
-/// Returns the bits of a code word; moving keeps the code.
+/// Returns the width of a code word; moving parts does not change the code.
 fn bits(new: &Descriptor, old: &Layout) -> u8 {
     match Parts::of(old) {
         Parts::Whole(bits) => bits,
@@ -177,7 +177,7 @@ fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Optio
     Some(())
 }
 
-/// Moves a bit to another clock; the bit there takes its former place.
+/// Moves a bit to another clock, swapping it with any bit already at that clock.
 fn put(descriptor: &mut Descriptor, single: Single, at: u8, to: u8) {
     let other = single_on(descriptor, to);
     set(descriptor, single, to);
@@ -208,7 +208,7 @@ fn plus(value: u8, by: i16) -> Option<u8> {
     u8::try_from(i16::from(value) + by).ok()
 }
 
-/// Returns the range with other numbers of bits for turns and steps; each keeps at least one.
+/// Returns the range with the numbers of turn and step bits changed; at least one bit of each remains.
 fn resized(range: Range, turns: i16, steps: i16) -> Option<Range> {
     let Range::Bits { multiturn, singleturn } = range else { return None };
     let multiturn = plus(multiturn, turns).filter(|bits| *bits > 0)?;
@@ -216,7 +216,7 @@ fn resized(range: Range, turns: i16, steps: i16) -> Option<Range> {
     Some(Range::Bits { multiturn, singleturn })
 }
 
-/// Returns the range with another number of bits, if it has only one kind; at least one remains.
+/// Returns the range with its number of bits changed, if it has bits of only one kind; at least one bit remains.
 fn resized_one(range: Range, by: i16) -> Option<Range> {
     let more = |bits| plus(bits, by).filter(|bits| *bits > 0);
     match range {
@@ -227,7 +227,7 @@ fn resized_one(range: Range, by: i16) -> Option<Range> {
     }
 }
 
-/// Returns the same word with additional clocks after it, or without trailing zeros.
+/// Returns the pattern extended by trailing clocks or shortened by trailing zeros.
 fn longer(pattern: Pattern, by: i16) -> Option<Pattern> {
     let Word::Bits(word) = pattern.word else { return Some(pattern) };
     let count = u32::from(by.unsigned_abs());

@@ -28,7 +28,7 @@ pub fn cell(strip: &Strip, clock: u8) -> Text {
     )
 }
 
-/// Returns the content of a field, with its number of bits.
+/// Returns the label of a field's content, including its width in bits.
 pub fn field(strip: &Strip, field: &Field) -> Text {
     let count = |id| TEXTS.text(id).with("count", field.count());
     match field.kind {
@@ -46,12 +46,12 @@ pub fn field(strip: &Strip, field: &Field) -> Text {
     }
 }
 
-/// Returns the same below the field itself, where zeros are visible.
+/// Returns the label shown directly below a field, where its zeros are visible.
 pub fn name(strip: &Strip, own: &Field) -> Text {
     if own.is_zeros() { TEXTS.text("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
 }
 
-/// Returns the same for narrow places: the short name with its number of bits.
+/// Returns a short label with the width in bits, for narrow fields.
 pub fn short(strip: &Strip, field: &Field) -> Text {
     let id = match field.is_zeros() {
         true => "ssi.strip_short_zeros",
@@ -61,7 +61,7 @@ pub fn short(strip: &Strip, field: &Field) -> Text {
     TEXTS.text(id).with("name", bare(strip, field)).with("count", field.count())
 }
 
-/// Returns the short name of a field, which exports give it too.
+/// Returns the short name of a field, as also used in exports.
 pub fn bare(strip: &Strip, field: &Field) -> String {
     match field.kind {
         _ if field.is_zeros() => "0".to_owned(),

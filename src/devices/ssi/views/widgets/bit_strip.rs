@@ -36,40 +36,40 @@ pub(crate) struct BitStrip<'a> {
     pub(crate) label: &'a str,
     /// The present frame, also during a drag.
     pub(crate) strip: &'a Strip,
-    /// Bits to show in it, right-justified.
+    /// Bits to display, right-justified, if known.
     pub(crate) frame: Option<u64>,
     pub(crate) selected: Option<u8>,
     /// Bits can be turned over.
     pub(crate) toggles: bool,
     /// Boundaries and single bits can be moved.
     pub(crate) movable: bool,
-    /// Error and parity bits directly after the position move with its end.
+    /// Whether error and parity bits directly after the position move with its end.
     pub(crate) following: bool,
 }
 
 /// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StripEvent {
-    /// During a drag: the part would move to this clock. Sent in every frame until the drag ends.
+    /// The clock to which the part would move, sent in every frame of a drag.
     Preview(Handle, u8),
-    /// The part was moved to this clock, which it can reach and which differs from the present one.
+    /// The part was moved to a reachable clock other than its current one.
     Moved(Handle, u8),
     Selected(u8),
-    /// The bit of this clock shall be the other one.
+    /// The bit at the given clock is to be inverted.
     Toggled(u8),
 }
 
-/// Something that is dragged, from one drawing to the next.
+/// Drag in progress, kept between frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Drag {
     handle: Handle,
-    /// The clock on which it was taken hold of.
+    /// Clock at which the drag started.
     from: Option<u8>,
-    /// The target clock; `None` if the drag was cancelled.
+    /// Target clock, or `None` if the drag was cancelled.
     to: Option<u8>,
 }
 
-/// Draws the strip and returns the user's action. One strip per `Ui`: another needs its own id (`push_id`).
+/// Draws the strip and returns the user's action. A second strip in one `Ui` needs its own id (`push_id`).
 pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Option<StripEvent> {
     let base = ui.make_persistent_id("bit_strip");
     let drag: Option<Drag> = ui.data(|data| data.get_temp(base));
@@ -96,13 +96,12 @@ pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Opt
     moved.or(pressed).or(chosen)
 }
 
-/// The context of all functions here.
 struct StripContext<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
     model: &'a BitStrip<'a>,
     shown: &'a Strip,
-    /// Its bits, if they are known.
+    /// The frame's bits, if known.
     cells: &'a [CellState],
     rows: &'a Rows,
     base: Id,
@@ -146,7 +145,7 @@ impl StripContext<'_> {
         selected.filter(|_| turns && model.toggles).map(StripEvent::Toggled)
     }
 
-    /// Returns the text of a cell, with its bit.
+    /// Returns the accessible label of a cell, including its bit.
     fn says(&self, clock: u8) -> String {
         let words = self.theme.words(&strip::cell(self.shown, clock));
         match self.shown_at(clock) {
@@ -192,7 +191,7 @@ impl StripContext<'_> {
         event
     }
 
-    /// Sets the texts of the fields for screen readers.
+    /// Registers the field labels for screen readers.
     fn fields(&self, tags: &[Tag]) {
         for tag in tags {
             let Some(field) = self.shown.fields().get(tag.field) else { continue };
@@ -220,7 +219,7 @@ fn tells(cells: &[CellState], clocks: std::ops::RangeInclusive<u8>) -> Option<Me
     own.min_by_key(|meaning| *meaning == Meaning::Warning)
 }
 
-/// The horizontal arrows are ours while this has the keyboard.
+/// Keeps the horizontal arrow keys from moving the focus away from the given widget.
 fn keep_arrows(ui: &Ui, id: Id) {
     let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));

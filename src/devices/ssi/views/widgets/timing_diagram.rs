@@ -32,17 +32,17 @@ use place::{Bar, Flag, Put};
 pub(crate) struct TimingDiagram<'a> {
     pub(crate) label: &'a str,
     pub(crate) diagram: &'a Diagram,
-    /// Bits to show in it, right-justified.
+    /// Bits to display, right-justified, if known.
     pub(crate) frame: Option<u64>,
 }
 
-/// Heights of the lines' rows, and of words.
+/// Row heights of the signal lines, the labels and the time lanes.
 const ROW: f32 = 24.0;
 const WORDS: f32 = 15.0;
 const LANE: f32 = 19.0;
 /// Length of the lines before the first edge.
 const BEFORE: f32 = 12.0;
-/// A bit narrower than this has no digit.
+/// Minimum bit width at which a digit is drawn.
 const DIGIT: f32 = 9.0;
 
 struct Rows {
@@ -147,7 +147,7 @@ impl Picture<'_> {
         self.theme.palette.muted.into()
     }
 
-    /// Draws the labels of moments and of breaks, each moment with a line through all rows.
+    /// Draws the labels of moments and breaks, and a vertical line through all rows for each moment.
     fn guides(&self, flags: &[(f32, Arc<Galley>, bool)], put: &[Put]) {
         for ((x, galley, is_moment), put) in flags.iter().zip(put) {
             let top = self.rows.flags - (put.level + 1) as f32 * WORDS;
@@ -206,7 +206,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Draws a bit as on a bus: with slanted ends.
+    /// Draws a bit as a bus segment with slanted ends.
     fn bit(&self, (from, to): (f32, f32), ink: Color32, bit: Option<bool>) {
         let row = self.rows.data;
         let strength = if bit == Some(true) { 0.45 } else { 0.16 };
@@ -233,7 +233,6 @@ impl Picture<'_> {
         }
     }
 
-    /// Draws the short names of the fields if they fit.
     fn names(&self) {
         let diagram = self.model.diagram;
         for field in diagram.strip().fields() {
@@ -272,7 +271,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Draws each time as a line with ends; from its earliest end on, a thinner one.
+    /// Draws each time as a bar with end marks, dashed between its earliest and latest end.
     fn bars(&self, words: &[Arc<Galley>], put: &[Put]) {
         let palette = self.theme.palette;
         for ((span, galley), put) in self.model.diagram.spans().iter().zip(words).zip(put) {

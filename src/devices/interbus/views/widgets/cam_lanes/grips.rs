@@ -11,7 +11,8 @@ use crate::devices::interbus::state::cams::{Hold, Lane, Stretch, words};
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, Drag};
 
 impl Lanes<'_> {
-    /// Draws all handles, and returns the user's action. They are grabbed at their places before the drag.
+    /// Draws all handles and returns the user's action. Handles stay grabbable at the positions they had before the
+    /// drag.
     pub(super) fn grips(&self, drag: Option<Drag>) -> Option<CamEvent> {
         let mut event = None;
         for lane in &self.model.chart.lanes {
@@ -43,7 +44,7 @@ impl Lanes<'_> {
         event.or(clicked)
     }
 
-    /// Handles the cam as a whole: its widest section has the keyboard focus.
+    /// Handles dragging of a whole cam. The cam's widest section has the keyboard focus.
     fn whole(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
         let stretches = lane.stretches(self.model.chart.range);
         let widest = stretches.iter().max_by_key(|stretch| stretch.last - stretch.first).copied();
@@ -123,7 +124,7 @@ impl Lanes<'_> {
         event
     }
 
-    /// Returns the grab area of an edge, and where it is drawn. An invisible edge is at the end of its lane, for the
+    /// Returns an edge's grab area and drawing position. An invisible edge is placed at the end of its lane, for the
     /// keyboard only.
     fn grip(&self, cam: Cam, lane: &Lane, edge: Edge) -> Option<(Rect, f32)> {
         let chart = self.model.chart;
@@ -164,12 +165,12 @@ impl Lanes<'_> {
         self.ui.input(|input| [ArrowLeft, ArrowRight].into_iter().any(|key| input.key_released(key)))
     }
 
-    /// Returns the least distance of the lines of the grid, in steps.
+    /// Returns the minimum distance between grid lines, in steps.
     fn apart(&self) -> f64 {
         self.snap().apart.unwrap_or(1.0)
     }
 
-    /// Handles the pointer: the target of a drag, and its end.
+    /// Handles the pointer, and returns the drag preview or its result.
     fn pulled(&self, response: &Response, hold: Hold, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;

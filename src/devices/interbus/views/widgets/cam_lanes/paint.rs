@@ -9,7 +9,7 @@ use crate::devices::interbus::state::cams::{Hold, Lane, Tick, ticks, words};
 use crate::devices::interbus::views::widgets::cam_chart::{Drag, ink};
 use crate::ui::widgets::{focus_ring, hatch};
 
-/// Least distance of the numbers of a ruler, in points.
+/// Minimum distance between ruler numbers, in points.
 const APART: f64 = 64.0;
 /// Width of the hatching at the end of the range.
 const BEYOND: f32 = 14.0;
@@ -47,7 +47,7 @@ impl Lanes<'_> {
         }
     }
 
-    /// Draws lines and numbers: steps above, the machine's units below.
+    /// Draws grid lines and numbers: steps above, machine units below.
     fn rulers(&self) {
         let (model, place, theme) = (self.model, self.place, self.theme);
         let apart = APART * place.steps_in_point();
@@ -119,7 +119,7 @@ impl Lanes<'_> {
         }
     }
 
-    /// Draws the mark of a cam that continues over the end of the range.
+    /// Draws arrows on a cam that continues across the end of the range.
     fn over_the_end(&self, painter: &Painter, lane: &Lane, bar: Rect, at_first: bool, at_last: bool) {
         if !lane.edges.is_some_and(|cam| cam.wraps()) {
             return;
@@ -135,7 +135,7 @@ impl Lanes<'_> {
         }
     }
 
-    /// Draws the position of the encoder: a line through all lanes, under a mark in the ruler.
+    /// Draws the encoder position as a line through all lanes, with a marker in the ruler.
     fn position(&self) {
         let Some(position) = self.model.position.filter(|position| *position < self.model.chart.range) else { return };
         let place = self.place;
@@ -166,7 +166,7 @@ impl Lanes<'_> {
         self.model.ghost(theme, painter, drag, pos2(x, lane.top() - 6.0));
     }
 
-    /// Draws an edge that is pointed at or has the keyboard.
+    /// Draws the handle of an edge that is hovered over, focused or part of the selected cam.
     pub(super) fn paint_grip(&self, cam: CamNumber, edge: Edge, state: Grip) {
         let lit = state.active || state.focused;
         let is_selected = self.model.selected == Some(cam) && self.model.movable;

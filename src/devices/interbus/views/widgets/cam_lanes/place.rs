@@ -5,25 +5,25 @@ use egui::{Rect, Vec2, pos2};
 use crate::devices::interbus::protocol::{CamNumber, Program};
 use crate::devices::interbus::state::cams::{Stretch, VisibleRange};
 
-/// Height of a ruler and of a lane.
+/// Height of a ruler.
 const RULER: f32 = 20.0;
 const LANE: f32 = 28.0;
-/// Maximum width of the heads before the lanes, and their share of the total width.
+/// Maximum width of the heads before the lanes.
 const HEAD: f32 = 208.0;
 const HEAD_PART: f32 = 0.34;
 /// Space after the lanes for half a number of the ruler.
 const BEHIND: f32 = 16.0;
-/// Width of the grab area of an edge.
+/// Width of an edge's grab area.
 const GRIP: f32 = 9.0;
 
-/// Heads at the left, the part of the range that is to be seen at the right.
+/// Chart area with the heads on the left and the visible part of the range on the right.
 #[derive(Clone, Debug)]
 pub(super) struct PlotArea {
     pub(super) head: Rect,
     pub(super) plot: Rect,
     /// The ruler of steps.
     pub(super) ruler: Rect,
-    /// The ruler of the machine's units, empty if it has none.
+    /// Ruler in machine units; empty if the machine has none.
     pub(super) units: Rect,
     pub(super) view: VisibleRange,
 }
@@ -59,7 +59,7 @@ impl PlotArea {
         self.plot.left() + part as f32 * self.plot.width()
     }
 
-    /// Returns the position there, also beyond the lanes.
+    /// Returns the position at `x`, which may lie outside the lanes.
     pub(super) fn position(&self, x: f32) -> f64 {
         self.view.position(f64::from((x - self.plot.left()) / self.plot.width().max(1.0)))
     }
@@ -74,7 +74,7 @@ impl PlotArea {
         Rect::from_x_y_ranges(self.head.x_range(), lane.y_range())
     }
 
-    /// Returns the rectangle of a section of a cam in its lane, as far as visible; it has a minimum width.
+    /// Returns the visible rectangle of a cam section in its lane, with a minimum width.
     pub(super) fn bar(&self, cam: CamNumber, stretch: Stretch) -> Option<Rect> {
         let (left, right) = (self.x(f64::from(stretch.first)), self.x(f64::from(stretch.last) + 1.0));
         if right < self.plot.left() || left > self.plot.right() {
@@ -85,15 +85,15 @@ impl PlotArea {
         Some(bar.shrink2(Vec2::new(0.0, 5.0)).intersect(self.plot.expand2(Vec2::new(GRIP, 0.0))))
     }
 
-    /// Returns the grab area of an edge: inside its cam if that is wide enough, so that two adjoining edges can be
-    /// distinguished.
+    /// Returns an edge's grab area, which lies inside its cam if the cam is wide enough, so that two adjoining edges
+    /// can be distinguished.
     pub(super) fn grip(&self, cam: CamNumber, x: f32, is_start: bool, width: f32) -> Rect {
         let inside = (width / 2.0).clamp(1.0, GRIP - 2.0);
         let (left, right) = if is_start { (x - GRIP + inside, x + inside) } else { (x - inside, x + GRIP - inside) };
         Rect::from_x_y_ranges(left..=right, self.lane(cam).shrink2(Vec2::new(0.0, 2.0)).y_range())
     }
 
-    /// Returns whether an edge there is to be seen.
+    /// Returns whether an edge at `x` is visible.
     pub(super) fn shows(&self, x: f32) -> bool {
         x >= self.plot.left() - 1.0 && x <= self.plot.right() + 1.0
     }

@@ -7,15 +7,15 @@ use super::rows::Rows;
 use super::{Drag, StripContext, StripEvent, keep_arrows, paint};
 use crate::devices::ssi::state::strip::{self, Handle, Strip};
 
-/// Offset and width of the grab area of a handle beside its edge.
+/// Offset of a handle's grab area from its edge, and width of the area.
 const BESIDE: f32 = 7.0;
 const WIDTH: f32 = 14.0;
-/// Width of the strip after the last clock.
+/// Space after the last clock.
 const ROOM: f32 = 9.5;
-/// Offset of the drawn tab of a handle, and of one that has another on its edge.
+/// Offset of a handle's visible tab, and of the tab of a second handle at the same edge.
 const TAB: f32 = 3.0;
 const SECOND_TAB: f32 = 8.0;
-/// Share of a field at each of its ends where it cannot be taken hold of as a whole.
+/// Fraction at each end of a field that does not drag the field as a whole.
 const ENDS: f32 = 0.25;
 
 pub(super) fn grips(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
@@ -58,7 +58,7 @@ pub(super) fn grips(view: &StripContext<'_>, drag: Option<Drag>) -> Option<Strip
     event
 }
 
-/// Returns the id of a handle, which stays the same while zeros between turns and steps come and go.
+/// Returns a handle's id, which stays stable while zeros between turns and steps come and go.
 fn id(base: Id, handle: Handle) -> Id {
     let handle = if handle == Handle::TurnsEnd { Handle::Split } else { handle };
     base.with("handle").with(handle)
@@ -109,13 +109,13 @@ pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
     side(handle) * if is_second(strip, handle) { SECOND_TAB } else { TAB }
 }
 
-/// Returns whether a boundary is beside the edge: one between turns and steps is on the edge itself, one where zeros are
-/// possible is beside it.
+/// Returns whether a handle's tab is set off as the second one at an edge. The boundary between turns and steps lies on
+/// the edge, and the handle for zeros beside it.
 fn is_second(strip: &Strip, handle: Handle) -> bool {
     handle == Handle::BetweenEnd && strip.handles().contains(&Handle::Split)
 }
 
-/// Returns on which side of its edge the field of a boundary is: -1 before, 1 after, 0 for both.
+/// Returns which side of its edge a boundary's field is on: -1 before, 1 after, 0 for both.
 const fn side(handle: Handle) -> f32 {
     match handle {
         Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd | Handle::FrameEnd => 1.0,
@@ -124,7 +124,7 @@ const fn side(handle: Handle) -> f32 {
     }
 }
 
-/// Handles the pointer: the target of the handle, and its release.
+/// Handles pointer input: drags the handle to a target and reports its release.
 fn pulled(
     view: &StripContext<'_>,
     response: &Response,
@@ -166,7 +166,7 @@ fn pulled(
     to.map(|to| StripEvent::Preview(handle, to))
 }
 
-/// Handles the keyboard: by one clock, or as far as possible.
+/// Handles keyboard input: moves the handle by one clock, or as far as possible.
 fn keys(view: &StripContext<'_>, response: &Response, handle: Handle, at: u8) -> Option<StripEvent> {
     if !response.has_focus() {
         return None;

@@ -14,13 +14,13 @@ use crate::devices::ssi::state::strip::{Field, Strip, bare, name, short};
 use crate::ui::{Theme, controls};
 
 pub(super) struct Tag {
-    /// Index of its field in the strip.
+    /// Index of the named field in the strip.
     pub(super) field: usize,
     line: usize,
     level: usize,
-    /// From the first cell of its line.
+    /// Left edge, relative to the first cell of the line.
     left: f32,
-    /// Start of the line that leads down to it, from the same origin.
+    /// Start of the leader line to the name, relative to the first cell of the line; `None` without a leader line.
     leader: Option<f32>,
     galley: Arc<Galley>,
 }
@@ -29,17 +29,17 @@ pub(super) struct Tag {
 const APART: f32 = 6.0;
 /// Longer names are truncated; the field's tooltip contains the whole name.
 const WIDEST: f32 = 160.0;
-/// Maximum number of lines of names before the last: as many as a frame has error bits.
+/// Maximum number of rows of names before the last, which is the number of error bits in a frame.
 const LEVELS: usize = 8;
 
-/// Name that is wider than its field.
+/// Name wider than its field.
 struct Narrow {
     index: usize,
     line: usize,
     x: f32,
-    /// No neighbour is such a name.
+    /// Whether neither neighbour is wider than its field.
     alone: bool,
-    /// It begins at its line instead of ending there.
+    /// Whether the name starts at its leader line instead of ending there.
     begins: bool,
     /// Right end of the cells.
     room: f32,
@@ -47,7 +47,7 @@ struct Narrow {
 }
 
 impl Narrow {
-    /// Moves it to a free place beside the names already placed.
+    /// Moves the name to a free spot beside the names already placed.
     fn placed(self, tags: &[Tag]) -> Tag {
         let width = self.galley.size().x;
         let middle = self.x - width / 2.0;
@@ -69,14 +69,15 @@ impl Narrow {
         Tag { field: self.index, line: self.line, level, left, leader, galley: self.galley }
     }
 
-    /// Returns whether there is no other name.
+    /// Returns whether the name would overlap no other name at the given offset and level.
     fn is_apart(&self, tags: &[Tag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let own = tags.iter().filter(|tag| tag.line == self.line && tag.level == level);
         own.map(Tag::span).all(|(from, to)| right + APART <= from || to + APART <= left)
     }
 
-    /// Returns whether there is no other name, no line to a lower name, and nothing in the way of its own line.
+    /// Returns whether the name would overlap no other name, cross no leader line of a lower name, and have a clear
+    /// path for its own leader line.
     fn is_free(&self, tags: &[Tag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let mut others = tags.iter().filter(|tag| tag.line == self.line);
@@ -112,8 +113,8 @@ impl Tag {
     }
 }
 
-/// Returns the names of all fields, and the number of lines of them below each line of cells. `rows` has no place yet:
-/// their height depends on this.
+/// Returns the names of all fields, and the number of rows of names below each line of cells. `rows` has no position
+/// yet, because the line heights depend on the result.
 pub(super) fn tags(
     ui: &Ui,
     theme: &Theme,
@@ -180,7 +181,7 @@ pub(super) const fn verdict(meaning: Meaning) -> Verdict {
     }
 }
 
-/// Returns the widest of a field's runs, and its line.
+/// Returns the widest run of a field and the line that contains it.
 pub(super) fn widest(rows: &Rows, field: &Field) -> (Rect, usize) {
     let runs = rows.runs(field.first, field.last);
     let line = rows.line(field.first);

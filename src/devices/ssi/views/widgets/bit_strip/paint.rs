@@ -11,7 +11,7 @@ use crate::devices::ssi::state::strip::{self, Field, Handle, Kind};
 use crate::ui::widgets::{BitCell, focus_ring, series};
 use crate::ui::{Theme, controls};
 
-/// Returns the colour of a field; none for zeros.
+/// Returns the colour of a field; zeros are muted.
 pub(crate) fn ink(theme: &Theme, kind: Kind) -> Color32 {
     match kind {
         Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After => theme.palette.muted.into(),
@@ -70,7 +70,7 @@ impl StripContext<'_> {
         painter.text(self.rows.number(clock), Align2::CENTER_CENTER, clock.to_string(), font, colour.into());
     }
 
-    /// Draws the line below a field's cells, with its ends; it is thick if the field is moved as a whole.
+    /// Draws the bracket below a field's cells, thick if the field can be moved as a whole.
     fn bracket(&self, field: &Field, lane: Rect) {
         let ink = ink(self.theme, field.kind);
         let is_moved = self.model.movable
@@ -92,7 +92,6 @@ pub(super) struct Grip {
     pub(super) focused: bool,
 }
 
-/// Draws a handle, with its target during a drag.
 pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: Grip, drag: Option<Drag>) {
     let (theme, painter) = (view.theme, view.ui.painter());
     let accent = Color32::from(theme.palette.accent);
@@ -138,7 +137,6 @@ pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: Grip, drag: O
     }
 }
 
-/// Draws the target of a drag as text beside it.
 fn ghost(view: &StripContext<'_>, handle: Handle) {
     let (theme, painter) = (view.theme, view.ui.painter());
     let Some(clock) = view.shown.clock(handle) else { return };

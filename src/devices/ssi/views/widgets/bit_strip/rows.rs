@@ -5,12 +5,12 @@ use egui::{Pos2, Rect, Vec2, pos2};
 /// Widths of a cell; below the minimum the strip wraps.
 const LEAST: f32 = 17.0;
 const MOST: f32 = 28.0;
-/// Heights of the numbers, of a cell, of the lane with the brackets, and of a line of names.
+/// Heights of the clock numbers, the cells, the bracket lane and a row of names.
 const NUMBERS: f32 = 15.0;
 const CELL: f32 = 26.0;
 const LANE: f32 = 16.0;
 pub(super) const NAME: f32 = 15.0;
-/// Space beside the cells for the first and the last handle.
+/// Space at either side of the cells for the first and last handle.
 const MARGIN: f32 = 10.0;
 const GAP: f32 = 10.0;
 
@@ -18,15 +18,14 @@ const GAP: f32 = 10.0;
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     origin: Pos2,
-    /// Width of a cell with the gap after it.
+    /// Cell width, including the gap after the cell.
     pub(super) cell: f32,
     columns: u8,
-    /// The top of each line, and the bottom of the last.
+    /// Top of each line, followed by the bottom of the last.
     tops: Vec<f32>,
 }
 
 impl Rows {
-    /// Lays out this many clocks in this width.
     pub(super) fn new(room: f32, clocks: u8) -> Self {
         let room = (room - 2.0 * MARGIN).max(0.0);
         let count = f32::from(clocks.max(1));
@@ -48,12 +47,12 @@ impl Rows {
         self.origin.x
     }
 
-    /// Returns the number of lines for this number of clocks.
+    /// Returns the number of lines needed for the given number of clocks.
     pub(super) fn count(&self, clocks: u8) -> usize {
         usize::from(clocks.max(1).div_ceil(self.columns))
     }
 
-    /// Places the rows at an upper left corner, with room for `names` lines of labels below each.
+    /// Places the rows at the given top left corner, with `names[line]` rows of labels below each line.
     pub(super) fn at(mut self, origin: Pos2, names: &[usize]) -> Self {
         self.origin = origin + Vec2::new(MARGIN, 0.0);
         let mut top = 0.0;
@@ -94,7 +93,7 @@ impl Rows {
         pos2(cell.center().x, cell.top() - NUMBERS / 2.0)
     }
 
-    /// Returns the cells from one clock to another, one rectangle a line.
+    /// Returns the rectangles that cover a range of clocks, one per line.
     pub(super) fn runs(&self, first: u8, last: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for clock in first..=last {
@@ -111,7 +110,8 @@ impl Rows {
         Rect::from_min_max(pos2(run.left(), run.bottom()), pos2(run.right(), run.bottom() + LANE))
     }
 
-    /// Returns the edge after a clock: of that clock's own cell, or of the next one's if something begins there.
+    /// Returns the edge after a clock. If a part begins at that edge, it is drawn at the next clock's cell, which may
+    /// be on the next line.
     pub(super) fn edge(&self, clock: u8, begins: bool, clocks: u8) -> Rect {
         let begins = clock == 0 || begins && clock < clocks;
         let cell = self.cell(if begins { clock + 1 } else { clock });

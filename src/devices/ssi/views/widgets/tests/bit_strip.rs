@@ -113,13 +113,13 @@ fn boundaries_are_dragged() {
     assert!(previews.count() >= 2);
     drag(&mut harness, "End of the position", 20.0);
     assert_eq!(moves(&harness)[1..], [StripEvent::Moved(Handle::StepsEnd, 25)], "the frame has no more clocks");
-    drag(&mut harness, "Whole position", 4.0);
+    drag(&mut harness, "Entire position", 4.0);
     assert_eq!(moves(&harness).len(), 2, "there is no zero behind it");
-    drag(&mut harness, "Whole position", -2.0);
+    drag(&mut harness, "Entire position", -2.0);
     assert_eq!(moves(&harness)[2..], [StripEvent::Moved(Handle::Position, 3)]);
     drag(&mut harness, "End of the frame", 2.0);
     assert_eq!(moves(&harness)[3..], [StripEvent::Moved(Handle::FrameEnd, 27)]);
-    drag(&mut harness, "Start of the position", 0.2);
+    drag(&mut harness, "Start of position", 0.2);
     assert_eq!(moves(&harness).len(), 4, "where it is, is no other place");
 }
 
@@ -145,7 +145,10 @@ fn a_drag_previews_the_frame_and_can_be_cancelled() {
 #[test]
 fn error_bits_are_dragged_to_another_clock() {
     let mut harness = strip(&layout("afs60", &Settings { clocks: Some(24), ..Settings::default() }), 860.0);
-    assert_eq!(value(&harness, "Error bit ERRSYNC"), "on clock 21, position was invalid since the last transfer");
+    assert_eq!(
+        value(&harness, "Error bit ERRSYNC"),
+        "on clock 21, position invalid at some time since the last transfer"
+    );
     drag(&mut harness, "Error bit ERRSYNC", 2.0);
     assert_eq!(moves(&harness), [StripEvent::Moved(Handle::Error(2), 23)]);
     focus(&mut harness, "Error bit ERRDIG");
@@ -166,7 +169,7 @@ fn cells_can_be_selected_and_bits_toggled() {
         harness.run();
     }
     assert_eq!(harness.state().events, [StripEvent::Toggled(7), StripEvent::Selected(7)]);
-    assert_eq!(value(&harness, "Frame"), "Clock 7: MT5, one of 8 bits of the turns = 1");
+    assert_eq!(value(&harness, "Frame"), "Clock 7: MT5, one of 8 turn bits = 1");
     press(&mut harness, &[(NONE, Key::ArrowRight), (NONE, Key::Space), (NONE, Key::End), (NONE, Key::Home)]);
     let keyed = [StripEvent::Selected(8), StripEvent::Toggled(8), StripEvent::Selected(25), StripEvent::Selected(1)];
     assert_eq!(harness.state().events[2..], keyed);
@@ -179,7 +182,7 @@ fn every_frame_stays_within_its_width() {
         let plain = crate::devices::ssi::protocol::Descriptor::plain(bits.0, bits.1);
         let harness = strip(&Layout::new(plain).unwrap(), width);
         let left = harness.get_by_label("before").rect().left();
-        let labels = ["Frame", "End of the frame", "Start of the position", "Whole position"];
+        let labels = ["Frame", "End of the frame", "Start of position", "Entire position"];
         for label in labels.into_iter().chain(["Boundary between turns and steps"]) {
             let rect = harness.get_by_label(label).rect();
             assert!(rect.left() >= left && rect.right() <= left + width, "{label} at {width}: {rect}");
@@ -191,7 +194,8 @@ fn every_frame_stays_within_its_width() {
 fn a_handle_describes_its_purpose_and_range() {
     let mut harness = tree();
     // Turns and steps keep a bit each of clocks 5 to 20; the position has four zeros before it and five after it.
-    for (label, reach) in [("Boundary between turns and steps", "Range: 5 to 19"), ("Whole position", "Range: 1 to 10")]
+    for (label, reach) in
+        [("Boundary between turns and steps", "Range: 5 to 19"), ("Entire position", "Range: 1 to 10")]
     {
         let rect = harness.get_by_label(label).rect();
         harness.hover_at(rect.left_center() + Vec2::new(2.0, 0.0));
@@ -199,10 +203,10 @@ fn a_handle_describes_its_purpose_and_range() {
         harness.get_by_label(reach);
     }
     let mut harness = strip(&layout("kh53", &Settings::default()), 860.0);
-    let rect = harness.get_by_label("Whole position").rect();
+    let rect = harness.get_by_label("Entire position").rect();
     harness.hover_at(rect.left_center() + Vec2::new(2.0, 0.0));
     harness.run_steps(60);
-    harness.get_by_label("This boundary cannot be moved: the adjacent bits are in use.");
+    harness.get_by_label("This boundary cannot be moved because the adjacent bits are in use.");
 }
 
 /// Eight error bits with long names, at the beginning of a line and at its end: none overlaps another.

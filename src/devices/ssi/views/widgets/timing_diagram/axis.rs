@@ -17,7 +17,6 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Creates the axis of these sections in this width.
     pub(super) fn new(pieces: &[Piece], room: Rangef) -> Self {
         let breaks = pieces.len().saturating_sub(1) as f32 * BREAK;
         let drawn: f64 = pieces.iter().map(|piece| piece.to - piece.from).sum();
@@ -25,7 +24,8 @@ impl Axis {
         Axis { pieces: pieces.to_vec(), left: room.min, scale }
     }
 
-    /// Returns the x coordinate of a time; the middle of a break if it is omitted, and the ends for times beyond them.
+    /// Returns the x coordinate of a time. Omitted times map to the middle of their break; times out of range, to the
+    /// nearest end.
     pub(super) fn x(&self, at: f64) -> f32 {
         let mut left = self.left;
         for (number, piece) in self.pieces.iter().enumerate() {
@@ -44,7 +44,7 @@ impl Axis {
         left - BREAK
     }
 
-    /// Returns the time at a coordinate; `None` in a break and beyond the ends.
+    /// Returns the time at an x coordinate, or `None` within a break or beyond the ends.
     pub(super) fn at(&self, x: f32) -> Option<f64> {
         let mut left = self.left;
         for piece in &self.pieces {
@@ -57,7 +57,7 @@ impl Axis {
         None
     }
 
-    /// Returns the gaps, from the first to the last.
+    /// Returns the x ranges of the breaks, from left to right.
     pub(super) fn breaks(&self) -> Vec<Rangef> {
         let ends = self.pieces.iter().map(|piece| self.x(piece.to));
         let ends: Vec<f32> = ends.collect();

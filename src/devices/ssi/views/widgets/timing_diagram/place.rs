@@ -6,18 +6,18 @@ pub(super) struct Flag {
     pub(super) width: f32,
 }
 
-/// Placement of a text: its line, 0 the lowest, and its left edge.
+/// Position of a label: its line, counted from 0 at the bottom, and its left edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Put {
     pub(super) level: usize,
     pub(super) left: f32,
 }
 
-/// Between words, and between words and a line.
+/// Minimum distance between labels, and between a label and a line.
 const APART: f32 = 6.0;
 
-/// Places the texts of moments on as few lines as possible: no text overlaps another, or the line of a higher one. Texts
-/// that cannot be separated are on lines of their own.
+/// Places the labels of moments on as few lines as possible, so that no label overlaps another or crosses the line of a
+/// higher one. Labels that cannot be separated get lines of their own.
 pub(super) fn flags(flags: &[Flag], (from, to): (f32, f32)) -> Vec<Put> {
     for levels in 1..=flags.len() {
         let mut put = Vec::new();
@@ -29,7 +29,7 @@ pub(super) fn flags(flags: &[Flag], (from, to): (f32, f32)) -> Vec<Put> {
     flags.iter().enumerate().map(|(level, flag)| Put { level, left: left(flag) }).collect()
 }
 
-/// Places for those that have none yet, if there are any.
+/// Places the remaining labels and returns whether all of them fit.
 fn fill(flags: &[Flag], (from, to): (f32, f32), levels: usize, put: &mut Vec<Put>) -> bool {
     let Some(flag) = flags.get(put.len()) else { return true };
     let right = flag.x + APART;
@@ -64,14 +64,14 @@ fn agree((a, at): (&Flag, &Put), (b, bt): (&Flag, &Put)) -> bool {
     }
 }
 
-/// A time's line and words.
+/// Extent of a time's bar, and the width of its label.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bar {
     pub(super) ends: (f32, f32),
     pub(super) width: f32,
 }
 
-/// Places times on lanes, each with the start of its text: within its line if it fits, else beside it.
+/// Places times on lanes. Each label starts within its bar if it fits, otherwise beside it.
 pub(super) fn bars(bars: &[Bar], (from, to): (f32, f32)) -> Vec<Put> {
     let mut taken: Vec<(usize, f32, f32)> = Vec::new();
     let mut put = Vec::new();
