@@ -334,7 +334,7 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
         "drive 3 (",
         "10. Power-cycle check: done",
         "The restart was detected",
-        "Everything that can be saved is saved",
+        "All values that can be saved are saved",
     ] {
         assert!(has(part), "{part}: {report}");
     }

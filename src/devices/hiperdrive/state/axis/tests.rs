@@ -428,7 +428,7 @@ fn every_step_has_instructions_and_a_result() {
         }
     }
     let found = |step| words::found(&axis, step, &seen).unwrap().words(Language::English);
-    assert_eq!(found(AxisStep::Scale), "The drive's scaling is 400/256: 400 steps per turn.");
+    assert_eq!(found(AxisStep::Scale), "The drive's scaling is 400/256, or 400 steps per turn.");
     assert_eq!(
         found(AxisStep::Confirm),
         "The drive's limits are -2044.00 mm … 2044.00 mm.",

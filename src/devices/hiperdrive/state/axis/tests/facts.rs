@@ -220,7 +220,10 @@ fn differences_from_saved_values_are_shown_and_restored() {
     assert!(returned(&seen).contains("2 of 2 parameters have their previous values"));
     // Manual, 198: "the actual position to be shown at the present position": elsewhere the old number is a wrong zero.
     let told = words::place_left(&axis, &seen).unwrap().words(Language::English);
-    assert!(told.starts_with("The position (198) is not written back: 198 applies to the place where"), "{told}");
+    assert!(
+        told.starts_with("The position (198) is not written back because it applies to the current location"),
+        "{told}"
+    );
     assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.place_left", "and not that nothing differs");
     axis.cancel(&seen, "");
     let device = Device { name: String::new(), variant: None, serial_number: String::new() };
@@ -274,10 +277,10 @@ fn a_run_ends_with_a_report() {
         "serial number 77",
         "Spindle pitch: 4.000 mm per turn",
         "7. Upper limit: done\n   The drive's limits are -10.00 mm … 20.00 mm.",
-        "Test moves at 10 % speed and 25 % torque.",
+        "The test moves used 10 % speed and 25 % torque.",
         "Lower limit: reached -10.01 mm (-0.01 mm off target)",
         "The virtual supply was switched off and on.",
-        "Everything that can be saved is saved.",
+        "All values that can be saved are saved.",
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }
