@@ -27,7 +27,6 @@ pub enum ByteOrder {
 pub struct Word {
     /// The bits, right-justified.
     pub value: u64,
-    /// Number of bits.
     pub bits: u8,
 }
 
@@ -47,7 +46,6 @@ impl MaskedBytes {
         MaskedBytes(bytes.iter().copied().map(Some).collect())
     }
 
-    /// Creates bytes of which nothing but the number may be shown.
     pub fn hidden(count: usize) -> Self {
         MaskedBytes(vec![None; count])
     }
@@ -58,7 +56,6 @@ impl MaskedBytes {
         MaskedBytes(bytes.iter().enumerate().map(show).collect())
     }
 
-    /// Returns the number of bytes, including masked ones.
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -161,22 +158,18 @@ fn parse_group(group: &str, bytes: &mut Vec<u8>) -> Result<(), HexError> {
     Ok(())
 }
 
-/// An interpretation of bytes as a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TypedKind {
-    /// One unsigned byte.
     U8,
     /// One byte in two's complement.
     I8,
     /// Two bytes, unsigned.
     U16,
-    /// Two bytes, two's complement.
     I16,
     /// Four bytes, unsigned.
     U32,
     /// Four bytes, two's complement.
     I32,
-    /// Four bytes, IEEE 754 binary32.
     F32,
     /// The bits of one byte, most significant first.
     Binary,

@@ -15,13 +15,7 @@ pub enum Expected {
     #[error("one of {}", .0.join(", "))]
     OneOf(Vec<String>),
     #[error("{quantity} from {low} to {high}")]
-    Range {
-        quantity: Quantity,
-        /// The least.
-        low: Limit,
-        /// The greatest.
-        high: Limit,
-    },
+    Range { quantity: Quantity, low: Limit, high: Limit },
     /// A whole number of any size that fits.
     #[error("a whole number")]
     Whole,
@@ -30,47 +24,20 @@ pub enum Expected {
     Number32,
     /// Revolutions a minute in either direction.
     #[error("a speed from -{most} to {most} rpm")]
-    Speed {
-        /// The greatest.
-        most: u32,
-    },
+    Speed { most: u32 },
     /// Revolutions per minute, in one direction only.
     #[error("a speed from 0 to {most} rpm")]
-    RevolutionsAMinute {
-        /// The greatest.
-        most: u32,
-    },
+    RevolutionsAMinute { most: u32 },
     #[error("{low} to {high} seconds")]
-    Seconds {
-        /// The least.
-        low: Limit,
-        /// The greatest.
-        high: Limit,
-    },
+    Seconds { low: Limit, high: Limit },
     #[error("a bit rate from {low} to {high} bit/s, usually 115200")]
-    BitRate {
-        /// The least.
-        low: u32,
-        /// The greatest.
-        high: u32,
-    },
+    BitRate { low: u32, high: u32 },
     #[error("1 to {most} periods per revolution")]
-    Periods {
-        /// The greatest number.
-        most: u32,
-    },
+    Periods { most: u32 },
     #[error("1 to {most} turns")]
-    MostTurns {
-        /// The greatest number.
-        most: u32,
-    },
+    MostTurns { most: u32 },
     #[error("a number of steps from {low} to {high}, limited by its number of turns")]
-    StepsOfTurns {
-        /// The least.
-        low: u32,
-        /// The greatest.
-        high: u32,
-    },
+    StepsOfTurns { low: u32, high: u32 },
     #[error("only together with {0}")]
     OnlyWith(&'static str),
     #[error("a polynomial with all terms, such as 0x43, or none")]
@@ -82,16 +49,10 @@ pub enum Expected {
     #[error("0x40 to 0x5F, or 0xFF if only one encoder is connected")]
     AddressOrOnlyOne,
     #[error("an address from 0x40 to {last:#04X}")]
-    BusAddress {
-        /// The greatest.
-        last: u8,
-    },
+    BusAddress { last: u8 },
     /// The first of several consecutive encoder addresses.
     #[error("an address from 0x40 to {last:#04X}, so that every encoder gets one")]
-    FirstAddress {
-        /// The greatest.
-        last: u8,
-    },
+    FirstAddress { last: u8 },
     /// A time-out of HIPERFACE, counted in bits.
     #[error("44 or 11 bits, as set in the encoder")]
     TimeoutBits,
@@ -104,10 +65,7 @@ pub enum Expected {
     #[error("one to nine ASCII characters")]
     SerialNumber,
     #[error("up to {most} ASCII characters")]
-    Ascii {
-        /// The greatest number.
-        most: u32,
-    },
+    Ascii { most: u32 },
     /// A position without limits yet.
     #[error("a position in steps")]
     Steps,
@@ -136,10 +94,8 @@ pub enum Expected {
     Places { count: u8 },
     #[error("a family of SSI encoders with its settings, such as atm60,code=gray")]
     Family,
-    /// Error bits of a frame.
     #[error("{}, separated by commas, each with :SECONDS for an error that recurs", .0.join(", "))]
     ErrorBits(Vec<String>),
-    /// A frame without error bits.
     #[error("no value, because the frame of this encoder has no error bits")]
     NoErrorBits,
     #[error("a text")]
@@ -148,10 +104,8 @@ pub enum Expected {
     TextSuchAs(&'static str),
     #[error("a number from 0 to 255 (0x00 to 0xFF)")]
     Byte,
-    /// Two bytes.
     #[error("a number from 0 to 65535 (0x0000 to 0xFFFF)")]
     Word,
-    /// Bytes in lines.
     #[error("a list of texts with hexadecimal bytes")]
     HexLines,
     #[error("a structure: (name: value, …)")]
@@ -171,7 +125,6 @@ pub enum Expected {
     Revolutions,
     #[error("a number or a fraction such as 25/2")]
     Fraction,
-    /// A whole frame.
     #[error("ones, or a number with the bits of a whole frame")]
     Frame,
     #[error("even@CLOCK or odd@CLOCK")]
@@ -182,7 +135,6 @@ pub enum Expected {
     Clocks,
 }
 
-/// The quantity that a range refers to, worded with its article.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Quantity {
     /// Nothing in particular.
@@ -204,13 +156,10 @@ pub enum Quantity {
     Position,
     #[error("a position of the code disc")]
     PlaceOfDisc,
-    /// Degrees Celsius.
     #[error("a temperature in °C")]
     Celsius,
-    /// Degrees Celsius without decimals.
     #[error("a temperature in whole °C")]
     WholeCelsius,
-    /// Tenths of a revolution a minute.
     #[error("a speed in units of 0.1 rpm")]
     TenthsOfRpm,
     /// Percent of the nominal torque.

@@ -10,7 +10,6 @@ use crate::buses::bridge::sim::Attachable;
 use crate::buses::ethernet_ip::commands::EthernetIpDecoder;
 use crate::signals;
 
-/// Device kinds, in the order of the navigation and the help.
 pub const KINDS: &[Kind] = &[
     crate::devices::hiperface::KIND,
     crate::devices::biss::KIND,

@@ -8,7 +8,6 @@ use crate::expected::Expected;
 
 pub use values::{ANY, Checked, Decimal, Maybe, Milliseconds, Millivolts, SWITCH, Values, Whole, Words, number};
 
-/// A value that a parameter does not accept.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused {
     pub key: String,
@@ -53,7 +52,6 @@ pub trait Parameters: Default {
     /// Error returned when a value is refused.
     type Error;
 
-    /// All keys in order of declaration.
     const KEYS: &'static [&'static str];
 
     /// Keys whose values are neither displayed nor stored.
@@ -138,7 +136,6 @@ macro_rules! parameters {
 
         #[allow(dead_code, reason = "not all are asked for their keys")]
         impl $name {
-            /// All keys in order of declaration.
             $vis const KEYS: &'static [&'static str] = &[$($($key,)?)*];
         }
 

@@ -12,15 +12,12 @@ use crate::parameter::Words;
 pub struct Moment(Duration);
 
 impl Moment {
-    /// Start of the clock.
     pub const START: Moment = Moment(Duration::ZERO);
 
-    /// Creates the moment `elapsed` after the start of the clock.
     pub const fn after_start(elapsed: Duration) -> Self {
         Moment(elapsed)
     }
 
-    /// Returns the time elapsed since the start of the clock.
     pub const fn since_start(self) -> Duration {
         self.0
     }
@@ -57,7 +54,6 @@ impl Baud {
 
     /// 9600 bit/s, the factory setting of HIPERFACE encoders.
     pub const B9600: Baud = Baud(9_600);
-    /// 115 200 bit/s.
     pub const B115200: Baud = Baud(115_200);
 
     pub const fn bits_per_second(self) -> u32 {
@@ -76,7 +72,6 @@ impl fmt::Display for Baud {
     }
 }
 
-/// Parity of a serial character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Parity {
     None,
@@ -87,7 +82,6 @@ pub enum Parity {
 }
 
 impl Parity {
-    /// All parities, most common first.
     pub const ALL: [Parity; 3] = [Parity::Even, Parity::None, Parity::Odd];
 
     /// Names used in link URLs and JSON.

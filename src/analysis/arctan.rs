@@ -1,6 +1,6 @@
-//! The position inside one signal period from a pair of sine and cosine values: exactly, and by the table of one octant
-//! as a drive's interrupt routine computes it. Follows SICK 8010701, interpolation of the process data channel; the
-//! formulae are in section 3 of the project's sine/cosine reference.
+//! Phase inside one signal period from a pair of sine and cosine values, computed exactly or with a one-octant table as
+//! in a drive's interrupt routine. Follows SICK 8010701, interpolation of the process data channel; the formulae are in
+//! section 3 of the project's sine/cosine reference.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
@@ -12,26 +12,25 @@ pub const DEGREES: f64 = 360.0;
 pub struct Phase(f64);
 
 impl Phase {
-    /// Returns the phase of a position in periods: its fractional part, for either sign. `None` if the number is not
-    /// finite.
+    /// Returns the phase of a position in periods, which is its fractional part for either sign, or `None` if the
+    /// number is not finite.
     pub fn of_periods(periods: f64) -> Option<Self> {
-        // -1e-20 has a remainder that rounds to 1.
+        // The remainder of -1e-20 rounds to 1.
         let phase = periods.rem_euclid(1.0);
         if !periods.is_finite() { None } else { Some(Phase(if phase >= 1.0 { 0.0 } else { phase })) }
     }
 
-    /// Returns the periods, 0 ≤ φ < 1.
     pub fn periods(self) -> f64 {
         self.0
     }
 
-    /// Returns the electrical degrees, 0 ≤ φ < 360.
+    /// Returns the phase in electrical degrees, 0 ≤ φ < 360.
     pub fn degrees(self) -> f64 {
         self.0 * DEGREES
     }
 
-    /// Returns the step of 2^`bits` in one period that contains the phase, as an interpolating counter gives it: the upper
-    /// bits are the step of fewer bits. At most 32 bits.
+    /// Returns which of the 2^`bits` steps in one period contains the phase, as an interpolating counter would. The
+    /// upper bits equal the step at a lower resolution; `bits` is limited to 32.
     pub fn step(self, bits: u32) -> u32 {
         let bits = bits.min(32);
         let steps = 1_u64 << bits;
@@ -39,34 +38,35 @@ impl Phase {
         ((self.0 * steps as f64) as u64).min(steps - 1) as u32
     }
 
-    /// Returns the nearest step of 2^`bits` in one period, with step 0 after the last. At most 32 bits.
+    /// Returns the nearest of the 2^`bits` steps in one period, wrapping to 0 after the last. `bits` is limited to 32.
     pub fn nearest_step(self, bits: u32) -> u32 {
         let steps = 1_u64 << bits.min(32);
         ((self.0 * steps as f64).round() as u64 % steps) as u32
     }
 }
 
-/// Returns the exact phase of a pair of voltages free of offset; `None` without a signal: both are zero or one is not a
-/// number.
+/// Returns the exact phase of a pair of offset-free voltages, or `None` if there is no signal: both voltages are zero
+/// or one is not a number.
 pub fn exact(sine: f64, cosine: f64) -> Option<Phase> {
     if sine == 0.0 && cosine == 0.0 { None } else { Phase::of_periods(sine.atan2(cosine) / TAU) }
 }
 
-/// atan(t) for t from 0 to 1 at evenly spaced nodes, between which it is interpolated along a straight line.
+/// Table of atan(t) at evenly spaced nodes from 0 to 1, with linear interpolation between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OctantTable(Vec<f64>);
 
 impl OctantTable {
-    /// Number of intervals sufficient by the manual: its largest error is 1/79 255 of a period.
+    /// Number of intervals sufficient according to the manual; the largest error is 1/79 255 of a period.
     pub const INTERVALS: usize = 32;
 
-    /// Creates a table of this number of intervals, at least one.
+    /// Creates a table with the given number of intervals, at least one.
     pub fn new(intervals: usize) -> Self {
         let intervals = intervals.max(1);
         OctantTable((0..=intervals).map(|node| (node as f64 / intervals as f64).atan()).collect())
     }
 
-    /// Returns the phase by the table; `None` without a signal: both voltages are zero or one is not finite.
+    /// Returns the phase according to the table, or `None` if there is no signal: both voltages are zero or one is not
+    /// finite.
     pub fn phase(&self, sine: f64, cosine: f64) -> Option<Phase> {
         let (a, b) = (sine.abs(), cosine.abs());
         if (a == 0.0 && b == 0.0) || !a.is_finite() || !b.is_finite() {
@@ -85,7 +85,7 @@ impl OctantTable {
         Phase::of_periods(angle / TAU)
     }
 
-    /// Returns the largest error of a straight line between two nodes, in radians: h²/8 · 3√3/8.
+    /// Returns the largest error of the linear interpolation between two nodes, in radians: h²/8 · 3√3/8.
     pub fn largest_error_rad(&self) -> f64 {
         let spacing = 1.0 / (self.0.len() - 1) as f64;
         spacing * spacing / 8.0 * (3.0 * 3.0_f64.sqrt() / 8.0)
@@ -111,7 +111,8 @@ impl Default for OctantTable {
 mod tests {
     use super::*;
 
-    /// Section 3: sine, cosine, exact and table degrees, phase, its five upper bits, the nearest of 65 536 steps.
+    /// Section 3: sine, cosine, exact degrees, table degrees, phase, the phase's five upper bits, nearest of 65 536
+    /// steps.
     const GOLDEN: [(f64, f64, f64, f64, f64, u32, u32); 9] = [
         (0.0, 0.5, 0.0, 0.0, 0.0, 0, 0x0000),
         (0.5, 0.0, 90.0, 90.0, 0.25, 8, 0x4000),

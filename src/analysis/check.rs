@@ -1,18 +1,17 @@
-//! A device check, for every kind of device: steps with a verdict each. The steps and their findings are defined by the
-//! device.
+//! Result of a device check: a list of steps, each with a verdict. The steps and their findings are defined by each
+//! kind of device.
 
-/// How a step ended. The worse verdict is the greater one.
+/// Outcome of a step; the worse verdict compares as greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     Skipped,
-    /// As required.
+    /// The step meets the requirements.
     Good,
     Attention,
-    /// It does not work.
     Bad,
 }
 
-/// One line of a check: `S` names its step, `F` what it found.
+/// Result of one check step; `S` identifies the step, `F` its findings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepResult<S, F> {
     pub step: S,
@@ -21,24 +20,24 @@ pub struct StepResult<S, F> {
 }
 
 impl<S, F> StepResult<S, F> {
-    /// Creates a step with its findings: its verdict is the worst of them, or good without any.
+    /// Creates the result of a step; its verdict is that of the worst finding, or good without findings.
     pub(crate) fn of(step: S, findings: Vec<(Verdict, F)>) -> Self {
         let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
         StepResult { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
     }
 }
 
-/// The known wear of a device's memory.
+/// Known wear of a device's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wear {
-    /// Write cycles counted; `None` if not known.
+    /// Counted write cycles, if known.
     pub seen: Option<u64>,
     pub warning: u64,
     pub limit: u64,
 }
 
 impl Wear {
-    /// Returns the verdict on the counted write cycles; `None` if they are not known.
+    /// Returns the verdict on the counted write cycles, or `None` if the count is unknown.
     pub(crate) fn judged(&self) -> Option<(Verdict, u64)> {
         let seen = self.seen?;
         let verdict = match seen {

@@ -1,37 +1,37 @@
-//! From the position to the electrical angle of a motor: the offset between the two by the manual's two methods. SICK
+//! Offset between a shaft position and a motor's electrical angle, determined by the two methods of the manual. SICK
 //! 8010701, commutation; section 5 of the project's sine/cosine reference.
 
 use super::arctan::Phase;
 
-/// An angle inside one electrical period of a motor, as a fraction in units of 2⁻³².
+/// Angle inside one electrical period of a motor, as a fraction in units of 2⁻³².
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ElectricalAngle(u32);
 
-/// Motor with an encoder on its shaft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Motor {
     periods: u32,
     pole_pairs: u32,
 }
 
-/// The result of energising a second vector.
+/// Result of energising a second vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondVector {
-    /// Pole pairs by the movement, rounded; 0 if the shaft has moved by more than an electrical turn.
+    /// Number of pole pairs derived from the movement, rounded; 0 if the shaft has moved by more than an electrical
+    /// turn.
     pub pole_pairs: u32,
-    /// The movement divided by the expected one: 1 if all is well, negative if two phases are exchanged.
+    /// Ratio of the actual to the expected movement: 1 if all is well, negative if two phases are exchanged.
     pub ratio: f64,
 }
 
 impl ElectricalAngle {
-    /// Creates an angle from electrical turns; whole turns are dropped. `None` if it is not finite.
+    /// Creates an angle from electrical turns, dropping whole turns; `None` if the number is not finite.
     pub fn from_turns(turns: f64) -> Option<Self> {
         const STEPS: f64 = 4_294_967_296.0;
-        // 0.999… may round to a whole turn, which is 0.
+        // 0.999… may round to a whole turn, which is equivalent to 0.
         Phase::of_periods(turns).map(|phase| ElectricalAngle((phase.periods() * STEPS).round() as u64 as u32))
     }
 
-    /// Creates an angle from the number in the encoder's memory.
+    /// Creates an angle from the number stored in the encoder's memory.
     pub const fn from_bits(bits: u32) -> Self {
         ElectricalAngle(bits)
     }
@@ -41,41 +41,42 @@ impl ElectricalAngle {
         self.0
     }
 
-    /// Returns the electrical degrees, 0 to below 360.
+    /// Returns the angle in electrical degrees, from 0 to below 360.
     pub fn degrees(self) -> f64 {
         f64::from(self.0) * (360.0 / 4_294_967_296.0)
     }
 }
 
 impl Motor {
-    /// Creates a motor with signal periods per revolution and pole pairs; `None` if one of them is zero.
+    /// Creates a motor from signal periods per revolution and pole pairs; `None` if either is zero.
     pub const fn new(periods: u32, pole_pairs: u32) -> Option<Self> {
         if periods == 0 || pole_pairs == 0 { None } else { Some(Motor { periods, pole_pairs }) }
     }
 
-    /// Method 1: returns the offset to store, from the fine position in periods at which the shaft rests in a static
-    /// vector. `None` if the position is not finite.
+    /// Returns the offset to store (method 1), from the fine position in periods at which the shaft rests in a static
+    /// vector; `None` if the position is not finite.
     pub fn offset(&self, fine_periods: f64) -> Option<ElectricalAngle> {
         ElectricalAngle::from_turns(f64::from(self.pole_pairs) * self.revolutions(fine_periods))
     }
 
-    /// Returns the electrical angle at a fine position in periods, with the stored offset.
+    /// Returns the electrical angle at a fine position in periods, using the stored offset.
     pub fn electrical_angle(&self, fine_periods: f64, offset: ElectricalAngle) -> Option<ElectricalAngle> {
         self.offset(fine_periods).map(|angle| ElectricalAngle(angle.0.wrapping_sub(offset.0)))
     }
 
-    /// Returns the difference between two neighbouring values of [`position_to_set`], in degrees of the shaft.
+    /// Returns the difference between two neighbouring values of [`position_to_set`], in degrees of shaft rotation.
     pub fn mechanical_step_deg(&self) -> f64 {
         360.0 / f64::from(self.periods)
     }
 
-    /// Returns the same in electrical degrees: the resolution of method 2. 30° and more make a motor weak or unusable (U).
+    /// Returns the resolution of method 2 in electrical degrees. At 30° or more, the motor is weak or unusable (U).
     pub fn electrical_step_deg(&self) -> f64 {
         self.mechanical_step_deg() * f64::from(self.pole_pairs)
     }
 
-    /// Judges how far the shaft moved, in periods, from one static vector to one that is this many electrical turns ahead
-    /// (below ½, or the shaft may take the other way round). `None` if it has not moved or the turns are zero.
+    /// Evaluates the shaft's movement, in periods, from one static vector to another that is `electrical_turns` ahead.
+    /// The distance must be below ½, or the shaft may turn the other way. `None` if the shaft has not moved or the
+    /// distance is zero.
     pub fn second_vector(&self, moved_periods: f64, electrical_turns: f64) -> Option<SecondVector> {
         let moved = moved_periods / f64::from(self.periods);
         let ratio = moved * f64::from(self.pole_pairs) / electrical_turns;
@@ -84,15 +85,15 @@ impl Motor {
         sensible.then_some(SecondVector { pole_pairs: pole_pairs as u32, ratio })
     }
 
-    /// Returns the revolutions within one turn: whole ones, multiplied by the pole pairs, would cost digits of the
-    /// fraction.
+    /// Converts periods to the position within one revolution; whole revolutions, multiplied by the pole pairs, would
+    /// cost digits of the fraction.
     fn revolutions(&self, periods: f64) -> f64 {
         periods.rem_euclid(f64::from(self.periods)) / f64::from(self.periods)
     }
 }
 
-/// Method 2: returns the value for command 43h that makes the present position that of period `period`; its five lower bits
-/// are the upper ones of the phase, as the encoder requires. `None` beyond 2²⁷ periods.
+/// Returns the value for command 43h that sets the present position to period `period` (method 2). Its five lower bits
+/// are the upper bits of the phase, as the encoder requires. `None` beyond 2²⁷ periods.
 pub fn position_to_set(period: u32, phase: Phase) -> Option<u32> {
     if period >> 27 == 0 { Some(period << 5 | phase.step(5)) } else { None }
 }
@@ -111,7 +112,7 @@ mod tests {
         let offset = motor.offset(339.02).unwrap();
         assert_eq!(offset.bits(), 0x5305_1EB8);
         assert!((offset.degrees() - 116.746_875).abs() < 1e-7);
-        // A tenth of a revolution further, and any number of whole ones.
+        // A tenth of a revolution further, plus any number of whole revolutions.
         for turns in [0.0, 1.0, 4095.0] {
             let angle = motor.electrical_angle(339.02 + 102.4 + 1024.0 * turns, offset).unwrap();
             assert!((angle.degrees() / 360.0 - 0.4).abs() < 1e-8, "{angle:?}");
@@ -142,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_second_vector_yields_pole_pairs_and_phase_order() {
-        // A quarter of an electrical turn of four pole pairs is 1/16 revolution: 64 of 1024 periods.
+        // With four pole pairs, a quarter of an electrical turn is 1/16 revolution: 64 of 1024 periods.
         let motor = Motor::new(1024, 4).unwrap();
         assert_eq!(motor.second_vector(64.0, 0.25), Some(SecondVector { pole_pairs: 4, ratio: 1.0 }));
         let exchanged = motor.second_vector(-64.0, 0.25).unwrap();

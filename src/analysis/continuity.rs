@@ -1,40 +1,38 @@
-//! The sequence of the times of a capture: missing samples, and times that go backwards. Values counted from sample to
+//! Continuity of a capture's time stamps: missing samples, and times that go backwards. Values counted from sample to
 //! sample, such as the periods of a frequency, are counted within a continuous section only.
 //!
-//! A step of more than one and a half usual steps is a gap (U). Times of a table have few digits, so that even samples can
-//! have steps of two lengths: one digit more or less is no gap.
+//! A step of more than one and a half usual steps is a gap (U). The times in a table have few digits, so that even
+//! samples can have steps of two lengths: a difference of one digit is not a gap.
 
-/// A step is a gap beyond this multiple of the usual one.
+/// Multiple of the usual step beyond which a step is a gap.
 const GAP: f64 = 1.5;
-/// Steps of which the usual one is the median.
+/// Approximate number of steps sampled to obtain the usual step, their median.
 const SAMPLED: usize = 1 << 14;
-/// Steps within this share of the usual one are the same.
+/// Relative deviation from the usual step within which a step counts as equal.
 const SAME: f64 = 0.01;
-/// Share of equal steps below which the digits of the times cause the differences.
+/// Share of equal steps below which differences are attributed to the limited digits of the times.
 const MOSTLY: f64 = 0.9;
 
-/// The result of examining the times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Continuity {
-    /// Missing samples; `None` if there are none, or no times.
+    /// Missing samples; `None` if the capture has no gap or no times.
     pub missing: Option<Missing>,
-    /// The first sample whose time is before that of the previous one, counted from 0.
+    /// First sample with a time earlier than that of the previous sample, counted from 0.
     pub back: Option<usize>,
-    /// Time within continuous sections in seconds; `None` without times.
+    /// Total time in continuous sections, in seconds; `None` without times.
     pub stretches_s: Option<f64>,
-    /// Samples with which a stretch begins, the first of all not among them.
+    /// Indices of the samples that begin a section, except the first sample.
     pub(super) breaks: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Missing {
     pub gaps: usize,
-    /// The longest time from one sample to the next, in seconds.
     pub longest_s: f64,
 }
 
 impl Continuity {
-    /// Examines times in seconds.
+    /// Examines times given in seconds.
     pub fn of(times_s: &[f64]) -> Self {
         let Some(longest_even) = longest_even(times_s) else { return Continuity::default() };
         let mut continuity = Continuity::default();
@@ -61,19 +59,19 @@ impl Continuity {
     }
 }
 
-/// Returns the longest step that is no gap, in seconds; `None` if no time passes.
+/// Returns the longest step that is not a gap, in seconds, or `None` if no time passes.
 fn longest_even(times_s: &[f64]) -> Option<f64> {
-    // An odd stride is not synchronous with a pattern of 2ⁿ.
+    // An odd stride does not lock onto a pattern of length 2ⁿ.
     let stride = (times_s.len() / SAMPLED) | 1;
     let mut steps: Vec<f64> = times_s.windows(2).step_by(stride).filter_map(step).collect();
     let middle = steps.len() / 2;
     let median = (middle < steps.len()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)?;
     let forward = || steps.iter().filter(|step| **step >= 0.0);
-    // With more samples than the digits distinguish, most steps are zero.
+    // If the samples are closer together than the digits of the times can resolve, most steps are zero.
     let usual = if median > 0.0 { median } else { forward().sum::<f64>() / forward().count().max(1) as f64 };
     let same = steps.iter().filter(|step| (**step / usual - 1.0).abs() <= SAME).count();
     let digit = if same as f64 >= MOSTLY * steps.len() as f64 { 0.0 } else { last_digit(times_s, stride) };
-    // Rounding must not make a gap of a step that is exactly at the limit.
+    // Rounding must not turn a step exactly at the limit into a gap.
     let longest = (GAP * usual + digit) * (1.0 + 1e-6);
     (longest.is_finite() && longest > 0.0).then_some(longest)
 }
@@ -85,7 +83,7 @@ fn step(pair: &[f64]) -> Option<f64> {
     }
 }
 
-/// Returns the place of the last decimal digit of the times, in seconds; 0 below a nanosecond.
+/// Returns the weight of the last decimal digit of the times, in seconds; 0 below a nanosecond.
 fn last_digit(times_s: &[f64], stride: usize) -> f64 {
     let is_whole = |value: f64| (value - value.round()).abs() <= 1e-3;
     let fits = |places: &i32| times_s.iter().step_by(stride).all(|time| is_whole(time * 10_f64.powi(*places)));
@@ -107,7 +105,7 @@ mod tests {
 
     #[test]
     fn missing_rows_are_a_gap() {
-        // 2.5 µs per row, 799 rows missing after the thousandth: 800 steps instead of one.
+        // 2.5 µs per row, 799 rows missing after the thousandth: one step of 800 intervals.
         let mut capture = times(4000, |at| at * 2.5e-6);
         capture.drain(1000..1799);
         let told = Continuity::of(&capture);

@@ -1,31 +1,31 @@
-//! How much of the period a capture covers: octants, periods, and the distance of the samples from the ellipse. Validity of
-//! a fit follows section 7 of the project's sine/cosine reference (points in at least 6 of 8 octants).
+//! Signal coverage of a capture: octants, periods, and the distance of the samples from the ellipse. The validity of a
+//! fit follows section 7 of the project's sine/cosine reference (points in at least 6 of 8 octants).
 
 use std::ops::Range;
 
 use super::ellipse::Ellipse;
 use super::outliers::kept;
 
-/// The path of the samples on their ellipse.
+/// Path of the samples along their ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
-    /// Octants of the corrected angle that hold at least one sample, 0 to 8.
+    /// Number of octants of the corrected angle that contain at least one sample, 0 to 8.
     pub octants: u32,
-    /// Periods from the lowest to the highest angle, with the fraction.
+    /// Periods from the lowest to the highest angle, including the fraction.
     pub periods: f64,
-    /// Periods from the first to the last sample, without gaps; negative if the angle falls.
+    /// Periods from the first to the last sample, excluding gaps; negative if the angle decreases.
     pub travel_periods: f64,
-    /// Total path, forward and back, without gaps.
+    /// Total path in periods, forward and back, excluding gaps.
     pub path_periods: f64,
-    /// How often the angle reversed by more than half a period.
+    /// Number of reversals by more than half a period.
     pub reversals: usize,
-    /// Distance from the ellipse, rms, as a share of the amplitude.
+    /// RMS distance from the ellipse, as a fraction of the amplitude.
     pub residual_rms: f64,
     /// Shortest and longest amplitude vector √(sin² + cos²) as measured, in volts.
     pub vector_v: (f64, f64),
 }
 
-/// Angle that grows over periods: quarters so far, and the vector inside the quarter.
+/// Angle accumulated over periods: the quarters so far, and the vector within the current quarter.
 #[derive(Clone, Copy)]
 pub(super) struct Angle {
     quarters: i64,
@@ -38,12 +38,12 @@ impl Angle {
         Angle { quarters: i64::from(quarter(sine, cosine)), sine, cosine }
     }
 
-    /// Returns the same angle moved on, by less than half a period, to these voltages.
+    /// Returns the angle advanced to the given voltages, by less than half a period.
     fn moved_to(self, sine: f64, cosine: f64) -> Self {
         let step = (quarter(sine, cosine) - quarter(self.sine, self.cosine)).rem_euclid(4);
         let step = match step {
             3 => -1,
-            // Two quarters forward or back: the vectors show on which side the new one is nearer.
+            // Two quarters forward or back: the vectors show which direction is shorter.
             2 if self.cosine * sine < self.sine * cosine => -2,
             step => i64::from(step),
         };
@@ -57,19 +57,18 @@ impl Angle {
 
     fn periods(&self) -> f64 {
         let phase = self.sine.atan2(self.cosine) / std::f64::consts::TAU;
-        // Whole quarters are counted; only the part of the phase within its own quarter is added.
+        // Whole quarters are counted; only the part of the phase within the current quarter is added.
         self.quarters as f64 / 4.0 + phase.rem_euclid(1.0) - f64::from(quarter(self.sine, self.cosine)) / 4.0
     }
 }
 
-/// The path of an angle: its total length, and its reversals.
+/// Path of an angle: its extremes, total length and reversals.
 struct AnglePath {
     top: Angle,
     bottom: Angle,
-    /// Highest and lowest since it turned back last.
     high: Angle,
     low: Angle,
-    /// The angles at the start of the section, at the last reversal, and now.
+    /// Angle at the start of the section; `turned` is the angle at the last reversal, `here` the current angle.
     begun: Angle,
     turned: Angle,
     here: Angle,
@@ -87,7 +86,7 @@ enum Direction {
 }
 
 impl AnglePath {
-    /// Quarters of a period that an angle must come back by to count as reversed: noise does not.
+    /// Number of quarter periods that an angle must move back to count as a reversal, so that noise does not.
     const BACK: i64 = 3;
 
     fn from(first: Angle) -> Self {
@@ -119,7 +118,7 @@ impl AnglePath {
         }
     }
 
-    /// Notes a direction that shows for the first time, or has changed since `at`.
+    /// Records a direction that has become apparent, or has changed since `at`.
     fn turn_at(&mut self, at: Angle, direction: Direction) {
         self.keep_ends();
         if self.direction != Direction::Unknown {
@@ -130,7 +129,7 @@ impl AnglePath {
         self.direction = direction;
     }
 
-    /// Starts again at an angle whose path is not known.
+    /// Starts a new section at an angle that was reached by an unknown path.
     fn begin_at(&mut self, here: Angle) {
         self.end_stretch();
         (self.high, self.low, self.begun, self.turned, self.here) = (here, here, here, here, here);
@@ -154,7 +153,7 @@ impl AnglePath {
     }
 }
 
-/// Cuts a part of the samples before each of `breaks` in it.
+/// Splits a range of samples before each index in `breaks` that lies inside the range.
 fn cut(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize>> {
     let inside = breaks.get(breaks.partition_point(|at| *at <= part.start)..).unwrap_or_default();
     let inside = inside.get(..inside.partition_point(|at| *at < part.end)).unwrap_or_default();
@@ -162,7 +161,8 @@ fn cut(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize
     starts.zip(inside.iter().copied().chain(std::iter::once(part.end))).map(|(start, end)| start..end)
 }
 
-/// Returns the quarter, 0 to 3, counted as the angle grows. Optimised for speed: comparisons without branches.
+/// Returns the quarter, 0 to 3, counted in the direction of increasing angle. Optimised for speed: comparisons without
+/// branches.
 fn quarter(sine: f64, cosine: f64) -> i32 {
     let upper = sine > 0.0 || (sine == 0.0 && cosine >= 0.0);
     let right = cosine > 0.0 || (cosine == 0.0 && sine <= 0.0);
@@ -175,14 +175,14 @@ fn quarter(sine: f64, cosine: f64) -> i32 {
 }
 
 impl Coverage {
-    /// Follows the samples in order; from one to the next the angle must move by less than half a period. `None` without
-    /// samples.
+    /// Follows the samples in order, or returns `None` without samples. The angle must move by less than half a period
+    /// between consecutive samples.
     pub fn of(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> Option<Self> {
         Coverage::without(sine, cosine, &[], &[], ellipse)
     }
 
-    /// Does the same without the samples in `left_out`: ranges in order that do not overlap. The path of the angle to the
-    /// samples in `breaks` from those before is not known.
+    /// Follows the samples in order, skipping those in `left_out`, a list of ordered ranges that do not overlap. The
+    /// path of the angle to each sample in `breaks` is unknown.
     pub(super) fn without(
         sine: &[f64],
         cosine: &[f64],
@@ -190,7 +190,7 @@ impl Coverage {
         breaks: &[usize],
         ellipse: &Ellipse,
     ) -> Option<Self> {
-        /// Samples summed before their sum is added: less rounding.
+        /// Number of squares summed separately to reduce rounding errors.
         const BLOCK: usize = 4096;
         let correction = ellipse.correction();
         let length = sine.len().min(cosine.len());
@@ -295,7 +295,7 @@ mod tests {
 
     #[test]
     fn motion_within_a_gap_is_not_counted() {
-        // 2.7 periods, a jump by 40.4, 1.1 periods back with a sample left out where they begin.
+        // 2.7 periods, a jump of 40.4, then 1.1 periods back with one sample left out at their start.
         let angles =
             (0..100).map(|at| 0.1 + 0.027 * f64::from(at)).chain((0..100).map(|at| 43.2 - 0.011 * f64::from(at)));
         let (sine, cosine): (Vec<f64>, Vec<f64>) = angles.map(|periods| ELLIPSE.at(TAU * periods)).unzip();

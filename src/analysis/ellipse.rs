@@ -1,10 +1,10 @@
-//! The ellipse drawn by a pair of sine and cosine signals, found by least squares, and its differences from a circle:
+//! Least-squares fit of the ellipse drawn by a pair of sine and cosine signals, and its deviations from a circle:
 //! offsets, gain ratio and phase error. P. L. M. Heydemann, Applied Optics 20, 3382 (1981); section 7 of the project's
 //! sine/cosine reference.
 //!
 //! Model, with θ the true angle: x = R·cos θ + p (cosine channel) and y = (R·sin θ·cos α − R·cos θ·sin α)/r + q (sine
-//! channel). The fit is to A·x² + B·y² + C·xy + D·x + E·y = 1, after moving the origin to the middle of the ellipse: there
-//! the equation is best conditioned, and signals with a large mean level can be fitted as well.
+//! channel). The fit is to A·x² + B·y² + C·xy + D·x + E·y = 1, after moving the origin to the centre of the ellipse:
+//! the equation is then best conditioned, and signals with a large mean level can be fitted as well.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -12,61 +12,56 @@ use super::moments::Moments;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse {
-    /// R: amplitude of the cosine channel, peak, in the unit of the samples (volts).
+    /// R: peak amplitude of the cosine channel, in the unit of the samples (volts).
     pub amplitude_v: f64,
     /// p: mean level of the cosine channel in volts.
     pub offset_cosine_v: f64,
     /// q: mean level of the sine channel in volts.
     pub offset_sine_v: f64,
-    /// r: amplitude of the cosine over that of the sine channel, above 0.
+    /// r: ratio of the cosine amplitude to the sine amplitude, above 0.
     pub gain_ratio: f64,
-    /// α: lag of the sine behind a quarter of a period after the cosine, in radians, within ±π/2.
+    /// α: lag of the sine behind its nominal position, a quarter period after the cosine, in radians, within ±π/2.
     pub phase_error_rad: f64,
 }
 
-/// Why points determine no ellipse.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// An ellipse has five parameters, and one more point is needed to assess the fit.
+    /// The fit has too few points: an ellipse has five parameters, and one more point is needed to assess the fit.
     #[error("{points} points where {least} are needed", least = LEAST_POINTS)]
     TooFew { points: usize },
-    /// A sample is not a finite number.
     #[error("sample {index} is not a finite number")]
     NotFinite {
-        /// Its index, from 0.
+        /// Sample index, counted from 0.
         index: usize,
     },
-    /// Both channels are constant.
     #[error("all points are equal")]
     Constant,
     #[error("the {} channel does not change", .0.word())]
     Dead(Channel),
-    /// Both channels do the same, or their opposite.
+    /// Both channels carry the same signal, or one carries the inverse of the other.
     #[error("the points lie on a line")]
     Line,
-    /// There are fewer than six different points, or more than one ellipse passes through them.
+    /// The input has fewer than six distinct points, or more than one ellipse passes through them.
     #[error("the points do not tell one ellipse from another")]
     Ambiguous,
-    /// The best curve is a parabola or a hyperbola, or the points keep no distance from the middle.
+    /// The best curve is a parabola or a hyperbola, or the points do not keep clear of the centre.
     #[error("the points do not lie on an ellipse")]
     NotAnEllipse,
 }
 
-/// One of the two channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
     Sine,
     Cosine,
 }
 
-/// Fewest points of a fit.
 pub const LEAST_POINTS: usize = 6;
 
-/// A channel that moves less than this share of the other's range is dead; noise may be that large.
+/// Fraction of the other channel's range below which a channel is dead; noise may be that large.
 const DEAD: f64 = 0.05;
-/// Spread across over spread along a line, as variances, below which the points are on a line.
+/// Ratio of the variance across a line to the variance along it, below which the points lie on the line.
 const THIN: f64 = 1e-4;
-/// Smallest over largest eigenvalue of the normal equations below which they have no single solution.
+/// Ratio of the smallest to the largest eigenvalue of the normal equations, below which no unique solution exists.
 const CONDITION: f64 = 1e-13;
 /// Number of times the origin is moved to the centre of the previous ellipse.
 const ROUNDS: usize = 4;
@@ -92,7 +87,7 @@ pub struct Conic {
 }
 
 impl Conic {
-    /// Returns the ellipse by Heydemann's formulae; `None` if the curve is no ellipse around the origin.
+    /// Returns the ellipse by Heydemann's formulae; `None` if the curve is not an ellipse around the origin.
     pub fn ellipse(&self) -> Option<Ellipse> {
         let Conic { a, b, c, d, e } = *self;
         if a <= 0.0 || b <= 0.0 || c * c >= 4.0 * a * b {
@@ -117,8 +112,8 @@ impl Conic {
 }
 
 impl Ellipse {
-    /// Fits the best ellipse through points given as sine and cosine in volts, as many of one as of the other (surplus
-    /// values are ignored). Takes two passes over the samples.
+    /// Fits an ellipse to points given as sine and cosine in volts; surplus values of the longer slice are ignored.
+    /// Takes two passes over the samples.
     ///
     /// # Errors
     /// [`FitError`] if the points do not determine an ellipse. The caller must check that they cover the period.
@@ -126,10 +121,10 @@ impl Ellipse {
         Ellipse::of_moments(&Moments::of(sine, cosine)?)
     }
 
-    /// Fits the best ellipse through the points with these moments.
+    /// Fits an ellipse to points given by their moments.
     ///
     /// # Errors
-    /// As [`fit`](Self::fit).
+    /// As for [`fit`](Self::fit).
     pub fn of_moments(moments: &Moments) -> Result<Self, FitError> {
         if moments.count() < LEAST_POINTS {
             return Err(FitError::TooFew { points: moments.count() });
@@ -139,7 +134,7 @@ impl Ellipse {
         let mut moments = around_mean;
         let mut found = solve(&moments)?;
         for _ in 1..ROUNDS {
-            // Without a good start the middle may be outside; then the fit around the mean is the result.
+            // Without a good start the centre may be outside; the result is then the fit around the mean.
             let moved = moments.moved_by(found.offset_cosine_v, found.offset_sine_v);
             let Ok(better) = solve(&moved) else { break };
             (moments, found) = (moved, better);
@@ -147,7 +142,6 @@ impl Ellipse {
         Ok(moments.in_volts(&found))
     }
 
-    /// Voltages (sine, cosine) of the model at an angle in radians.
     pub fn at(&self, angle: f64) -> (f64, f64) {
         let lagging = (angle - self.phase_error_rad).sin();
         (
@@ -156,13 +150,13 @@ impl Ellipse {
         )
     }
 
-    /// Returns the circle that the signals draw once they are corrected.
+    /// Returns the circle described by the corrected signals.
     pub fn corrected(&self) -> Ellipse {
         let Ellipse { amplitude_v, .. } = *self;
         Ellipse { amplitude_v, offset_cosine_v: 0.0, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 }
     }
 
-    /// Returns this many points as (cosine, sine) in volts, with the first one repeated.
+    /// Returns the given number of points as (cosine, sine) in volts, with the first point repeated at the end.
     pub fn outline(&self, points: usize) -> Vec<(f64, f64)> {
         let point = |at: usize| {
             let (sine, cosine) = self.at(at as f64 / points as f64 * std::f64::consts::TAU);
@@ -171,24 +165,21 @@ impl Ellipse {
         (0..=points).map(point).collect()
     }
 
-    /// Returns the amplitude of the sine channel, peak, in volts.
     pub fn amplitude_sine_v(&self) -> f64 {
         self.amplitude_v / self.gain_ratio
     }
 
-    /// α in degrees.
     pub fn phase_error_deg(&self) -> f64 {
         self.phase_error_rad.to_degrees()
     }
 
-    /// Returns the correction that turns this ellipse into a circle.
     pub fn correction(&self) -> Correction {
         let (sin, cos) = self.phase_error_rad.sin_cos();
         Correction { p: self.offset_cosine_v, q: self.offset_sine_v, tan: sin / cos, scale: self.gain_ratio / cos }
     }
 }
 
-/// Turns samples on an ellipse into samples on a circle of the cosine's amplitude around zero.
+/// Correction that maps samples on an ellipse to a zero-centred circle with the amplitude of the cosine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
     p: f64,
@@ -204,14 +195,14 @@ impl Correction {
         (x * self.tan + self.scale * (sine - self.q), x)
     }
 
-    /// Returns how a change of the cosine and one of the sine change the corrected sine; the corrected cosine changes like
-    /// the cosine.
+    /// Returns the factors by which changes in the cosine and the sine affect the corrected sine; the corrected cosine
+    /// changes by the same amount as the cosine.
     pub(super) fn stretch(&self) -> (f64, f64) {
         (self.tan, self.scale)
     }
 }
 
-/// Returns the reason why points without area do not fit.
+/// Rejects points that enclose no area, with the reason.
 fn refuse_flat(around_mean: &Moments) -> Result<(), FitError> {
     let (range_x, range_y) = around_mean.ranges();
     let most = range_x.max(range_y);
@@ -226,14 +217,14 @@ fn refuse_flat(around_mean: &Moments) -> Result<(), FitError> {
         return Err(FitError::Dead(Channel::Sine));
     }
     let (xx, xy, yy) = (around_mean.sum(2, 0), around_mean.sum(1, 1), around_mean.sum(0, 2));
-    // Each channel relative to its own spread, or a small gain would look like a line.
+    // Each channel is taken relative to its own spread, or a small gain would look like a line.
     let correlation = (xy / (xx * yy).sqrt()).abs();
     if 1.0 - correlation < THIN { Err(FitError::Line) } else { Ok(()) }
 }
 
-/// Returns the 5 × 5 normal equations, in the scale of the moments.
+/// Builds and solves the 5 × 5 normal equations, in the scale of the moments.
 fn solve(moments: &Moments) -> Result<Ellipse, FitError> {
-    /// Powers of x and y in the columns A … E.
+    /// Powers of x and y in the columns A to E.
     const POWERS: [(usize, usize); 5] = [(2, 0), (0, 2), (1, 1), (1, 0), (0, 1)];
     let power = |column: usize| POWERS.get(column).copied().unwrap_or_default();
     let normal = SMatrix::<f64, 5, 5>::from_fn(|row, column| {

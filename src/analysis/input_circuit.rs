@@ -1,30 +1,27 @@
-//! The effect of a drive's input circuit on the signals: signal frequency at a speed, phase and amplitude of the input
-//! filter. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference. The manual names the input
-//! resistor in the text and the feedback resistor in the formula: the one across the capacitor counts.
+//! Effect of a drive's input circuit on the signals: signal frequency at a given speed, phase and gain of the input
+//! filter. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference. The manual names the
+//! input resistor in the text and the feedback resistor in the formula; the resistor across the capacitor counts.
 
 use std::f64::consts::TAU;
 
 /// Bandwidth of the process data channel (−3 dB) in hertz.
 pub const BANDWIDTH_HZ: f64 = 150_000.0;
 
-/// A filter of first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputFilter {
     pub resistance_ohm: f64,
     pub capacitance_f: f64,
 }
 
-/// The response of a filter at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     /// Lag of the output in electrical degrees, 0 to 90.
     pub phase_deg: f64,
-    /// Amplitude of the output over that of the input, 0 to 1.
+    /// Ratio of the output amplitude to the input amplitude, 0 to 1.
     pub gain: f64,
 }
 
 impl InputFilter {
-    /// Returns the response at a frequency in hertz.
     pub fn at(&self, frequency_hz: f64) -> Response {
         let product = TAU * frequency_hz * self.resistance_ohm * self.capacitance_f;
         Response { phase_deg: product.atan().to_degrees(), gain: 1.0 / product.hypot(1.0) }
@@ -32,18 +29,20 @@ impl InputFilter {
 }
 
 impl Response {
-    /// Returns the lag in 1/32 of a period, the steps of the absolute position.
+    /// Returns the lag in steps of the absolute position, 1/32 period each.
     pub fn lag_in_steps(&self) -> f64 {
         self.phase_deg / 360.0 * 32.0
     }
 }
 
-/// Returns the frequency in hertz of a signal with this many periods per revolution, at a speed in revolutions per minute.
+/// Returns the signal frequency in hertz for the given number of periods per revolution, at a speed in revolutions per
+/// minute.
 pub fn signal_frequency_hz(periods: u32, speed_rpm: f64) -> f64 {
     f64::from(periods) * speed_rpm / 60.0
 }
 
-/// Returns the speed in revolutions per minute at which a signal reaches a frequency in hertz; `None` without periods.
+/// Returns the speed in revolutions per minute at which a signal reaches a frequency in hertz, or `None` if `periods`
+/// is zero.
 pub fn speed_rpm_at(periods: u32, frequency_hz: f64) -> Option<f64> {
     if periods == 0 { None } else { Some(frequency_hz * 60.0 / f64::from(periods)) }
 }

@@ -1,58 +1,55 @@
-//! The Lissajous figure of sine over cosine as a density, as displayed by the phosphor of an oscilloscope: the number of
-//! samples in each cell of a square, and the shortest and longest vector in each direction. Every sample counts somewhere:
-//! in a cell, as outside, or as not a number. Independent of colours.
+//! Lissajous figure of sine over cosine as a density, as displayed by the phosphor of an oscilloscope: the number of
+//! samples in each cell of a square, and the shortest and longest vector in each direction. Every sample is counted: in
+//! a cell, as outside, or as not a number. Independent of colours.
 
 use std::f64::consts::TAU;
 
-/// A square in the plane of the cosine (to the right) and the sine (upwards).
+/// Square in the plane of the cosine (to the right) and the sine (upwards).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Square {
-    /// Middle, of the cosine in volts.
     pub cosine_v: f64,
-    /// Middle, of the sine in volts.
     pub sine_v: f64,
-    /// From the middle to an edge in volts.
+    /// Distance from the centre to an edge, in volts.
     pub half_v: f64,
 }
 
-/// The samples so far.
+/// Accumulated density of samples.
 #[derive(Clone, Debug)]
 pub struct Density {
     square: Square,
     side: usize,
     counts: Vec<u32>,
-    /// The direction of each cell.
     directions: Vec<u8>,
-    /// Squares of the lengths in each direction.
+    /// Squared vector lengths in each direction.
     lengths: [Lengths; SECTORS],
     outside: u64,
     bad: u64,
 }
 
-/// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts; (∞, 0) if there is none.
+/// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts; (∞, 0) without samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lengths {
     pub least_v: f64,
     pub most_v: f64,
 }
 
-/// Number of directions: 5° each, from the cosine's axis towards the sine's.
+/// Number of directions, 5° each, counted from the cosine axis towards the sine axis.
 pub const SECTORS: usize = 72;
-/// Most cells of a side.
+/// Maximum number of cells per side.
 pub const MOST_CELLS: usize = 2048;
 
-/// Room around the samples, as a share of their range.
+/// Margin around the samples, as a fraction of their range.
 const MARGIN: f64 = 0.05;
-/// Half the side of the square for samples that are all equal.
+/// Minimum half side of the square in volts, for samples that are all equal.
 const LEAST_HALF_V: f64 = 1e-3;
 
 impl Square {
-    /// Creates a range around zero, from which the vector's length is counted.
+    /// Creates a square centred on zero, the origin of the vectors.
     pub const fn centred(half_v: f64) -> Self {
         Square { cosine_v: 0.0, sine_v: 0.0, half_v }
     }
 
-    /// Returns a square around all samples that are numbers, with a margin; `None` if there are none.
+    /// Returns a square around all finite samples, with a margin, or `None` if a channel has no finite value.
     pub fn around(sine: &[f64], cosine: &[f64]) -> Option<Self> {
         let ((left, right), (bottom, top)) = (range(cosine)?, range(sine)?);
         let half = ((right - left).max(top - bottom) / 2.0).max(LEAST_HALF_V);
@@ -62,8 +59,8 @@ impl Square {
 }
 
 impl Density {
-    /// Creates an empty picture of `side` × `side` cells, at least one and at most [`MOST_CELLS`] per side. `None` for an
-    /// empty square.
+    /// Creates an empty picture of `side` × `side` cells, at least one and at most [`MOST_CELLS`] per side; `None` for
+    /// an empty square.
     pub fn new(square: Square, side: usize) -> Option<Self> {
         let Square { cosine_v, sine_v, half_v } = square;
         if !(cosine_v.is_finite() && sine_v.is_finite() && half_v.is_finite() && half_v > 0.0) {
@@ -95,7 +92,7 @@ impl Density {
         let scale = side / (2.0 * half_v);
         for (y, x) in sine.iter().zip(cosine) {
             let (column, row) = ((x - left) * scale, (y - bottom) * scale);
-            // False for NaN as well.
+            // Also false for NaN.
             let inside = column >= 0.0 && column < side && row >= 0.0 && row < side;
             let length = y * y + x * x;
             let direction = if inside {
@@ -118,7 +115,6 @@ impl Density {
         }
     }
 
-    /// Forgets all samples.
     pub fn clear(&mut self) {
         self.counts.fill(0);
         self.lengths = [Lengths::NONE; SECTORS];
@@ -133,7 +129,8 @@ impl Density {
         self.side
     }
 
-    /// Returns the number of samples in each cell: rows from the least sine upwards, in each from the least cosine on.
+    /// Returns the number of samples in each cell, row by row in ascending order of sine; each row is in ascending
+    /// order of cosine.
     pub fn counts(&self) -> &[u32] {
         &self.counts
     }
@@ -147,13 +144,13 @@ impl Density {
         self.outside
     }
 
-    /// Returns the number of samples that are no numbers.
+    /// Returns the number of samples that are not numbers.
     pub fn bad(&self) -> u64 {
         self.bad
     }
 
-    /// Returns the shortest and the longest vector in each of [`SECTORS`] directions. The lengths are those of the samples;
-    /// near a border of two directions the cell decides.
+    /// Returns the shortest and longest vector in each of the [`SECTORS`] directions. The lengths are those of the
+    /// samples; near a border between two directions the cell decides.
     pub fn lengths(&self) -> [Lengths; SECTORS] {
         self.lengths.map(|squares| Lengths { least_v: squares.least_v.sqrt(), most_v: squares.most_v.sqrt() })
     }
@@ -169,7 +166,7 @@ fn sector(sine: f64, cosine: f64) -> usize {
     ((share * SECTORS as f64) as usize).min(SECTORS - 1)
 }
 
-/// Returns the least and greatest of the values that are numbers.
+/// Returns the minimum and maximum of the finite values, or `None` without any.
 fn range(values: &[f64]) -> Option<(f64, f64)> {
     let finite = |value: f64| value.abs() < f64::INFINITY;
     let (groups, rest) = values.as_chunks::<4>();
@@ -222,7 +219,7 @@ mod tests {
         let mut density = Density::new(Square::centred(0.7), 256).unwrap();
         for degree in 0..3_600 {
             let (y, x) = (f64::from(degree) / 10.0).to_radians().sin_cos();
-            // 0.5 V all around, 0.4 V at 90° and 0.65 V at 200°, 2 V at 300°: outside.
+            // 0.5 V all around, 0.4 V at 90°, 0.65 V at 200°, and 2 V at 300°, which is outside.
             let length = match degree {
                 920 => 0.4,
                 2_020 => 0.65,
@@ -259,7 +256,7 @@ mod tests {
     }
 
     proptest! {
-        /// However they come, none is missing, and with a square around them none is outside.
+        /// However the samples are split, every sample is counted, and with a square around them none is outside.
         #[test]
         fn every_sample_is_counted(samples in proptest::collection::vec((any::<f32>(), any::<f32>()), 1..300), cut in 0_usize..300) {
             let (sine, cosine): (Vec<f64>, Vec<f64>) =

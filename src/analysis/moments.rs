@@ -1,22 +1,22 @@
-//! Sums of powers of two signals up to the fourth: sufficient for fitting an ellipse (Heydemann 1981) to any number of
-//! samples. They are collected in a scale near one, so that no digits are lost to the unit, and can be moved to another
-//! origin afterwards.
+//! Sums of powers of two signals up to the fourth, sufficient for fitting an ellipse (Heydemann 1981) to any number of
+//! samples. The sums are accumulated at a scale near one, so that no digits are lost to the unit, and can be moved to
+//! another origin afterwards.
 
 use super::ellipse::{Ellipse, FitError};
 
 /// Highest power.
 const ORDER: usize = 4;
-/// Numbers of one row of powers.
+/// Number of powers in one row.
 const ROW: usize = ORDER + 1;
-/// Samples summed before the sums are added to the total: rounding grows with the square root of blocks, not samples.
+/// Number of samples summed before their sums are added to the total: rounding errors grow with the square root of the
+/// number of blocks, not of samples.
 const BLOCK: usize = 4096;
-/// Sums side by side, which lets the processor add several at a time.
+/// Number of parallel sums, which lets the processor perform several additions at a time.
 const LANES: usize = 2;
 /// (power of x, power of y) of each sum.
 const POWERS: [(usize, usize); 14] =
     [(1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3), (4, 0), (3, 1), (2, 2), (1, 3), (0, 4)];
 
-/// Origin and unit in which sums are gathered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     x: f64,
@@ -34,7 +34,6 @@ pub struct Moments {
     most: (f64, f64),
 }
 
-/// The extremes of the samples.
 #[derive(Clone, Copy)]
 struct Extremes {
     least: (f64, f64),
@@ -42,8 +41,8 @@ struct Extremes {
 }
 
 impl Scale {
-    /// Creates empty moments with a scale for samples around these mean levels with about this amplitude, in volts. Signals
-    /// that arrive in pieces use the scale of the first.
+    /// Creates a scale for samples around the given mean levels, with approximately the given amplitude, all in volts.
+    /// Signals that arrive in pieces keep the scale of the first piece.
     pub fn new(sine: f64, cosine: f64, amplitude: f64) -> Self {
         let unit = if amplitude.is_finite() && amplitude > 0.0 { amplitude } else { 1.0 };
         Scale { x: cosine, y: sine, unit }
@@ -51,16 +50,15 @@ impl Scale {
 }
 
 impl Moments {
-    /// Creates the moments without samples.
     pub fn new(scale: Scale) -> Self {
         let (least, most) = ((f64::INFINITY, f64::INFINITY), (f64::NEG_INFINITY, f64::NEG_INFINITY));
         Moments { scale, count: 0, sums: [0.0; ROW * ROW], least, most }
     }
 
-    /// Returns the sums over all samples, in the best scale; surplus values of one channel are ignored.
+    /// Returns the sums over all samples at the best scale; surplus values of one channel are ignored.
     ///
     /// # Errors
-    /// [`FitError::NotFinite`] with the first such sample.
+    /// [`FitError::NotFinite`] with the index of the first sample that is not finite.
     pub fn of(sine: &[f64], cosine: &[f64]) -> Result<Self, FitError> {
         let Extremes { least, most } = Extremes::of(sine, cosine);
         let middle = |low: f64, high: f64| low + (high - low) / 2.0;
@@ -71,17 +69,18 @@ impl Moments {
         Ok(moments)
     }
 
-    /// Adds samples in volts, as many of one channel as of the other (surplus values are ignored).
+    /// Adds samples in volts; surplus values of one channel are ignored.
     ///
     /// # Errors
-    /// [`FitError::NotFinite`]; the moments are then unchanged, except for whole blocks before that sample.
+    /// [`FitError::NotFinite`] if a sample is not finite; the moments are then unchanged, except for whole blocks
+    /// before that sample.
     pub fn add(&mut self, sine: &[f64], cosine: &[f64]) -> Result<(), FitError> {
         let length = sine.len().min(cosine.len());
         let (sine, cosine) = (sine.get(..length).unwrap_or_default(), cosine.get(..length).unwrap_or_default());
         for (block, (ys, xs)) in sine.chunks(BLOCK).zip(cosine.chunks(BLOCK)).enumerate() {
             let sums = self.block(xs, ys);
             let extremes = Extremes::of(ys, xs);
-            // A sample that is not finite, or too large for its fourth power, shows in these sums.
+            // A sample that is not finite, or too large for its fourth power, affects these sums.
             if !sums.iter().all(|sum| sum.is_finite()) {
                 let bad = xs.iter().zip(ys).position(|(x, y)| !x.is_finite() || !y.is_finite());
                 return Err(FitError::NotFinite { index: block * BLOCK + bad.unwrap_or_default() });
@@ -101,7 +100,6 @@ impl Moments {
         Ok(())
     }
 
-    /// Returns the number of samples so far.
     pub fn count(&self) -> usize {
         self.count
     }
@@ -111,12 +109,12 @@ impl Moments {
         if i + j > ORDER { 0.0 } else { self.sums.get(i * ROW + j).copied().unwrap_or(0.0) }
     }
 
-    /// Returns the ranges of the cosine and of the sine channel in volts.
+    /// Returns the ranges of the cosine and sine channels in volts.
     pub(super) fn ranges(&self) -> (f64, f64) {
         (self.most.0 - self.least.0, self.most.1 - self.least.1)
     }
 
-    /// Returns the largest voltage, without its sign.
+    /// Returns the largest absolute voltage.
     pub(super) fn level(&self) -> f64 {
         [self.least.0, self.least.1, self.most.0, self.most.1].into_iter().map(f64::abs).fold(0.0, f64::max)
     }
@@ -126,8 +124,8 @@ impl Moments {
         self.moved_by(self.sum(1, 0) / count, self.sum(0, 1) / count)
     }
 
-    /// Returns the moments of the same samples as seen from (x, y), given in the unit of the scale: (x − a)ⁱ·(y − b)ʲ by
-    /// the binomial theorem.
+    /// Returns the moments of the samples with the origin moved to (x, y), given in the unit of the scale: (x − a)ⁱ·(y
+    /// − b)ʲ by the binomial theorem.
     pub(super) fn moved_by(&self, x: f64, y: f64) -> Moments {
         const BINOMIAL: [[f64; ROW]; ROW] = [
             [1.0, 0.0, 0.0, 0.0, 0.0],
@@ -154,7 +152,7 @@ impl Moments {
         moved
     }
 
-    /// Returns an ellipse found in this scale, in volts.
+    /// Converts an ellipse found at the moments' scale to volts.
     pub(super) fn in_volts(&self, ellipse: &Ellipse) -> Ellipse {
         Ellipse {
             amplitude_v: ellipse.amplitude_v * self.scale.unit,

@@ -1,43 +1,43 @@
-//! Speed and acceleration from unwrapped positions: differences over a range of time, not over a number of samples, so that
-//! a faster poll does not make them noisier. Breaks are never crossed.
+//! Speed and acceleration from unwrapped positions: differences over a time range, not over a number of samples, so
+//! that a faster poll does not make them noisier. Breaks are never crossed.
 
 use std::collections::VecDeque;
 
 use super::Time;
 
-/// Rates of change of unwrapped positions.
+/// Rates of change computed from unwrapped positions.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// Nanoseconds, at least 1.
+    /// Averaging window in nanoseconds, at least 1.
     window: i64,
-    /// Positions of the last two windows, the oldest first.
+    /// Positions within the last two windows, oldest first.
     recent: VecDeque<(Time, i64)>,
 }
 
-/// The rates of change of a position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rates {
-    /// Steps/s, averaged over the last window, so it belongs to the middle of it; `None` until a window has passed.
+    /// Speed in steps/s, averaged over the last window and thus valid for its middle; `None` until a window has passed.
     pub speed: Option<f64>,
-    /// Steps/s², from the last two windows; `None` until two windows have passed.
+    /// Acceleration in steps/s² from the last two windows; `None` until two windows have passed.
     pub acceleration: Option<f64>,
 }
 
 impl Motion {
-    /// Positions closer than this fraction of a window are not all kept: limits the memory at any rate.
+    /// Fraction (as a divisor) of a window below which close positions are not all kept, which limits the memory at any
+    /// rate.
     const RESOLUTION: i64 = 1024;
 
-    /// Creates averages over `window` nanoseconds (at least 1), or over one sample if they arrive more slowly.
+    /// Creates averages over `window` nanoseconds (at least 1), or over one sample if samples arrive more slowly.
     pub fn over(window: i64) -> Self {
         Motion { window: window.max(1), recent: VecDeque::with_capacity(4 * Self::RESOLUTION as usize + 16) }
     }
 
-    /// Starts again: the next position is not connected with the last.
+    /// Resets the averages; the next position is not connected with the previous one.
     pub fn reset(&mut self) {
         self.recent.clear();
     }
 
-    /// Takes the next position in steps. One that is not later than the previous one gives nothing new.
+    /// Processes the next position in steps. A position that is not later than the previous one yields no rates.
     pub fn next(&mut self, time: Time, steps: i64) -> Rates {
         if self.recent.back().is_some_and(|(before, _)| time <= *before) {
             return Rates::default();
@@ -47,7 +47,7 @@ impl Motion {
         let speed = middle.map(|middle| slope(middle, (time, steps)));
         let acceleration = match (speed, middle, oldest) {
             (Some(speed), Some(middle), Some(oldest)) => {
-                // The two slopes belong to the middles of their ranges.
+                // The two slopes are valid for the middles of their ranges.
                 let apart = time.seconds_since(oldest.0) / 2.0;
                 Some((speed - slope(oldest, middle)) / apart)
             }
@@ -64,7 +64,8 @@ impl Motion {
     }
 
     fn push(&mut self, time: Time, steps: i64) {
-        // The last but one represents those close to it; the last is always kept, as the next may come much later.
+        // The last position but one represents those close to it; the last one is always kept, since the next may come
+        // much later.
         let crowded = self
             .recent
             .len()
@@ -75,7 +76,7 @@ impl Motion {
             self.recent.pop_back();
         }
         self.recent.push_back((time, steps));
-        // One that is older than two windows must stay: a range starts there.
+        // One position older than two windows must stay, because a range starts at it.
         let start = self.before(time.plus(-self.window)).and_then(|(middle, _)| self.before(middle.plus(-self.window)));
         while let (Some(start), Some(first)) = (start, self.recent.front())
             && first.0 < start.0
@@ -85,7 +86,8 @@ impl Motion {
     }
 }
 
-/// Returns the steps/s between two positions, the earlier first. The differences are exact before they are divided.
+/// Returns the speed in steps/s between two positions, the earlier one first. The differences are exact before the
+/// division.
 fn slope(from: (Time, i64), to: (Time, i64)) -> f64 {
     to.1.saturating_sub(from.1) as f64 / to.0.seconds_since(from.0)
 }

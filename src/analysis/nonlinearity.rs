@@ -1,55 +1,53 @@
 //! Differential and integral non-linearity against a reference: the deviation inside one signal period (offset, gain,
-//! phase, harmonics) and over the revolution (eccentricity, coupling, scale). SICK 8010701, definitions of errors; section
-//! 6 of the project's sine/cosine reference, whose evaluation is used: the mean over one period around each sample is the
-//! integral part, the rest is the differential part. Both are half of peak to peak: a ± value.
+//! phase, harmonics) and over the revolution (eccentricity, coupling, scale). SICK 8010701, definitions of errors. The
+//! evaluation follows section 6 of the project's sine/cosine reference: the mean over one period around each sample is
+//! the integral part, the rest is the differential part. Both values are half of the peak-to-peak range, that is, ±
+//! values.
 
-/// Both non-linearities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nonlinearity {
     /// DNL: ± deviation inside one period, in mechanical degrees.
     pub differential_deg: f64,
     /// INL: ± deviation of the mean over one period, in mechanical degrees.
     pub integral_deg: f64,
-    /// Reference angle and both parts of the deviation, mean removed, in mechanical degrees; only where a whole period is
-    /// around the sample.
+    /// Reference angle and both parts of the deviation with the mean removed, in mechanical degrees; includes only
+    /// samples surrounded by a whole period.
     pub curve: Vec<Deviation>,
-    /// Revolutions that the curve covers; INL is valid for a whole one only from 1 on.
+    /// Number of revolutions covered by the curve; INL applies to a whole revolution only from 1 on.
     pub revolutions: f64,
 }
 
-/// The deviation at one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Reference in mechanical degrees.
+    /// Reference angle in mechanical degrees.
     pub reference_deg: f64,
     /// Deviation from the mean over a period, in mechanical degrees.
     pub differential_deg: f64,
-    /// The mean over a period, in mechanical degrees.
+    /// Mean deviation over a period, in mechanical degrees.
     pub integral_deg: f64,
 }
 
-/// Why it cannot be determined.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NonlinearityError {
-    /// The reference does not run in one direction at this sample.
+    /// The reference reverses or stands still at a sample.
     #[error("the reference does not run on at sample {index}")]
     NotMonotonic {
-        /// Its index, from 0.
+        /// Sample index, counted from 0.
         index: usize,
     },
-    /// Less than two periods, or fewer than four samples in one.
+    /// The data cover less than two periods, or a period has fewer than four samples.
     #[error("two periods with at least four samples each are needed")]
     TooLittle,
-    /// A sample is not a finite number, or there are no periods.
+    /// A sample is not a finite number, or `periods` is zero.
     #[error("a sample is not a number")]
     NotFinite,
 }
 
-/// Compares measured and reference angles in mechanical degrees, both unwrapped; `periods` is the number of signal periods
-/// per revolution.
+/// Compares measured and reference angles in mechanical degrees, both unwrapped; `periods` is the number of signal
+/// periods per revolution.
 ///
 /// # Errors
-/// [`NonlinearityError`] if the reference reverses, or is too short.
+/// [`NonlinearityError`] if the reference reverses, or the data are too short or invalid.
 pub fn nonlinearity(measured: &[f64], reference: &[f64], periods: u32) -> Result<Nonlinearity, NonlinearityError> {
     let count = measured.len().min(reference.len());
     let (measured, reference) = (measured.get(..count).unwrap_or_default(), reference.get(..count).unwrap_or_default());
@@ -87,11 +85,11 @@ pub fn nonlinearity(measured: &[f64], reference: &[f64], periods: u32) -> Result
     })
 }
 
-/// Returns the mean over one period around each sample that has one: the integral of the straight lines between the
-/// samples, so that their places in the period make no difference.
+/// Splits the error at each sample that is surrounded by a whole period. The mean over the period integrates the
+/// straight lines between the samples, so that their positions in the period make no difference.
 fn split(errors: &[f64], reference: &[f64], period_deg: f64, direction: f64) -> Vec<Deviation> {
     let start = reference.first().copied().unwrap_or(0.0);
-    // Angles from the start, growing whatever the direction.
+    // Angles from the start, increasing in either direction of rotation.
     let place = |index: usize| reference.get(index).map(|angle| (angle - start) * direction);
     let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
     let error = |index: usize| errors.get(index).copied().unwrap_or(0.0) - mean;
@@ -104,7 +102,7 @@ fn split(errors: &[f64], reference: &[f64], period_deg: f64, direction: f64) -> 
         areas.push(area);
     }
     let end = place(errors.len().saturating_sub(1)).unwrap_or(0.0);
-    // The area up to any angle; `from` moves along with it.
+    // Area up to a given angle; `from` advances with the angle.
     let area_to = |angle: f64, from: &mut usize| {
         while place(*from + 1).is_some_and(|next| next <= angle) {
             *from += 1;
@@ -133,7 +131,8 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Returns a reference over `revolutions` and a measurement with an eccentricity of 0.02° and a period error of 0.003°.
+    /// Returns a reference over `revolutions`, and a measurement with an eccentricity of 0.02° and a period error of
+    /// 0.003°.
     fn measured(count: usize, revolutions: f64, periods: f64) -> (Vec<f64>, Vec<f64>) {
         (0..count)
             .map(|at| {
@@ -150,7 +149,7 @@ mod tests {
         let back = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<_>>();
         for (values, reference) in [(values.clone(), reference.clone()), (back(&values), back(&reference))] {
             let told = nonlinearity(&values, &reference, 128).unwrap();
-            // The mean over 1/128 revolution reduces a sine of one revolution by 1e-4 of itself.
+            // The mean over 1/128 revolution reduces a sine of one revolution by only 1e-4 of its amplitude.
             assert!((told.integral_deg - 0.02).abs() < 5e-6, "{}", told.integral_deg);
             assert!((told.differential_deg - 0.003).abs() < 5e-6, "{}", told.differential_deg);
             assert!((told.revolutions - 1.1).abs() < 1e-3);
@@ -161,7 +160,8 @@ mod tests {
     fn a_period_need_not_be_a_whole_number_of_samples() {
         let (values, reference) = measured(1111, 1.0, 16.0);
         let told = nonlinearity(&values, &reference, 16).unwrap();
-        // The mean over 1/16 revolution removes (π/16)²/6 of a sine of one revolution, which goes to the differential part.
+        // The mean over 1/16 revolution removes (π/16)²/6 of a sine of one revolution, which is added to the
+        // differential part.
         let leaked = 0.02 * (TAU / 32.0).powi(2) / 6.0;
         assert!((told.differential_deg - leaked - 0.003).abs() < 3e-5, "{}", told.differential_deg);
         assert!((told.integral_deg / 0.02 - 1.0).abs() < 0.02, "{}", told.integral_deg);

@@ -1,6 +1,6 @@
-//! Samples far off the ellipse, caused by a relay's spark or a loose contact: a few of them would distort an ellipse fitted
-//! by least squares. They are found by a robust deviation (the median of the distances) and left out of a second fit; they
-//! are reported.
+//! Detection of samples far off the ellipse, caused by a relay's spark or a loose contact: a few of them would distort
+//! an ellipse fitted by least squares. Outliers are found by a robust deviation (the median of the distances), left out
+//! of a second fit, and reported.
 
 use std::ops::Range;
 
@@ -8,57 +8,57 @@ use super::coverage::Coverage;
 use super::ellipse::{Channel, Ellipse, FitError};
 use super::moments::{Moments, Scale};
 
-/// The samples excluded from a fit.
+/// Samples excluded from a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outliers {
-    /// The samples, by index from 0, in order; no two ranges touch.
+    /// Ranges of outliers, by sample index from 0, in order; no two ranges touch.
     pub stretches: Vec<Range<usize>>,
     pub count: usize,
     pub longest: usize,
     /// Largest distance from the ellipse, in volts.
     pub farthest_v: f64,
-    /// The ellipse through all samples and their coverage of it; `None` if they determine none.
+    /// Ellipse through all samples and their coverage, or `None` if the samples do not determine an ellipse.
     pub all: Option<(Ellipse, Coverage)>,
 }
 
 /// Number of robust deviations beyond which a sample is left out: normally distributed noise exceeds it in one of 10¹⁵.
 pub const DEVIATIONS: f64 = 8.0;
-/// Share of the amplitude within which a sample is never an outlier, however little noise there is.
+/// Fraction of the amplitude within which a sample is never an outlier, however low the noise.
 pub const LEAST_SHARE: f64 = 0.02;
-/// Beyond this share of the samples they are no outliers but a property of the signal.
+/// Share of samples above which deviating samples are not outliers but a property of the signal.
 pub const MOST: f64 = 0.05;
-/// Fewest samples with which outliers can be recognised.
+/// Minimum number of samples required to recognise outliers.
 pub const LEAST_SAMPLES: usize = 50;
 
-/// Samples that medians are taken from, evenly spread.
+/// Approximate number of evenly spread samples from which medians are taken.
 const SAMPLED: usize = 1 << 15;
-/// Fits without outliers, until they stay the same.
+/// Maximum number of fits without outliers; fewer are needed once the outliers no longer change.
 const ROUNDS: usize = 4;
 /// Ratio of a normal distribution's deviation to the median of its distances from zero.
 const NORMAL: f64 = 1.4826;
-/// Median distance from an upright ellipse, as a share of its amplitude, beyond which the samples are on none: a cloud has
-/// 0.3.
+/// Median distance from an upright ellipse, as a fraction of its amplitude, beyond which the samples lie on no ellipse;
+/// a cloud has 0.3.
 const UPRIGHT: f64 = 0.15;
-/// A channel with less than this share of the other's range does not move.
+/// Fraction of the other channel's range below which a channel does not move.
 const DEAD: f64 = 0.05;
 
 pub(super) enum OutlierSearch {
-    /// None, or too many to count as outliers.
+    /// No outliers were found, or too many samples deviate to count as outliers.
     Nothing,
     Outliers(Ellipse, Outliers),
 }
 
-/// Searches for outliers; `all` is the ellipse through all samples, if there is one.
+/// Searches for outliers; `all` is the ellipse through all samples, if known.
 pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> OutlierSearch {
     let count = sine.len().min(cosine.len());
     if count < LEAST_SAMPLES {
         return OutlierSearch::Nothing;
     }
-    // An odd stride is not synchronous with a period of 2ⁿ samples.
+    // An odd stride does not lock onto a period of 2ⁿ samples.
     let stride = (count / SAMPLED) | 1;
     let sampled = |values: &[f64]| values.iter().take(count).step_by(stride).copied().collect::<Vec<f64>>();
     let (ys, xs) = (sampled(sine), sampled(cosine));
-    // An ellipse distorted by an outlier misses the others; the upright one is used if it misses them less.
+    // An ellipse distorted by an outlier misses the other samples; the upright ellipse is used if it fits them better.
     let upright = boxed(&ys, &xs).ok().filter(|boxed| median_off(&ys, &xs, boxed) < UPRIGHT * boxed.amplitude_v);
     let start = match (all, upright) {
         (Some(all), Some(upright)) => {
@@ -102,13 +102,13 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     OutlierSearch::Outliers(ellipse, outliers)
 }
 
-/// Returns the channel that does not move, single samples aside.
+/// Returns the channel that does not move, apart from single samples, or `None` if both move.
 pub(super) fn dead(sine: &[f64], cosine: &[f64]) -> Option<Channel> {
     let few = sine.len().min(cosine.len()) < LEAST_SAMPLES;
     boxed(sine, cosine).err().flatten().filter(|_| !few)
 }
 
-/// Returns the ranges of `length` samples that remain without `left_out`.
+/// Returns the remaining ranges of `length` samples after removing `left_out`.
 pub(crate) fn kept(length: usize, left_out: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
     let starts = std::iter::once(0).chain(left_out.iter().map(|stretch| stretch.end));
     let ends = left_out.iter().map(|stretch| stretch.start).chain(std::iter::once(length));
@@ -123,10 +123,10 @@ fn fit_without(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale: S
     Ellipse::of_moments(&moments)
 }
 
-/// Returns an upright ellipse by quantiles, which a few samples do not affect; or the constant channel if there is one, and
-/// `None` if both are constant.
+/// Returns an upright ellipse derived from quantiles, which a few samples do not affect. The error holds the constant
+/// channel, or `None` if both are constant.
 fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
-    /// A sine is outside of cos(0.05·π) of its amplitude for a tenth of the time.
+    /// Share of samples beyond each quantile: for a tenth of the time, a sine is outside cos(0.05·π) of its amplitude.
     const SHARE: f64 = 0.05;
     let reach = (SHARE * std::f64::consts::PI).cos();
     let channel = |values: &[f64]| {
@@ -151,7 +151,7 @@ fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
     }
 }
 
-/// Returns the median of the distances from an ellipse, in volts of its corrected circle.
+/// Returns the median distance from an ellipse, in volts on its corrected circle.
 fn median_off(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
     let correction = ellipse.correction();
     let off = |(y, x): (&f64, &f64)| {
@@ -163,14 +163,14 @@ fn median_off(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
     rank_of(&mut offs, middle)
 }
 
-/// Returns the value of that rank, counted from the least.
+/// Returns the value of the given rank, counted from the smallest.
 fn rank_of(values: &mut [f64], rank: usize) -> f64 {
     if rank < values.len() { *values.select_nth_unstable_by(rank, f64::total_cmp).1 } else { f64::NAN }
 }
 
-/// Returns the samples that are further from the ellipse than `limit` volts.
+/// Returns the ranges of samples farther from the ellipse than `limit` volts.
 fn beyond(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) -> Vec<Range<usize>> {
-    /// Samples that are checked together: usually there is no outlier among them.
+    /// Number of samples checked together; usually none of them is an outlier.
     const BLOCK: usize = 256;
     let correction = ellipse.correction();
     let squared = |volts: f64| volts * volts;

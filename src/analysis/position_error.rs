@@ -1,11 +1,12 @@
-//! The position error over one signal period, in electrical degrees, before and after the correction, and its harmonics.
-//! SICK 8010701, definitions of errors (the effects of offset, gain, phase and harmonics inside a period); section 6 of the
-//! project's sine/cosine reference.
+//! Position error over one signal period, in electrical degrees, before and after the correction, and its harmonics.
+//! SICK 8010701, definitions of errors (the effects of offset, gain, phase and harmonics inside a period); section 6 of
+//! the project's sine/cosine reference.
 //!
-//! Without a reference encoder the motion is the reference: over a few periods a shaft turns along a straight line or a
-//! parabola in time, so deviations that repeat with the period are error. Both are fitted at once: a motion for each
-//! segment of the capture, and eight harmonics of the corrected angle for all. If the motion is not such a line, or too
-//! short, the distance from the ellipse is used as the error: a disturbance changes both by the same amount.
+//! Without a reference encoder the motion is the reference: over a few periods a shaft follows a straight line or a
+//! parabola in time, so deviations that repeat with the period are errors. Both are fitted at once: a motion for each
+//! segment of the capture, and eight harmonics of the corrected angle for all segments. If the motion does not fit such
+//! a curve, or is too short, the distance from the ellipse serves as the error: a disturbance changes both by the same
+//! amount.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -16,7 +17,7 @@ use super::coverage::Coverage;
 use super::ellipse::{Correction, Ellipse};
 use super::outliers::kept;
 
-/// Number of harmonics of the period.
+/// Number of fitted harmonics of the period.
 pub const HARMONICS: usize = 8;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +26,6 @@ pub struct PositionError {
     pub raw_deg: Vec<f64>,
     /// Remaining error after correction, in electrical degrees at the same angles.
     pub corrected_deg: Vec<f64>,
-    /// Basis of the remaining error.
     pub basis: Basis,
     /// Peak to peak of the remaining error, in electrical degrees.
     pub corrected_pp_deg: f64,
@@ -35,15 +35,11 @@ pub struct PositionError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Basis {
     /// A steady motion: the deviation of the samples that the harmonics do not explain.
-    Motion {
-        /// Noise in electrical degrees, rms.
-        noise_deg: f64,
-    },
+    Motion { noise_deg: f64 },
     /// The distance from the ellipse, because the motion was not steady, or the capture was too short.
     Ellipse,
 }
 
-/// Points of a curve.
 pub const POINTS: usize = 720;
 
 /// Sine and cosine of each harmonic.
@@ -68,9 +64,7 @@ type Terms = SVector<f64, TERMS>;
 pub struct Samples<'a> {
     /// Times in seconds. If they do not increase, they are ignored, and samples are assumed to be equidistant.
     pub time_s: &'a [f64],
-    /// Sine channel in volts.
     pub sine_v: &'a [f64],
-    /// Cosine channel in volts.
     pub cosine_v: &'a [f64],
 }
 
@@ -101,7 +95,6 @@ impl PositionError {
         PositionError { raw_deg, corrected_deg, basis, corrected_pp_deg }
     }
 
-    /// Returns the peak to peak as measured, in electrical degrees.
     pub fn raw_pp_deg(&self) -> f64 {
         peak_to_peak(&self.raw_deg)
     }

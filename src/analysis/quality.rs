@@ -25,7 +25,6 @@ pub struct Limits {
     pub offset: f64,
     /// Least and largest gain ratio.
     pub gain_ratio: (f64, f64),
-    /// Largest absolute phase error in degrees.
     pub phase_deg: f64,
     /// Largest deviation from the ellipse, rms, as a share of the amplitude.
     pub residual: f64,
@@ -40,12 +39,10 @@ pub enum Family {
     Hiperface,
     /// AFS60 and AFM60 with sine and cosine.
     AfsAfm60,
-    /// TTK70.
     Ttk70,
 }
 
 impl Family {
-    /// Every family.
     pub const ALL: [Family; 3] = [Family::Hiperface, Family::AfsAfm60, Family::Ttk70];
 
     pub const fn name(self) -> &'static str {
@@ -87,9 +84,7 @@ pub enum QualityFinding {
     },
     OffsetSine(f64),
     OffsetCosine(f64),
-    /// Ratio of the cosine amplitude to the sine amplitude.
     GainRatio(f64),
-    /// Phase error in degrees.
     PhaseError(f64),
     /// Distance of the samples from the ellipse, rms, relative to the amplitude: noise, interference and harmonics.
     Residual(f64),

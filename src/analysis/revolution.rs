@@ -18,7 +18,6 @@ pub struct Revolution {
     pub corrected: Nonlinearity,
 }
 
-/// The reason why the non-linearity cannot be determined.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum RevolutionError {
     /// The samples or the reference are unsuitable.

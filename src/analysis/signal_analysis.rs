@@ -34,7 +34,6 @@ pub struct Analysis {
     pub outliers: Option<Outliers>,
 }
 
-/// Why a capture cannot be analysed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum AnalysisError {
     /// The samples determine no ellipse.
@@ -138,7 +137,6 @@ fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
 
 /// Returns the median angle between consecutive samples, in degrees.
 fn step_deg(sine_v: &[f64], cosine_v: &[f64], ellipse: &Ellipse) -> f64 {
-    /// Number of steps examined.
     const SAMPLED: usize = 1 << 13;
     let correction = ellipse.correction();
     // An odd stride is not synchronous with a period of 2ⁿ samples.

@@ -13,13 +13,11 @@ pub struct Spectrum {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralLine {
-    /// Frequency in hertz.
     pub frequency_hz: f64,
     /// Peak amplitude in the unit of the samples (volts).
     pub amplitude_v: f64,
 }
 
-/// The reason why a spectrum cannot be calculated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SpectrumError {
     /// A spectrum needs at least eight samples.
@@ -36,7 +34,6 @@ pub enum SpectrumError {
     NotFinite,
 }
 
-/// Fewest samples.
 const LEAST: usize = 8;
 /// Number of lines on each side of a peak that belong to it with a Hann window.
 const PEAK_REACH: usize = 2;

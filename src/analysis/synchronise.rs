@@ -41,7 +41,6 @@ pub struct Synchronised {
 pub struct Unsynchronisable;
 
 impl Synchroniser {
-    /// Creates a synchroniser without offset for the given number of periods in the whole range.
     pub fn new(periods: u64) -> Self {
         Synchroniser { periods: periods.max(1), offset_steps: 0.0, half_step: false }
     }

@@ -11,12 +11,10 @@ pub struct Time(i64);
 impl Time {
     pub const ORIGIN: Time = Time(0);
 
-    /// Creates the point `nanoseconds` after the origin.
     pub const fn from_nanoseconds(nanoseconds: i64) -> Self {
         Time(nanoseconds)
     }
 
-    /// Nanoseconds since the origin.
     pub const fn nanoseconds(self) -> i64 {
         self.0
     }

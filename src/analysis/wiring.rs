@@ -4,13 +4,9 @@
 /// Voltages of the four wires, all columns equally long.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wires {
-    /// SIN in volts.
     pub sin_v: Vec<f64>,
-    /// REFSIN in volts.
     pub refsin_v: Vec<f64>,
-    /// COS in volts.
     pub cos_v: Vec<f64>,
-    /// REFCOS in volts.
     pub refcos_v: Vec<f64>,
     /// Shaft angle measured by a reference encoder, in mechanical degrees from 0 up to 360; empty without a reference.
     pub reference_deg: Vec<f64>,
@@ -25,7 +21,6 @@ pub enum Wire {
 }
 
 impl Wire {
-    /// Every wire.
     pub const ALL: [Wire; 4] = [Wire::Sin, Wire::Refsin, Wire::Cos, Wire::Refcos];
 
     /// Returns the manual's spelling.

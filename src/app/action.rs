@@ -36,7 +36,6 @@ pub enum Action {
     /// End a session, after asking if it has edits.
     CloseSession(SessionId),
     Stop,
-    /// Stop all drives of all sessions, and nothing else.
     StopMotion,
     /// Release held buttons, because the window has lost the keyboard or is covered by a dialog.
     LetGo,
@@ -50,7 +49,6 @@ pub enum Action {
     Dismiss,
     Connect(connect::ConnectAction),
     OpenVirtual,
-    /// Save a profile to its open file, or else ask for one.
     Save(SessionId),
     /// Resolves a profile that another program has changed meanwhile.
     Resolve(Resolve),
@@ -92,7 +90,6 @@ pub enum Action {
     NoThread(String),
 }
 
-/// An action on the review of a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReviewAction {
     /// Execute the plan with this id, which the user has seen.
@@ -166,7 +163,6 @@ pub enum Done {
     Tool(Tab, Payload),
 }
 
-/// The result of opening a link for a session.
 pub struct Attempt {
     pub session: SessionId,
     /// Number of the attempt within its session; only the latest one counts.
@@ -217,19 +213,16 @@ pub enum Waited {
     Writes,
 }
 
-/// The reason why a session could not be opened.
 #[derive(Debug)]
 pub enum OpenFailed {
     Link(OpenError),
     Thread(String),
-    /// The wire is still held by another user.
     Held,
 }
 
 /// Handles a result that belongs to no single session.
 pub(crate) type SharedResult = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice>]) + Send>;
 
-/// Why a profile cannot be read.
 #[derive(Debug)]
 pub enum ReadError {
     File(FileError),

@@ -57,7 +57,6 @@ impl Brakes {
         sessions.push((brake, stopper));
     }
 
-    /// Stops all drives, switches them off and closes their connections. Nothing moves afterwards. Does not block.
     pub fn begin(&self) {
         self.0.released.store(true, Ordering::SeqCst);
         let sessions = self.sessions();

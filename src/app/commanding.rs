@@ -73,7 +73,6 @@ impl Studio {
         }
     }
 
-    /// Carries out an action of the device's kind.
     pub(super) fn act_device(&mut self, id: SessionId, action: Payload) {
         let Some(at) = self.devices.iter().position(|device| device.id() == id) else { return };
         let mut device = self.devices.remove(at);

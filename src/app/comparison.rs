@@ -9,7 +9,6 @@ use super::studio::{SessionId, Studio};
 use super::{Severity, Text};
 use crate::profile::{Comparison, Document};
 
-/// The result of a comparison, displayed until it is closed.
 #[derive(Debug)]
 pub struct ProfileComparison {
     session: SessionId,
@@ -34,7 +33,6 @@ impl ProfileComparison {
 }
 
 impl Studio {
-    /// Returns the displayed comparison, or `None` once its session has been closed.
     pub fn comparison(&self) -> Option<&ProfileComparison> {
         self.comparison.as_ref().filter(|shown| self.device(shown.session).is_some())
     }
@@ -52,7 +50,6 @@ impl Studio {
         });
     }
 
-    /// A profile was read to compare with a session, or not.
     pub(super) fn compare(&mut self, session: SessionId, path: PathBuf, result: Result<Box<Document>, ReadError>) {
         let Some(device) = self.device(session) else { return };
         let (tab, name) = (device.tab(), device.name());

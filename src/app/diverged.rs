@@ -35,10 +35,8 @@ pub enum Side {
     Mine,
 }
 
-/// How to resolve a profile in two versions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Resolve {
-    /// Reload the file and discard the edits.
     Reload,
     KeepMine,
     Take(usize, Side),
@@ -102,12 +100,10 @@ impl Diverged {
         &self.rows
     }
 
-    /// Returns why the file cannot be read again, or why the last choice was not possible.
     pub fn problem(&self) -> Option<Text> {
         self.problem.clone()
     }
 
-    /// Returns whether the file can be adopted unchanged.
     pub fn can_reload(&self) -> bool {
         self.theirs.is_ok()
     }

@@ -100,7 +100,6 @@ pub(crate) fn document_of(body: Body) -> Document {
     Document::new(seconds.to_string(), body)
 }
 
-/// Reads a profile, as a task.
 pub(super) fn read_document(path: PathBuf, store: &Store, kinds: Kinds) -> Action {
     let (text, result) = match read_text_and_profile(&path, kinds.formats) {
         Ok((text, document)) => (text, Ok(Box::new(document))),

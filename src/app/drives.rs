@@ -22,7 +22,6 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// All units.
     pub const ALL: [Measure; 4] = [Measure::Steps, Measure::Turns, Measure::Degrees, Measure::Millimetres];
 
     pub const fn unit(self) -> &'static str {
@@ -35,7 +34,6 @@ impl Measure {
     }
 }
 
-/// Stored data about the drives of one device.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RememberedDrives {
@@ -60,7 +58,6 @@ pub(crate) struct LocksOnly {
 /// Whether the settings have been read since control was taken: another window may have marked limits in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SettingsReadState {
-    /// Not yet, or too long ago.
     Unread,
     Reading,
     Read,

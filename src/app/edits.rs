@@ -8,7 +8,6 @@ use super::history::History;
 
 /// A memory as last read.
 pub trait EditBase: Default {
-    /// The location of a value.
     type Place: Ord + Copy;
     type Value: Copy + PartialEq;
 
@@ -31,7 +30,6 @@ impl<B: EditBase> Default for Edits<B> {
 }
 
 impl<B: EditBase> Edits<B> {
-    /// Returns the memory as last read.
     pub fn base(&self) -> &B {
         &self.base
     }

@@ -17,21 +17,10 @@ pub enum FileQuestion {
     Compare(SessionId),
     OpenCapture,
     Recording,
-    Save {
-        session: SessionId,
-        suggested: PathBuf,
-    },
+    Save { session: SessionId, suggested: PathBuf },
     OfDevice(DeviceFile),
-    Table {
-        owner: RecorderOwner,
-        /// Only the visible part.
-        visible: bool,
-        suggested: PathBuf,
-    },
-    Picture {
-        picture: Picture,
-        suggested: PathBuf,
-    },
+    Table { owner: RecorderOwner, visible: bool, suggested: PathBuf },
+    Picture { picture: Picture, suggested: PathBuf },
 }
 
 /// A file that one kind of device reads or writes, and the action to take once it has been chosen.
@@ -117,7 +106,6 @@ impl FileQuestion {
         }
     }
 
-    /// Returns the suggested name of a file to be written.
     pub fn suggested(&self) -> Option<&Path> {
         match self {
             FileQuestion::Open

@@ -32,7 +32,6 @@ impl Studio {
         url
     }
 
-    /// Returns the folders that relative paths start from.
     pub fn folders(&self) -> &Folders {
         &self.services.world.folders
     }

@@ -17,7 +17,6 @@ impl<T> History<T> {
     /// Steps that can be undone.
     const STEPS: usize = 200;
 
-    /// Returns whether there is a step to undo.
     pub(crate) fn can_undo(&self) -> bool {
         !self.undo.is_empty()
     }

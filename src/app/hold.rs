@@ -20,7 +20,6 @@ use super::press::{FreshKeys, PressKey};
 /// Surroundings of a hold button at the start of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HoldScene {
-    /// Whether the button may be pressed.
     pub enabled: bool,
     pub window: bool,
     pub keyboard: bool,
@@ -49,7 +48,6 @@ pub enum HoldInput {
         inside: bool,
     },
     PointerUp,
-    /// The pointer has left.
     PointerGone,
     /// A finger touched the screen, including one that acts as the pointer; a pointer press then follows.
     Finger,
@@ -71,7 +69,6 @@ enum Holder {
     Key(PressKey),
 }
 
-/// State of a hold button that is kept between frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HoldState {
     scene: Option<HoldScene>,

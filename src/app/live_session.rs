@@ -28,7 +28,6 @@ pub struct LiveSession<D: Device> {
     pub is_virtual: bool,
 }
 
-/// A running job, for code that does not know the device.
 #[derive(Clone, Debug)]
 pub struct Progressing {
     pub title: Text,
@@ -43,7 +42,6 @@ impl<D: Kind> LiveSession<D> {
         LiveSession { worker, trace, running: None, is_virtual }
     }
 
-    /// Describes the running job.
     pub fn progressing(&self) -> Option<Progressing> {
         let running = self.running.as_ref()?;
         let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::step_text(&own.step)));

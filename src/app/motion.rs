@@ -37,7 +37,6 @@ impl Studio {
         self.motions().any(MotionControl::is_in_control)
     }
 
-    /// Stops all drives of all sessions, whatever moves them.
     pub(super) fn stop_motion(&mut self) {
         self.motions_mut().for_each(MotionControl::stop);
     }

@@ -8,13 +8,11 @@ use jiff::Zoned;
 
 use super::Text;
 
-/// The severity of a notice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     Note,
     Good,
     Warning,
-    /// Something was not done.
     Error,
 }
 
@@ -83,7 +81,6 @@ impl Log {
         }
     }
 
-    /// Returns all notices, oldest first.
     pub fn notices(&self) -> impl DoubleEndedIterator<Item = &Notice> + ExactSizeIterator {
         self.notices.iter()
     }

@@ -9,7 +9,6 @@ use super::connect::form::Finder;
 use super::studio::SessionId;
 use super::tab::Tab;
 
-/// An action of a kind of device.
 pub trait DeviceAction: Any + Send {}
 
 /// An action or a task result with its kind of device erased.

@@ -78,5 +78,4 @@ impl<S: Stepped> PendingEdits for S {
     }
 }
 
-/// Undoes or redoes an edit, or discards all edits.
 pub type EditStep = fn(&mut dyn PendingEdits) -> bool;

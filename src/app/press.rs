@@ -6,7 +6,6 @@
 //! a release and a press made at the same time may arrive in two frames, however far apart. This module is pure: inputs
 //! are arguments, in order, with the time of their frame in seconds.
 
-/// A key that presses a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PressKey {
     Space,
@@ -18,7 +17,6 @@ pub enum PressKey {
 /// distinguish repetitions from presses, repeat a key by a release and an immediate press.
 const LEAST: f64 = 0.05;
 
-/// The known state of a key.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum KeyState {
     /// Nothing is known: the key may be held.
@@ -31,7 +29,6 @@ enum KeyState {
     Up,
 }
 
-/// The known state of the keys that press buttons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FreshKeys {
     space: KeyState,

@@ -9,18 +9,15 @@ use super::session::Saving;
 use super::studio::SessionId;
 use super::tab::Tab;
 
-/// Question to be answered before something is done.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
     /// Describes what would be lost or interrupted.
     pub text: Text,
     pub confirm: Text,
-    /// Label of the button that declines.
     pub decline: Text,
     pub(super) then: Then,
 }
 
-/// The act that follows a confirmed question.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Then {
     CloseWindow,
@@ -34,7 +31,6 @@ pub(crate) enum Then {
 }
 
 impl Question {
-    /// Creates a question before something is lost or interrupted.
     pub(super) fn before(text: Text, confirm: Text, then: Then) -> Self {
         Question { text, confirm, decline: Text::new("question.stay"), then }
     }

@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use super::recorder::Recorder;
 
-/// The recording of a device that is being read.
 pub trait Recording {
     fn recorder(&self) -> &Recorder;
 

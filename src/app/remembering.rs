@@ -14,7 +14,6 @@ const PACE: Duration = Duration::from_secs(1);
 const STALE: Duration = Duration::from_secs(4);
 
 impl Studio {
-    /// Passes remembered values to the drives, and stores new ones in the settings.
     pub(super) fn remember_drives(&mut self) {
         for drives in self.devices.iter_mut().filter_map(|device| device.remembers_drives()) {
             let Some(key) = drives.remembered_as() else { continue };

@@ -25,11 +25,9 @@ pub struct Review<K: Reviewed> {
     permits: Vec<Toggle>,
 }
 
-/// The state of a write.
 pub enum ReviewState<K: Reviewed> {
     Planning,
     Ready(Box<K::Prepared>),
-    /// The plan is being carried out.
     Writing(Box<K::Prepared>),
     /// The plan was carried out and read back.
     Done(Box<K::Prepared>, Committed<K::Written>),
@@ -70,7 +68,6 @@ impl<K: Reviewed> Review<K> {
         }
     }
 
-    /// Returns the plan being executed.
     pub(crate) fn writing(&self) -> Option<&K::Prepared> {
         self.prepared().filter(|_| self.is_writing())
     }
@@ -79,7 +76,6 @@ impl<K: Reviewed> Review<K> {
         matches!(self.state, ReviewState::Planning)
     }
 
-    /// Returns whether the plan is being carried out.
     pub fn is_writing(&self) -> bool {
         matches!(self.state, ReviewState::Writing(_))
     }
@@ -116,7 +112,6 @@ impl<K: Reviewed> Review<K> {
     }
 }
 
-/// Description of an operation of a plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OpWords {
     pub item: Text,
@@ -124,7 +119,6 @@ pub struct OpWords {
     pub changes: Vec<ChangeWords>,
 }
 
-/// Description of a single change.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangeWords {
     /// Changed part of the item, or `None` for all of it.
@@ -144,7 +138,6 @@ impl OpWords {
     }
 }
 
-/// A question about a plan, whose answer results in another plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
     pub title: Text,
@@ -155,7 +148,6 @@ pub struct Question {
     pub is_on: bool,
 }
 
-/// The way in which a plan is executed and started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutionMode {
     Writes,
@@ -166,7 +158,6 @@ pub enum ExecutionMode {
 }
 
 impl ExecutionMode {
-    /// Returns the text id of the start button.
     pub const fn button_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.write",
@@ -208,7 +199,6 @@ pub struct ReviewSheet {
     pub is_uncounted: bool,
 }
 
-/// The stage of a review.
 #[derive(Clone, Debug)]
 pub enum Stage {
     Planning,
@@ -217,12 +207,9 @@ pub enum Stage {
     Ready(PlanId),
     /// The plan is being executed; number of completed operations.
     Writing(usize),
-    /// The plan was carried out.
     Done {
         verified: Text,
-        /// The before-image.
         backup: Option<PathBuf>,
-        /// What the logbook could not record.
         logbook: Option<Text>,
     },
     /// The write is impossible, or ended early.
@@ -254,7 +241,6 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    /// Returns the questions that must be answered first.
     fn questions(_prepared: &Self::Prepared) -> Vec<Question> {
         Vec::new()
     }
@@ -278,18 +264,15 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
 
     fn written(written: &Self::Written) -> Text;
 
-    /// Returns the summary for the end of a review, which shows each operation.
     fn verified(written: &Self::Written) -> Text {
         Self::written(written)
     }
 
-    /// Returns how the plan is carried out.
     fn execution_mode(_prepared: &Self::Prepared) -> ExecutionMode {
         ExecutionMode::Writes
     }
 }
 
-/// An operation of a plan.
 pub(crate) type Op<K> = <<K as Reviewed>::Prepared as Planned>::Op;
 
 pub fn written_texts<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {

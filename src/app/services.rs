@@ -50,7 +50,6 @@ impl Environment {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobEnd {
-    /// The job is still running.
     Running,
     Done,
     Failed(Text),
@@ -67,7 +66,6 @@ pub struct JobRecord {
     key: (SessionId, JobId),
 }
 
-/// The services that sessions share.
 pub struct Services {
     pub(crate) world: Environment,
     pub(crate) tasks: Tasks,
@@ -142,7 +140,6 @@ impl Services {
         Notice { at: self.now(), severity, texts, about: about.map(ToOwned::to_owned), part: None }
     }
 
-    /// Returns the jobs, newest last.
     pub fn jobs(&self) -> impl DoubleEndedIterator<Item = &JobRecord> + ExactSizeIterator {
         self.jobs.iter()
     }

@@ -31,7 +31,6 @@ pub struct Settings {
     pub tab: Tab,
     /// Size of the window in points.
     pub size: Option<(u32, u32)>,
-    /// The lower panel, with trace, jobs and log, is open.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub lower_open: bool,
     /// Whether the user has stopped live values, so that they no longer start automatically.
@@ -67,7 +66,6 @@ impl Settings {
         Settings { tab: kinds.first_tab(), ..Settings::default() }
     }
 
-    /// Number of remembered links.
     const LINKS: usize = 12;
 
     /// Parses settings, or returns `None` if the file was not written by [`emit`](Self::emit).
@@ -151,7 +149,6 @@ impl Settings {
         ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default()).unwrap_or_default()
     }
 
-    /// Returns the stored data of the drives behind a device.
     pub(crate) fn drives(&self, device: &str) -> RememberedDrives {
         self.drives.get(device).cloned().unwrap_or_default()
     }

@@ -26,12 +26,10 @@ const NOT_KEPT: &str = "session.settings_not_kept";
 /// Pause between a failed reading and the next one.
 const AGAIN: Duration = Duration::from_secs(1);
 
-/// The settings on disk, and a write in progress.
 #[derive(Debug)]
 pub(crate) struct SettingsStore {
     /// Settings of this window when the file was last read or written.
     known: Settings,
-    /// Settings that could not be written.
     failed: Option<Settings>,
     writing: Option<Settings>,
     /// Whether the file has been read or set aside; it is not overwritten before.
@@ -39,9 +37,7 @@ pub(crate) struct SettingsStore {
     is_failure_reported: bool,
     /// The file is being read, since then.
     reading_since: Option<Zoned>,
-    /// Time of the last reading.
     last_read: Option<Zoned>,
-    /// Time of the last failed reading.
     last_failed_read: Option<Zoned>,
 }
 
@@ -49,7 +45,6 @@ pub(crate) struct SettingsStore {
 pub enum SettingsRead {
     /// The settings are complete, as written by the program.
     Whole(Box<Settings>),
-    /// There are no settings yet.
     Missing,
     /// The file is broken: its readable part, and the copy that was made.
     Broken {

@@ -37,7 +37,6 @@ impl Default for GracePeriods {
     }
 }
 
-/// Session whose thread was released.
 pub(crate) struct ClosingSessionInfo {
     pub(crate) session: SessionId,
     pub(crate) about: String,
@@ -45,13 +44,11 @@ pub(crate) struct ClosingSessionInfo {
     pub(crate) write: Option<JobId>,
 }
 
-/// A session that was let go and has not ended.
 pub(super) struct ClosingSession {
     info: ClosingSessionInfo,
     ending: Arc<dyn ClosingWorker>,
 }
 
-/// Released worker, for any device.
 pub(crate) trait ClosingWorker: Send + Sync {
     /// Returns whether the thread has ended and the wire is free.
     fn is_ended(&self) -> bool;
@@ -59,7 +56,6 @@ pub(crate) trait ClosingWorker: Send + Sync {
     /// Waits at most `patience` for the end; returns whether it was reached.
     fn wait(&self, patience: Duration) -> bool;
 
-    /// Returns how jobs ended since the previous call.
     fn job_endings(&self) -> Vec<JobEnding>;
 }
 

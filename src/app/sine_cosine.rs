@@ -4,7 +4,6 @@ use super::action::Action;
 use super::studio::SessionId;
 use super::texts::Text;
 
-/// Position and signals, read while the shaft was at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SineCosineReading {
     /// The absolute position, in steps of 1/32 period.
@@ -21,15 +20,12 @@ pub struct SineCosineVolts {
     pub cosine_v: f64,
 }
 
-/// The range of an encoder that turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SineCosineRange {
-    /// Signal periods per revolution.
     pub periods: u32,
     pub turns: u32,
 }
 
-/// The device that a reading is from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SineCosineOrigin {
     pub session: SessionId,
@@ -39,7 +35,6 @@ pub struct SineCosineOrigin {
     pub range: Option<SineCosineRange>,
 }
 
-/// Device whose sine and cosine can be read at rest.
 pub trait SineCosineSource {
     fn is_ready(&self) -> bool;
 

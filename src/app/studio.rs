@@ -23,11 +23,9 @@ use crate::link::LinkUrl;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SessionId(pub(crate) u32);
 
-/// Complete state of the window.
 pub struct Studio {
     pub settings: Settings,
     pub connect: Option<Connect>,
-    /// A question that must be answered.
     pub question: Option<Question>,
     /// A profile whose file has changed since it was opened.
     pub diverged: Option<Diverged>,
@@ -81,7 +79,6 @@ impl Studio {
         }
     }
 
-    /// Carries out an action.
     pub fn act(&mut self, action: Action) {
         self.devices.iter_mut().for_each(|device| device.may_have_changed());
         match self.with_whole_path(action) {
@@ -184,7 +181,6 @@ impl Studio {
         }
     }
 
-    /// Returns a mailbox through which other threads send actions.
     pub fn mailbox(&self) -> Mailbox {
         self.services.tasks.mailbox()
     }
@@ -199,7 +195,6 @@ impl Studio {
         self.path_question.take()
     }
 
-    /// Returns the profiles that are being read from disk.
     pub fn opening_files(&self) -> &[PathBuf] {
         &self.services.opening_files
     }

@@ -7,7 +7,6 @@ use serde::Deserialize;
 
 use super::ColorScheme;
 
-/// A colour, without transparency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub struct Rgb(pub [u8; 3]);
@@ -53,7 +52,6 @@ pub struct Palette {
     pub series: [Rgb; 8],
 }
 
-/// The whole theme.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ThemeData {
@@ -68,7 +66,6 @@ static BUILT_IN: LazyLock<Result<ThemeData, String>> =
     LazyLock::new(|| ron::from_str(ThemeData::SOURCE).map_err(|error| error.to_string()));
 
 impl ThemeData {
-    /// The table's source.
     pub const SOURCE: &'static str = include_str!("../../assets/theme.ron");
 
     /// Returns the built-in theme.

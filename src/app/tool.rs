@@ -120,7 +120,6 @@ impl Studio {
         self.tools.iter().find_map(|(_, tool)| tool.get())
     }
 
-    /// Carries out an action of a tool.
     pub(super) fn act_tool(&mut self, tab: Tab, action: Payload) {
         let Some(at) = self.tools.iter().position(|(own, _)| *own == tab) else { return self.refuse_kind(None) };
         let (_, mut tool) = self.tools.remove(at);

@@ -20,7 +20,6 @@ pub struct TraceLine {
     pub fault: Option<TraceFault>,
 }
 
-/// The fault of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceFault {
     /// The device reports an error or a warning.
@@ -29,7 +28,6 @@ pub enum TraceFault {
     Broken,
 }
 
-/// The meaning of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Explained {
     pub meaning: Vec<Text>,

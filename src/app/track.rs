@@ -122,7 +122,6 @@ impl<W: Watchable> Default for Track<W> {
 }
 
 impl<W: Watchable> Track<W> {
-    /// Creates a recorder for positions with the given meaning.
     fn about(meaning: &Meaning) -> Self {
         let mut recorder = Recorder::new(SPAN);
         let positions = recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
@@ -152,7 +151,6 @@ impl<W: Watchable> Track<W> {
         self.gap();
     }
 
-    /// Returns the meaning of positions, or `None` before the first.
     pub fn meaning(&self) -> Option<&Meaning> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
@@ -174,7 +172,6 @@ impl<W: Watchable> Track<W> {
         }
     }
 
-    /// Records consecutive positions.
     pub fn add(&mut self, sightings: &[PositionSample], meaning: &Meaning) {
         self.see(meaning);
         let mut columns = Columns::default();
@@ -373,7 +370,6 @@ impl<W: Watchable> Track<W> {
         (Text::new("recorder.until").with_text("name", name).with("time", &until), format!("{heading} until {until}"))
     }
 
-    /// Marks a gap before the next samples.
     pub fn gap(&mut self) {
         self.recorder.break_all();
         self.lose_track();

@@ -39,7 +39,6 @@ pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&L
     if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found the faults named above.".to_owned()])) }
 }
 
-/// Returns the word for a verdict, on which scripts rely.
 fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Skipped => "skipped",

@@ -306,7 +306,6 @@ impl OwnOptions {
         self.0.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
     }
 
-    /// Returns the value of an option.
     pub(super) fn text(&self, id: &str) -> Option<&String> {
         self.0.get_one(id)
     }

@@ -7,7 +7,6 @@ use super::output::Output;
 use super::{Done, Failure, Result};
 use crate::bits::parse_hex;
 
-/// A captured frame and its meaning.
 pub(crate) struct Explained {
     /// The frame as captured, in readable form.
     pub(crate) shown: String,
@@ -64,7 +63,6 @@ pub(crate) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     if parts.len() > 1 && parts.iter().all(|part| part.len() >= 3) { Ok(parts) } else { Ok(vec![parts.concat()]) }
 }
 
-/// Returns the hex bytes of an argument.
 pub(crate) fn bytes(word: &str) -> Result<Vec<u8>> {
     parse_hex(word).map_err(|why| Failure::Usage(format!("{word:?} is not a sequence of hexadecimal bytes: {why}")))
 }

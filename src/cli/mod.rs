@@ -44,7 +44,6 @@ pub enum Done {
     Differs,
 }
 
-/// The reason why a command failed.
 #[derive(Debug)]
 pub enum Failure {
     /// Status 2: incorrect usage.
@@ -55,7 +54,6 @@ pub enum Failure {
     NobodyReads,
 }
 
-/// The result of a command.
 pub type Result<T = Done> = std::result::Result<T, Failure>;
 
 /// The request in the arguments.

@@ -7,7 +7,6 @@ use serde_json::Value;
 use super::{Commands, Failure};
 use crate::profile::Formats;
 
-/// Context of a command: output destination, profile formats, and kinds of device.
 pub struct Output {
     json: bool,
     formats: Formats,
@@ -24,7 +23,6 @@ impl Lines {
         self
     }
 
-    /// Returns the lines with their values aligned.
     pub fn text(&self) -> String {
         let width = self.0.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
         self.0.iter().map(|(label, value)| format!("{label:width$}  {value}").trim_end().to_owned() + "\n").collect()
@@ -40,7 +38,6 @@ impl Output {
         Output { json: false, formats: self.formats, commands: self.commands }
     }
 
-    /// Returns the formats of profiles that can be read.
     pub(super) fn formats(&self) -> Formats {
         self.formats
     }
@@ -49,7 +46,6 @@ impl Output {
         self.commands
     }
 
-    /// Prints a result in the requested form.
     pub fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
         if self.json { self.print(&format!("{json}\n")) } else { self.print(&visible(text)) }
     }

@@ -34,7 +34,6 @@ impl PlanReport {
     }
 }
 
-/// A line of a plan.
 pub struct PlanStep {
     pub item: String,
     pub old: Option<String>,
@@ -77,7 +76,6 @@ pub fn text<Base, Op: Operation>(
     lines.text()
 }
 
-/// Text for a plan without operations.
 pub(super) const NOTHING: &str = "nothing to write: the device already has these values\n";
 
 #[derive(Default)]

@@ -94,7 +94,6 @@ pub fn to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
     profile.into_profile().map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))
 }
 
-/// Reports which items of a profile the encoder does not have.
 pub(crate) fn say_missing(output: &Output, items: &[impl Display]) {
     for item in items {
         output.remark(&format!("{item} is not restored: the encoder does not have it"));

@@ -74,7 +74,6 @@ pub struct Runner<D: Runs> {
     pub kept: D::Context,
 }
 
-/// A job that ended early.
 pub enum JobFailure<D: Runs> {
     Job(Box<D::Error>),
     Interrupted,

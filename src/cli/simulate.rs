@@ -62,7 +62,6 @@ pub(super) fn simulate(output: &Output, arguments: &Simulate) -> Result {
     Ok(Done::Well)
 }
 
-/// Returns the settings of the virtual device as keys and values.
 pub fn settings(output: &Output, arguments: &Simulate) -> Result<Vec<(String, String)>> {
     let mut pairs: Vec<(String, String)> = Vec::new();
     for setting in &arguments.settings {
@@ -79,14 +78,12 @@ pub fn settings(output: &Output, arguments: &Simulate) -> Result<Vec<(String, St
     Ok(pairs)
 }
 
-/// A virtual device in real time.
 struct Device {
     kind: &'static str,
     simulated: Box<dyn Simulated>,
     clock: Arc<RealClock>,
 }
 
-/// The result of reading from a client.
 enum ReadOutcome {
     Bytes(usize),
     Nothing,

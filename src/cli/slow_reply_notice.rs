@@ -11,7 +11,6 @@ const LOOKS: Duration = Duration::from_millis(500);
 /// Reply time from which a reply is considered slow.
 const SLOW: Duration = Duration::from_millis(100);
 
-/// The measured and the allowed reply time of a device.
 pub struct Pace {
     pub(crate) replies: Replies,
     /// Allowed reply time, as set by `timeout=` in the link.

@@ -6,7 +6,6 @@ use crate::cli::{Commands, DeviceCommands, OwnCommand, ProtocolDecoder};
 use crate::profile::{Formats, ProfileFormat};
 use crate::ui::{DeviceView, TabViews, ToolView};
 
-/// A kind of device: its pages, state, profiles and commands.
 #[derive(Clone, Copy)]
 pub struct Kind {
     pub view: &'static dyn DeviceView,
@@ -16,7 +15,6 @@ pub struct Kind {
     pub at_adapter: Option<&'static dyn Attachable>,
 }
 
-/// A tab that needs no device.
 #[derive(Clone, Copy)]
 pub struct ToolTab {
     pub view: &'static dyn ToolView,

@@ -29,7 +29,6 @@ const NEVER_SILENT: Duration = Duration::from_secs(2);
 /// Maximum number of bytes kept that belong to no frame, because a socket can deliver noise without limit.
 pub(crate) const MOST_KEPT: usize = 4096;
 
-/// The reason why an exchange on a line ends early.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LineError {
     /// The user has cancelled the exchange.
@@ -57,7 +56,6 @@ impl From<LinkError> for LineError {
     }
 }
 
-/// Host side of a serial line, for the duration of a job.
 pub(crate) struct SerialLine<'a> {
     pub(crate) ctx: Ctx<'a>,
     /// Time to repeat requests without an answer, if not the default.

@@ -6,7 +6,6 @@ use super::{ByteLink, Clock, Direction, LinkError, LinkErrorKind, TraceEntry};
 use crate::bits::{MaskedBytes, hex};
 use crate::units::{CharacterFormat, Moment};
 
-/// A recorded request and its reply.
 struct Exchange {
     request: MaskedBytes,
     /// The reply, or `None` if it never arrived or was masked.

@@ -13,7 +13,6 @@ struct Measured {
     count: AtomicU64,
     /// Sum of all reply times in microseconds.
     sum: AtomicU64,
-    /// Longest reply time in microseconds.
     longest: AtomicU64,
 }
 

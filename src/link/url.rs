@@ -209,9 +209,7 @@ impl LinkUrl {
     }
 }
 
-/// Default port of Modbus/TCP.
 const MODBUS_PORT: &str = ":502";
-/// Default port of EtherNet/IP explicit messages.
 const ENIP_PORT: &str = ":44818";
 
 /// Returns whether the target is a host without a port; the host may be an IPv6 address in brackets.

@@ -6,7 +6,6 @@ use std::time::Duration;
 use super::Refused;
 use crate::expected::{Expected, Limit, Quantity};
 
-/// The set of values that a parameter accepts.
 pub trait Values {
     type Value;
 
@@ -53,7 +52,6 @@ pub struct Milliseconds(pub RangeInclusive<u64>);
 #[derive(Clone, Debug)]
 pub struct Millivolts(pub RangeInclusive<u16>);
 
-/// Keywords, each with its meaning.
 #[derive(Clone, Copy, Debug)]
 pub struct Words<T: 'static>(pub &'static [(&'static str, T)]);
 
@@ -61,7 +59,6 @@ pub struct Words<T: 'static>(pub &'static [(&'static str, T)]);
 #[derive(Clone, Debug)]
 pub struct Checked<T>(pub Expected, pub fn(&str) -> Option<T>);
 
-/// Values of an optional parameter.
 #[derive(Clone, Debug)]
 pub struct Maybe<V>(pub V);
 

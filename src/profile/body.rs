@@ -86,7 +86,6 @@ impl<P: Profile> ProfileBody for P {
     }
 }
 
-/// The file format of a [`Profile`].
 struct FormatOf<P>(PhantomData<fn() -> P>);
 
 impl<P: Profile> fmt::Debug for FormatOf<P> {
@@ -192,7 +191,6 @@ impl Formats {
         self.0.iter().map(|format| format.kind())
     }
 
-    /// Parses the content for the kind of device named in the document.
     pub(super) fn parse(self, kind: String, entries: &mut Entries) -> Result<Body, ProfileError> {
         match self.0.iter().find(|format| format.kind() == kind) {
             Some(format) => format.parse(entries),

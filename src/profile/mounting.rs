@@ -17,7 +17,6 @@ pub struct MountingMark<Item> {
     pub unknown: Unknown,
 }
 
-/// Name of the entry that lists the marks.
 const ENTRY: &str = "mounting";
 
 impl<Item> MountingMark<Item> {

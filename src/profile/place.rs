@@ -24,7 +24,6 @@ pub(super) fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
 /// Error message that ends the search when the entry is found.
 const FOUND: &str = "found";
 
-/// A walk through the structures of a document to an entry.
 struct EntrySearch<'w> {
     path: String,
     wanted: &'w str,

@@ -93,7 +93,6 @@ pub struct Carried {
 }
 
 impl Faults {
-    /// Maximum delay in milliseconds.
     const MAX_DELAY_MS: u32 = 60_000;
 
     /// Returns the delay added before each reply.

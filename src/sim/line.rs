@@ -58,12 +58,10 @@ pub(crate) struct Character {
     pub(crate) flipped: bool,
 }
 
-/// The outcome of a transmission.
 pub(crate) struct Sent {
     pub(crate) heard: Vec<Character>,
     /// The characters as sent: an echoing converter returns them without line noise.
     pub(crate) own: Vec<Character>,
-    /// Time at which the last character ends.
     pub(crate) end: Moment,
 }
 

@@ -8,10 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::file_error::{FileError, FileProblem, FileTask};
 use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, Layout, TableHints};
 
-/// The reason why a capture could not be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReadCaptureError {
-    /// The file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
     /// The file contains no capture.

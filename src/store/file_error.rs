@@ -4,7 +4,6 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A file that could not be read or written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot {task} {}: {problem}", path.display())]
 pub struct FileError {
@@ -13,7 +12,6 @@ pub struct FileError {
     pub problem: FileProblem,
 }
 
-/// An operation on a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileTask {
     Read,
@@ -35,10 +33,8 @@ impl fmt::Display for FileTask {
     }
 }
 
-/// The reason why a file could not be read or written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FileProblem {
-    /// The file does not exist.
     #[error("it does not exist")]
     NotFound,
     /// The folder of the new file does not exist.
@@ -55,7 +51,6 @@ pub enum FileProblem {
     /// The file exists and must not be replaced.
     #[error("it exists already")]
     Exists,
-    /// The user lacks the required permission.
     #[error("permission denied")]
     PermissionDenied,
     /// The file or its disk is marked as read-only.
@@ -79,7 +74,6 @@ pub enum FileProblem {
         /// Offset of the first invalid byte, counted from 0.
         offset: usize,
     },
-    /// Any other error reported by the system.
     #[error("{what}")]
     Other { kind: io::ErrorKind, what: String },
 }

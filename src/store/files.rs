@@ -81,7 +81,6 @@ pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
 
-/// Creates a folder and its missing parents.
 pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|error| match error.into() {
         // A folder that exists is no error: this is a file, or a link that leads nowhere.

@@ -5,7 +5,6 @@ use std::path::{Component, Path, PathBuf};
 
 use directories::UserDirs;
 
-/// The base folders of relative paths.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Folders {
     working: Option<PathBuf>,

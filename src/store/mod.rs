@@ -30,20 +30,17 @@ pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, 
 
 use crate::profile::Cause;
 
-/// The folder of the program's persistent data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Store {
     data: PathBuf,
     config: PathBuf,
 }
 
-/// The reason why the store cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StoreError {
     /// The system does not report a home folder for this user.
     #[error("this user has no home folder")]
     NoHome,
-    /// A file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
     /// One of the user's own device files is invalid; the error comes from its kind of device.
@@ -69,7 +66,6 @@ impl Store {
         Store { data: root.join("data"), config: root.join("config") }
     }
 
-    /// Returns the backups taken before devices were written to.
     pub fn backups(&self) -> Backups {
         Backups::in_folder(self.data.join("backups"))
     }

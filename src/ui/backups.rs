@@ -98,7 +98,6 @@ fn writes(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     });
 }
 
-/// Draws the recorded status codes, which the device does not report again.
 fn statuses(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     card(ui, theme, "statuses_card.title", |ui| {
         for status in device.statuses() {

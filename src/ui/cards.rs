@@ -10,7 +10,6 @@ use crate::app::Text;
 /// Height of a window in points below which folding cards fold.
 const LOW: f32 = 720.0;
 
-/// Draws a card with a heading.
 pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
     card_with(ui, theme, title, |_| {}, content)
 }

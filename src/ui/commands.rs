@@ -37,7 +37,6 @@ pub(super) struct Command {
 pub(super) enum Effect {
     Act(Action),
     Page(SessionId, usize),
-    /// Opens a page of a tab without devices.
     ToolPage(Tab, usize),
     ToggleHelp,
     About,
@@ -65,7 +64,6 @@ pub(super) fn with_keys(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Co
     commands
 }
 
-/// Returns all commands, starting with those of the displayed device.
 pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = Vec::new();
     if let Some(device) = studio.selected_device() {
@@ -155,7 +153,6 @@ fn of_every_device(theme: &Theme, device: &AnyDevice, views: &Views) -> Vec<Comm
     ]
 }
 
-/// Returns the commands that restore one of the device's backups.
 fn backups(theme: &Theme, device: &AnyDevice) -> Vec<Command> {
     let Some(Ok(backups)) = device.backups() else { return Vec::new() };
     let restore = |backup: &Backup| {

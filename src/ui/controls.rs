@@ -22,7 +22,6 @@ pub(crate) fn fill(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
 }
 
-/// Draws wrapped, left-aligned text.
 pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
     ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
 }
@@ -77,7 +76,6 @@ pub(crate) fn two_lines(ui: &mut Ui, theme: &Theme, words: String, ink: egui::Co
     if elided { response.on_hover_text(words) } else { response }
 }
 
-/// Draws a modal dialog over the window.
 pub(super) fn modal<R>(
     ctx: &egui::Context,
     theme: &Theme,
@@ -111,7 +109,6 @@ pub(crate) fn button(ui: &mut Ui, icon: &str, word: &str) -> Response {
     enabled_button(ui, true, icon, word)
 }
 
-/// Draws a button that may be disabled.
 pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
     name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
@@ -155,7 +152,6 @@ pub(crate) fn name(response: Response, enabled: bool, word: &str) -> Response {
     response
 }
 
-/// Draws a short label in a coloured frame.
 pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<egui::Color32>) {
     let colour = colour.into();
     let font = egui::FontId::proportional(theme.sizes.caption);

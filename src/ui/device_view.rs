@@ -212,13 +212,11 @@ impl<V: TypedDeviceView> DeviceView for V {
     }
 }
 
-/// The adapter from [`TypedDeviceView`] to [`SessionView`].
 struct Session<V: TypedDeviceView> {
     page: V::Page,
     memory: Memory<V::Memory>,
 }
 
-/// Memory of a session's view, with the serial number of its device.
 #[derive(Default)]
 struct Memory<M> {
     serial_number: Option<String>,
@@ -314,13 +312,11 @@ impl TabViews {
         self.pages(tab).into_iter().map(|page| page.word).collect()
     }
 
-    /// Returns the pages of a tab in order.
     pub(crate) fn pages(self, tab: Tab) -> Vec<PageInfo> {
         let of_device = self.device(tab).map(DeviceView::pages);
         of_device.or_else(|| self.tool(tab).map(ToolView::pages)).unwrap_or_default()
     }
 
-    /// Returns all tabs in order.
     pub(crate) fn tabs(self) -> impl Iterator<Item = Tab> {
         self.of_devices().chain(self.tools.iter().map(|view| view.kind().tab()))
     }
@@ -330,22 +326,18 @@ impl TabViews {
         title.or_else(|| self.device(tab).map(|view| view.kind().bus().to_owned())).unwrap_or_default()
     }
 
-    /// Returns the device tabs in order.
     pub(crate) fn of_devices(self) -> impl Iterator<Item = Tab> {
         self.devices.iter().map(|view| view.kind().tab())
     }
 
-    /// Returns the view of the device shown in a tab.
     pub(crate) fn device(self, tab: Tab) -> Option<&'static dyn DeviceView> {
         self.devices.iter().copied().find(|view| view.kind().tab() == tab)
     }
 
-    /// Returns the tabs without devices in order.
     pub(crate) fn tools(self) -> &'static [&'static dyn ToolView] {
         self.tools
     }
 
-    /// Returns the view of a tab without devices.
     fn tool(self, tab: Tab) -> Option<&'static dyn ToolView> {
         self.tools.iter().copied().find(|view| view.kind().tab() == tab)
     }

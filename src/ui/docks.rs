@@ -23,11 +23,9 @@ const VALUES: f32 = 248.0;
 
 impl Pane {
     const ALL: [Pane; 5] = [Pane::Workspace, Pane::Live, Pane::Trace, Pane::Jobs, Pane::Log];
-    /// Panes of the lower panel.
     const LOWER: [Pane; 3] = [Pane::Trace, Pane::Jobs, Pane::Log];
 }
 
-/// The panel layout.
 pub(super) struct Docks {
     tree: Tree<Pane>,
     edited: bool,

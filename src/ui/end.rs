@@ -7,7 +7,6 @@ use std::time::Duration;
 
 use crate::app::{Action, Brakes, Mailbox, Studio};
 
-/// Time within which a window that is being drawn responds.
 const ANSWERS: Duration = Duration::from_secs(2);
 /// Exit status of a program ended by a signal: 128 plus the number of SIGTERM.
 const ENDED: i32 = 143;

@@ -8,7 +8,6 @@ use crate::app::Text;
 
 /// Inner margin that makes a text entry as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
-/// Draws a one-line entry with a name for screen readers.
 pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
     entry_in(ui, text, width, label, hint, egui::TextStyle::Body.into())
 }

@@ -44,7 +44,6 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
     });
 }
 
-/// Draws the tools that are always available.
 fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     // In a narrow window only icons are drawn, with their texts as tooltips. A STOP of twice its width needs the space of
     // some.

@@ -8,7 +8,6 @@ use super::stop_debounce;
 use super::widgets::{has_hold_button_keyboard, is_hold_button_held};
 use crate::app::{FreshKeys, PressKey};
 
-/// Window-wide state of the keys that press buttons.
 pub(super) struct Keys {
     fresh: FreshKeys,
     /// Whether consent was requested in the previous frame.

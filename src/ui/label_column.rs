@@ -9,7 +9,6 @@ const LABELS: f32 = 132.0;
 /// Largest shares of the width for the label column: by default, and for long labels.
 const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
 
-/// Label column of the card being drawn.
 #[derive(Clone, Copy, Default)]
 struct LabelColumn {
     /// Width of the longest label in earlier frames.
@@ -55,7 +54,6 @@ pub(crate) fn label_width(ui: &Ui) -> f32 {
     LABELS.min(room * usual).max(LabelColumn::of(ui).longest.min(room * most))
 }
 
-/// Draws a label and a selectable value on one line.
 pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) {
     ui.scope(|ui| {
         // Values are only read: they are closer together than controls.
@@ -68,7 +66,6 @@ pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) 
     });
 }
 
-/// Draws a label and another widget on one line.
 pub fn entry<R>(ui: &mut Ui, theme: &Theme, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         label_ui(ui, theme, label);

@@ -9,7 +9,6 @@ use super::views::shown_in;
 use super::{Theme, Views, icons};
 use crate::app::{Action, Studio};
 
-/// Draws the tabs and the pages of the open tab.
 pub(super) fn navigation_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -79,7 +78,6 @@ fn pages_ui(
     pressed
 }
 
-/// Draws a navigation entry across the full width.
 fn entry(ui: &mut Ui, is_shown: bool, text: egui::RichText, word: &str) -> egui::Response {
     let size = egui::vec2(ui.available_width(), 32.0);
     let button = egui::Button::selectable(is_shown, (text, egui::Atom::grow())).frame_when_inactive(false);

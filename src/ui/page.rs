@@ -4,12 +4,10 @@ use egui::{AsIdSalt, Frame, Margin, ScrollArea, Ui, UiBuilder};
 
 use super::Theme;
 
-/// Width below which a page has smaller margins.
 const NARROW: f32 = 720.0;
 /// Space above a page, and maximum space below.
 const ABOVE: i8 = 16;
 
-/// Returns the side margin of a page.
 pub(crate) fn sides(ui: &Ui, theme: &Theme) -> i8 {
     let narrow = ui.available_width() < NARROW;
     (if narrow { theme.space.groups } else { theme.space.around }) as i8

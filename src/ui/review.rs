@@ -209,7 +209,6 @@ fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeWords, ink: Rgb) -> 
     (galley.rows.len() == 1 && beside + galley.size().x <= ui.available_width()).then_some(galley)
 }
 
-/// Draws a change: the item, its old value and its new value.
 fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeWords, heads: [&'static str; 2], ink: Rgb) {
     if let Some(part) = &change.part {
         ui.horizontal(|ui| {
@@ -270,7 +269,6 @@ fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
     });
 }
 
-/// Draws a question with its two answers, below the subject.
 fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Question, actions: &mut Vec<Action>) {
     remark(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.title));
     ui.horizontal(|ui| {

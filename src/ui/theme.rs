@@ -12,7 +12,6 @@ impl From<Rgb> for Color32 {
     }
 }
 
-/// Appearance and language of the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Theme {
     pub palette: &'static Palette,
@@ -35,12 +34,10 @@ impl Theme {
         }
     }
 
-    /// Returns the named text in the window's language.
     pub fn say(&self, id: &'static str) -> String {
         Text::new(id).words(self.language)
     }
 
-    /// Returns a text, with its arguments filled in, in the window's language.
     pub fn words(&self, text: &Text) -> String {
         text.words(self.language)
     }

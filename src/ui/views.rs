@@ -8,7 +8,6 @@ use super::panels::TraceView;
 use super::plot;
 use crate::app::{AnyDevice, SessionId, Studio, Tab};
 
-/// View state kept between frames.
 pub struct Views {
     pub(super) tabs: TabViews,
     sessions: BTreeMap<SessionId, Box<dyn SessionView>>,
@@ -26,7 +25,6 @@ pub struct Views {
 }
 
 impl Views {
-    /// Creates the view state of a window with the given tabs.
     pub(super) fn new(tabs: TabViews) -> Self {
         Views {
             tabs,
@@ -49,7 +47,6 @@ impl Views {
         Some(self.sessions.entry(device.id()).or_insert_with(|| view.session()).as_mut())
     }
 
-    /// Returns the view of a tab without devices, or `None` for a device tab.
     pub(super) fn tool(&mut self, tab: Tab) -> Option<&mut dyn ToolPages> {
         let (_, tool) = self.tools.iter_mut().find(|(own, _)| *own == tab)?;
         Some(tool.as_mut())
@@ -66,7 +63,6 @@ impl Views {
         self.tabs.pages(tab).get(page).copied()
     }
 
-    /// Drops the state of closed sessions.
     pub(super) fn forget_closed(&mut self, studio: &Studio) {
         self.sessions.retain(|id, _| studio.device(*id).is_some());
     }

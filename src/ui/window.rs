@@ -60,7 +60,6 @@ impl Window {
         }
     }
 
-    /// Draws the whole window and carries out the resulting actions.
     pub fn draw(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         self.studio.poll();
@@ -215,7 +214,6 @@ impl Window {
         }
     }
 
-    /// Handles the keyboard, and files dropped on the window.
     fn take_input(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
         if !std::mem::take(&mut self.close_heard) {
             self.hear_close(ctx);

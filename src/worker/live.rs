@@ -65,7 +65,6 @@ impl Live {
         self.lock().interval
     }
 
-    /// Returns the number of the current polling request.
     pub(super) fn number(&self) -> u64 {
         self.lock().number
     }

@@ -3,7 +3,6 @@
 
 use std::time::{Duration, Instant};
 
-/// Request that is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Due<W> {
     /// The sample of the device.

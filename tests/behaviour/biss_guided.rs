@@ -60,7 +60,7 @@ fn a_wiegand_test_runs_both_ways_and_is_saved_on_request() {
 fn an_unsuitable_motor_is_reported_with_the_measured_values() {
     let bench = Bench::new();
     let cases: [(&[&str], &str, &[&str]); 5] = [
-        (&["--rpm", "0"], "calibrate", &["not turning", "counterclockwise"]),
+        (&["--rpm", "0"], "calibrate", &["at rest", "counterclockwise"]),
         (&["--rpm", "500"], "calibrate", &["clockwise"]),
         (&["--rpm", "-100"], "calibrate", &["100", "300", "700"]),
         (&["--rpm", "-500", "--temperature", "60"], "calibrate", &["60", "25", "40"]),

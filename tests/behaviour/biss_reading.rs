@@ -170,8 +170,8 @@ fn positions_of_a_turning_shaft_are_printed() {
         assert!((speed + 1.0).abs() < 0.1, "{speed} revolutions a second: {ran:?}");
         // Data is not read while the shaft turns.
         let file = bench.file("p.ron");
-        ask(&bench, encoder, &["save", "biss", "-o", &file, JSON]).fails(1, &["is turning", "Stop it"]);
-        ask(&bench, encoder, &["read", "biss", "0x24:0x10", JSON]).fails(1, &["is turning", "Stop it"]);
+        ask(&bench, encoder, &["save", "biss", "-o", &file, JSON]).fails(1, &["is turning", "Stop the shaft"]);
+        ask(&bench, encoder, &["read", "biss", "0x24:0x10", JSON]).fails(1, &["is turning", "Stop the shaft"]);
         assert!(!bench.path("p.ron").exists());
         assert_eq!(ask(&bench, encoder, &["read", "biss", "0x66", JSON]).json()["value"], json!(80));
     }
@@ -265,7 +265,7 @@ fn wire_and_adapter_faults_are_reported() {
         (&["--line", "high"], &["stays high", "SLO"]),
         (&["--version", "2"], &["version 2", "version 1"]),
         (&["--capabilities", "1"], &["bench adapter"]),
-        (&["--silent"], &["does not answer"]),
+        (&["--silent"], &["does not respond"]),
     ];
     for (arguments, words) in cases {
         let Some(adapter) = bench.adapter(arguments) else { return };

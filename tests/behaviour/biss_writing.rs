@@ -213,7 +213,7 @@ fn unwritable_values_are_refused() {
 fn data_is_not_written_while_the_shaft_turns() {
     let bench = Bench::new();
     let Some(encoder) = bench.kit(&["--rpm", "30"]) else { return };
-    ask(&bench, &encoder, &["write", "biss", "0x24:0x00", "1", "--yes"]).fails(1, &["Stop it"]);
+    ask(&bench, &encoder, &["write", "biss", "0x24:0x00", "1", "--yes"]).fails(1, &["Stop the shaft"]);
     assert_eq!(written(&encoder), [""; 0]);
 }
 

@@ -192,7 +192,7 @@ fn undoing_a_restore_deletes_only_the_fields_it_created() {
         if changed {
             // The last one is as written; the one before it is not.
             assert_eq!(defined, [deleted(2)], "{undo:?}");
-            assert!(undo.err.contains("data field 1"), "{undo:?}");
+            assert!(undo.err.contains("Data field 1"), "{undo:?}");
             assert_eq!(target.host(&["40 4A 01 00 01 55"]), [frame("40 4A 01 00 01 77")]);
         } else {
             assert_eq!(defined, [deleted(2), deleted(1)], "{undo:?}");

@@ -142,7 +142,7 @@ fn bad_captures_are_refused_with_one_sentence() {
     let text = table("time,sin,cos\n", &good);
     let cases: [(&str, String, &[&str]); 15] = [
         ("nothing", String::new(), &["is empty"]),
-        ("only a header", "time,sin,cos\n".to_owned(), &["no row has numbers"]),
+        ("only a header", "time,sin,cos\n".to_owned(), &["no row contains numbers"]),
         ("one column", "0.1\n0.2\n0.3\n".to_owned(), &["one column"]),
         ("two columns", "0,1\n1,2\n".to_owned(), &["2 columns"]),
         ("text", text.replace("0.000007,", "0.000007,oops"), &["row 9", "column 2", "oops"]),
@@ -155,7 +155,7 @@ fn bad_captures_are_refused_with_one_sentence() {
         ("dead sine", made(|row| row[1] = 1e-3 * (row[0] * 1e9).sin()), &["sine channel has no signal"]),
         ("dead cosine", made(|row| row[2] = 2.5), &["cosine channel has no signal"]),
         ("a line", made(|row| row[2] = 0.1 - 0.8 * row[1]), &["on a straight line"]),
-        ("binary", "\u{0}\u{1}\u{2}\u{3}".repeat(50), &["no row has numbers"]),
+        ("binary", "\u{0}\u{1}\u{2}\u{3}".repeat(50), &["no row contains numbers"]),
     ];
     for (label, text, words) in cases {
         let file = bench.write("bad.csv", text);
@@ -300,7 +300,7 @@ fn interference_and_a_broken_wire_are_reported() {
     let told = bench.run(&["analyse", &file, "--json"]).json();
     near(&told["interference"][0], "frequency_hz", 8_000.0, 2.0);
     near(&told["interference"][0], "amplitude_v", 0.01, 1e-4);
-    assert!(told["findings"].to_string().contains("Interference at 8000 Hz"), "{told}");
+    assert!(told["findings"].to_string().contains("(2.0 % of the amplitude) at 8000 Hz"), "{told}");
     // COS is at ground, its reference at 2.5 V.
     let wires = good.iter().fold("t,SIN,REFSIN,COS,REFCOS\n".to_owned(), |mut text, [t, sine, _]| {
         writeln!(text, "{t:.6},{:.6},2.5,0.02,2.5", sine + 2.5).unwrap();
@@ -326,7 +326,7 @@ fn the_frequency_is_reported_and_marked_if_uncertain() {
             "Samples are missing (gaps: 1, longest: 2.000 ms)",
         ),
         ("back", capture(2.5e-6, &mut (0..2_000).chain(0..2_000)), "Time goes backwards at sample 2001"),
-        ("coarse", capture(2.1e-4, &mut (0..2_000)), "About 2.4 samples per period (151° apart)"),
+        ("coarse", capture(2.1e-4, &mut (0..2_000)), "With only about 2.4 samples per period (151° apart)"),
     ] {
         let file = bench.write("c.csv", text);
         let told = bench.run(&["analyse", &file, "--json"]).json();

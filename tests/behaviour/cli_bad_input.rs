@@ -84,7 +84,7 @@ fn unreadable_files_are_refused() {
     fs::create_dir(bench.path("folder")).unwrap();
     let huge = bench.file("huge");
     fs::File::create(&huge).unwrap().set_len(1 << 32).unwrap();
-    let cases = [("folder", "folder"), ("huge", "larger"), ("missing", "does not exist")];
+    let cases = [("folder", "folder"), ("huge", "size limit"), ("missing", "does not exist")];
     for (name, word) in cases {
         bench.run(&["verify", &bench.file(name), "--link", SIM, "--json"]).fails(1, &[name, word]);
         let replay = format!("replay:{}", bench.file(name));

@@ -80,7 +80,7 @@ fn mounting_values_are_not_copied_to_another_encoder_by_default() {
     let ran = bench.run(&[&restore[..], &["--with-mounting"]].concat());
     assert_eq!(ran.json()["written"], json!(16));
     assert_eq!(ran.json()["redo"], json!(["commutation", "field:0@0+16"]));
-    assert!(ran.err.contains("Set these up again") && ran.err.contains("field:0@0+16"), "{ran:?}");
+    assert!(ran.err.contains("Set up these values again") && ran.err.contains("field:0@0+16"), "{ran:?}");
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
     // For its own encoder no value is left out.
     source.host(&["40 4B 00 00 01 55 00"]);

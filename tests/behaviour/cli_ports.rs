@@ -74,7 +74,7 @@ fn without_a_backup_folder_nothing_is_written() {
     bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]).json();
     let write = ["write", "hiperface", "field:0", "00", "--yes", "--link", &encoder.url, "--json"];
     // Issue 22.4: there is no place for the logbook either.
-    bench.run(&write).fails(1, &["nothing was written", "logbook", "--force-wear"]);
+    bench.run(&write).fails(1, &["Nothing was written", "logbook", "--force-wear"]);
     bench.run(&[&write[..], &["--force-wear"]].concat()).fails(1, &["nothing was written", "data"]);
     assert_eq!(encoder.writes(), [""; 0]);
 }

@@ -81,12 +81,12 @@ fn layouts_are_exported() {
     assert!(timing(&[]).out.contains("15 clocks, 37.50 µs"));
     assert_eq!(timing(&[]).err, "");
     assert!(timing(&["--cable", "150"]).err.contains("at most 200 kHz"));
-    assert!(timing(&["--pause", "20"]).err.contains("longer than 25 µs"));
+    assert!(timing(&["--pause", "20"]).err.contains("more than 25 µs"));
     // Without a family the general times of SSI apply, which is said: 13 clocks of 500 kHz take 26 µs.
     let any = ["ssi", "export", "--layout", "frame,st=13", "--format", "timing", "--clock", "500000", "--pause", "20"];
     let any = bench.run(&any);
     assert!(any.out.contains("13 clocks, 26.00 µs") && any.out.contains("tm up to 25 µs"), "{}", any.out);
-    assert!(any.err.contains("General times of SSI") && any.err.contains("longer than 25 µs"), "{}", any.err);
+    assert!(any.err.contains("General SSI times") && any.err.contains("more than 25 µs"), "{}", any.err);
     let file = bench.file("decoder.c");
     bench.run(&["ssi", "export", "--layout", "atm60", "--format", "c", "-o", &file]);
     assert!(bench.read("decoder.c").starts_with("/* SSI decoder: atm60\n"));
@@ -138,7 +138,7 @@ fn layouts_of_recorded_frames_are_found() {
     assert!(guessed.err.contains("9 was assumed"), "{guessed:?}");
     // Recordings without information.
     let standing = bench.write("standing.txt", "101010101\n".repeat(300));
-    bench.run(&["ssi", "find", &standing]).fails(1, &["the shaft stands"]);
+    bench.run(&["ssi", "find", &standing]).fails(1, &["the shaft is at rest"]);
     let low = bench.write("low.txt", "000000000\n".repeat(300));
     bench.run(&["ssi", "find", &low]).fails(1, &["low"]);
     let broken = bench.write("broken.txt", "101010101\n10101\n");

@@ -27,9 +27,9 @@ fn unwritable_values_are_refused_with_a_reason() {
         // 158 above 160.
         (&["158", "33488896"], 1, &["33488896"]),
         // Parameters that can only be read.
-        (&["107", "0"], 1, &["107", "Actual position", "only be read"]),
-        (&["17", "1"], 1, &["17", "only be read"]),
-        (&["13", "1"], 1, &["13", "only be read"]),
+        (&["107", "0"], 1, &["107", "Actual position", "read-only"]),
+        (&["17", "1"], 1, &["17", "read-only"]),
+        (&["13", "1"], 1, &["13", "read-only"]),
         // A parameter that moves the drive.
         (&["101", "1"], 1, &["101", "move hiperdrive"]),
         (&["102", "50"], 1, &["102", "move hiperdrive"]),
@@ -77,7 +77,9 @@ fn ports_without_a_drive_are_named() {
         &["do", "hiperdrive", "acknowledge", "--drive", "2", "--yes"],
         &["do", "hiperdrive", "set-position", "0", "--drive", "2", "--yes"],
     ] {
-        bench.run(&[words, &["--link", "sim:"]].concat()).fails(1, &["This device has one drive, and no drive 2"]);
+        bench
+            .run(&[words, &["--link", "sim:"]].concat())
+            .fails(1, &["This device has only one drive, so drive 2 does not exist"]);
     }
 }
 

@@ -419,11 +419,11 @@ fn an_action_with_a_bad_result_fails() {
     };
     // 2AB8: a fault (reference 3); its drive is under no control, so that it remains.
     let Some(faulty) = bench.target(&["--status=2AB8"]) else { return };
-    fails(&act(&faulty, "acknowledge"), &["Drive 1 still has its fault"]);
+    fails(&act(&faulty, "acknowledge"), &["Drive 1 still has a fault"]);
     let Some(hub) = bench.target(&["--topology=hub4", "--drives=1,3", "--gone-after-reset=3"]) else { return };
-    fails(&act(&hub, "presence-test"), &["no longer finds drive 3"]);
+    fails(&act(&hub, "presence-test"), &["no longer detects drive 3"]);
     let Some(alone) = bench.target(&["--gone-after-reset=1"]) else { return };
-    fails(&act(&alone, "presence-test"), &["found no drive"]);
+    fails(&act(&alone, "presence-test"), &["did not detect any drives"]);
     let Some(good) = bench.target(&["--topology=hub4", "--drives=1,3"]) else { return };
     let ran = bench.run(&["do", "hiperdrive", "presence-test", "--yes", "--link", &good.url]);
     assert!(ran.status == Some(0) && ran.out.contains("drive 1: ") && ran.out.contains("drive 3: "), "{ran:?}");

@@ -77,7 +77,7 @@ fn steady_entry(key: String, value: Value) -> (String, Value) {
     let varies = ["t_s", "answer_ms_median", "answer_ms_p99", "backup"].contains(&key.as_str());
     let steady = match value {
         Value::Number(_) if varies => "a number".into(),
-        Value::String(_) if varies => "a string".into(),
+        Value::String(_) if varies => "a text".into(),
         other => steady(other),
     };
     (key, steady)

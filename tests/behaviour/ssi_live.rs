@@ -130,7 +130,7 @@ fn an_unsuitable_adapter_is_reported() {
     position(&bench, "atm60", &newer.url, &[]).fails(1, &["version 2", "version 1"]);
     let silent = adapter(&bench, "12,13,gray,0", &["--silent"]).unwrap();
     let ran = position(&bench, "atm60", &silent.url, &[]);
-    ran.fails(1, &["does not answer"]);
+    ran.fails(1, &["does not respond"]);
     let mut gone = adapter(&bench, "12,13,gray,0", &[]).unwrap();
     gone.kill();
     position(&bench, "atm60", &gone.url, &[]).fails(1, &["cannot be reached"]);

@@ -52,7 +52,7 @@ fn edges_of_a_logic_analyser_are_decoded_and_searched() {
         let bench = Bench::new();
         let path = bench.write("capture.csv", text.clone());
         let decoded = bench.run(&[&LAYOUT[..], &[&format!("@{path}")]].concat());
-        assert!(decoded.err.contains("Incomplete bursts left out: 2."), "{analyser}: {}", decoded.err);
+        assert!(decoded.err.contains("Incomplete bursts excluded: 2."), "{analyser}: {}", decoded.err);
         let read = positions(&decoded);
         assert_eq!(read.len(), count, "{analyser}");
         for (number, (read, meant)) in read.iter().zip(&meant).enumerate() {
@@ -102,18 +102,18 @@ fn what_is_no_recording_is_refused_with_the_line_and_a_way_out() {
         bench.run(&["ssi", "find", &path]).fails(1, told);
         bench.run(&[&LAYOUT[..], &[&format!("@{path}")]].concat()).fails(1, told);
     };
-    refused("Time [s],Channel 0\n0.0,1\n0.1,0\n", &["one channel", "Record clock and data"]);
-    refused("Time [s],Channel 0,Channel 1\n0.0,1,1\n0.000001,0", &["Line 3", "2 columns instead of 3", "cut off"]);
+    refused("Time [s],Channel 0\n0.0,1\n0.1,0\n", &["one channel", "Record the clock and the data"]);
+    refused("Time [s],Channel 0,Channel 1\n0.0,1,1\n0.000001,0", &["line 3", "2 columns instead of 3", "cut off"]);
     refused("Time [s],Channel 0,Channel 1\n0,000001,1,1\n", &["Line 2", "4 columns", "decimal point"]);
     refused("Time [s],Channel 0,Channel 1\n0.0,3.31,0.02\n", &["Line 2", "3.31", "digital channels"]);
-    refused("t_s,raw,turns,steps,degrees,millimetres,valid\n0.0,17\n", &["Line 2", "cut off"]);
+    refused("t_s,raw,turns,steps,degrees,millimetres,valid\n0.0,17\n", &["line 2", "cut off"]);
     refused("date,price\nmonday,17\n", &["no frames", "time, clock and data"]);
     let other = bench.write("other.txt", "101010101\n");
     bench.run(&[&LAYOUT[..], &[&format!("@{other}")]].concat()).fails(1, &["other.txt", "9 bits", "27 clocks"]);
     bench.run(&[&LAYOUT[..], &["@nowhere.csv"]].concat()).fails(1, &["nowhere.csv"]);
     let huge = bench.file("huge.csv");
     std::fs::File::create(&huge).unwrap().set_len(17 << 20).unwrap();
-    bench.run(&["ssi", "find", &huge]).fails(1, &["huge.csv", "16 MB", "shorter part"]);
+    bench.run(&["ssi", "find", &huge]).fails(1, &["huge.csv", "16 MB", "shorter section"]);
 }
 
 /// An export goes to other people: a profile is called by its file name, not by its folder on this computer.

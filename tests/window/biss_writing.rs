@@ -184,7 +184,7 @@ fn the_live_panel_shows_that_it_waits_for_a_job() {
     let plan = |studio: &Studio| Some(studio.biss()?.session.review.as_ref()?.prepared()?.plan.id());
     screen.until("the plan is there", |studio| is_read(studio) && plan(studio).is_some());
     let own = plan(screen.studio()).unwrap();
-    let words = "Paused, a job runs: ";
+    let words = "Paused while a job is running: ";
     assert!(!screen.shows(words));
     screen.act(Action::Review(id, ReviewAction::Write(own)));
     screen.until("it waits", |studio| turn_of(studio).is_some());

@@ -45,7 +45,7 @@ fn the_input_circuit_is_computed_while_typing() {
     }
     assert!(screen.shows("The signal is within the bandwidth of 150 kHz."));
     screen.retype("input.speed", "18000");
-    assert!(screen.shows("Above the bandwidth of 150 kHz"));
+    assert!(screen.shows("The signal frequency is above the bandwidth of 150 kHz"));
     screen.retype("input.capacitance", "47 pigs");
     assert!(screen.shows("\"47 pigs\" is not between 1 fF and 1 mF"));
     assert!(!screen.shows("338.6 kHz"), "nothing is shown that is not reckoned");
@@ -73,7 +73,7 @@ fn absolute_and_analog_positions_are_synchronised_while_typing() {
     assert!(screen.shows("338.47000"));
     screen.retype("synchronise.absolute", "10816");
     screen.retype("synchronise.phase", "0.5");
-    assert!(value(&screen).starts_with("Half a period apart"), "{}", value(&screen));
+    assert!(value(&screen).starts_with("The positions differ by half a period"), "{}", value(&screen));
     screen.retype("synchronise.quarters", "44");
     screen.retype("synchronise.phase", "0.98");
     assert!(screen.shows("10.98000"));

@@ -62,7 +62,7 @@ fn the_page_works_by_clicks_and_keys() {
     screen.click("commutation.use_second");
     assert!(screen.encoder().commutation.is_confirmed(screen.encoder().geometry()));
     screen.check_language();
-    assert!(!screen.is_enabled("commutation.store") && screen.shows("Create a new field under Memory"));
+    assert!(!screen.is_enabled("commutation.store") && screen.shows("Create a new data field under Memory"));
     screen.fill("commutation.address", "0");
     assert!(screen.shows("\"EMD71K-4 3000rpm\" would be replaced"), "before anything is put there");
     screen.click("commutation.store");

@@ -199,7 +199,7 @@ fn parameters_can_be_typed_into_their_table() {
     assert!(!screen.shows("Allowed: 5 to 350"));
     // A read-only value cannot be typed over, with a message.
     begin(&mut screen, "105 Status word");
-    assert!(screen.shows("105 (Status word) can only be read"));
+    assert!(screen.shows("105 (Status word) is read-only"));
     // The typed text counts before other lines are shown, and before there are none.
     begin(&mut screen, "172 Jog 1, speed");
     screen.put("172 Jog 1, speed", "50");
@@ -316,7 +316,7 @@ fn the_layout_of_a_step_does_not_shift() {
         studio.hiperdrive().is_some_and(|own| own.axis().unwrap().fallen() == Some(AxisStep::Scale))
     });
     screen.steps();
-    assert!(screen.shows("Step 2, Pitch and resolution, no longer holds"));
+    assert!(screen.shows("Step 2, Pitch and resolution, is no longer valid"));
     assert_eq!(
         (screen.studio().hiperdrive().unwrap().axis().unwrap().step(), places(&screen)),
         (AxisStep::Jog, before)

@@ -1,15 +1,13 @@
-//! Detects the format of a table from its first lines: delimiter, decimal sign, first row of numbers, names, units,
-//! columns. Columns are named as in SICK 8010701.
+//! Detection of a table's format from its first lines: delimiter, decimal separator, first row of numbers, names,
+//! units, columns. Columns are named as in SICK 8010701.
 
 use super::CaptureError;
 use super::encoding::decode_head;
 use super::header::{Columns, TimeUnit, VoltUnit, is_unit, unit_of};
 use super::import::{Number, is_no_value, number, whole};
 
-/// Number of bytes examined at the beginning.
 pub const HEAD: usize = 64 << 10;
 
-/// The delimiter between two columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delimiter {
     Comma,
@@ -17,45 +15,44 @@ pub enum Delimiter {
     Tab,
 }
 
-/// The known properties of a table; those that are `None` are detected.
+/// Known properties of a table; properties that are `None` are detected.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableHints {
     pub delimiter: Option<Delimiter>,
-    /// Numbers have a decimal comma.
+    /// Whether numbers have a decimal comma, if known.
     pub decimal_comma: Option<bool>,
     pub columns: Option<Columns>,
     pub time_unit: Option<TimeUnit>,
-    /// Volts in one unit of the sine and cosine columns, overriding the header; finite, not zero.
+    /// Volts per unit of the sine and cosine columns, overriding the header; finite and not zero.
     pub volts_per_unit: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     pub delimiter: Delimiter,
-    /// Numbers have a decimal comma.
     pub decimal_comma: bool,
-    /// Line of the first numbers in the file, from 1.
+    /// Line number of the first row of numbers in the file, counted from 1.
     pub first_row: u64,
-    /// Names of the columns; empty without a header.
+    /// Column names; empty without a header.
     pub names: Vec<String>,
     pub columns: Columns,
     pub time_unit: TimeUnit,
-    /// Volts in one unit of the sine and cosine columns.
+    /// Volts per unit of the sine and cosine columns.
     pub volts_per_unit: f64,
-    /// The time column counts samples, and the header gives their times.
+    /// Sample clock from the header, if the time column counts samples.
     pub clock: Option<SampleClock>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleClock {
-    /// The time of sample 0 in seconds.
+    /// Time of sample 0 in seconds.
     pub start_s: f64,
-    /// Interval of the samples in seconds.
+    /// Sampling interval in seconds.
     pub increment_s: f64,
 }
 
 impl Delimiter {
-    /// All delimiters, the most certain first: a comma may also be a decimal sign.
+    /// All delimiters, the least ambiguous first: a comma may also be a decimal separator.
     pub const ALL: [Delimiter; 3] = [Delimiter::Semicolon, Delimiter::Tab, Delimiter::Comma];
 
     pub const fn byte(self) -> u8 {
@@ -67,17 +64,17 @@ impl Delimiter {
     }
 }
 
-/// Line of the head: its number in the file, its fields.
+/// Line before the data: its line number in the file and its fields.
 struct HeaderLine {
     row: u64,
     fields: Vec<Vec<u8>>,
 }
 
 impl Layout {
-    /// Examines the first bytes of a table ([`HEAD`] of them, or all if there are fewer).
+    /// Examines the first bytes of a table ([`HEAD`] bytes, or all bytes of a shorter table).
     ///
     /// # Errors
-    /// [`CaptureError`] if they contain no table with sine and cosine.
+    /// [`CaptureError`] if the bytes contain no table with sine and cosine.
     pub fn detect(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
         let decoded = decode_head(head);
         let text = whole_lines(&decoded, head.len());
@@ -94,7 +91,7 @@ impl Layout {
         let first = lines.iter().position(|line| is_data(line, usual, decimal_comma)).ok_or(CaptureError::NoNumbers)?;
         let (before, data) = lines.split_at(first);
         let width = data.first().map_or(0, |line| filled(&line.fields));
-        // Rows without a value are between the names and the first complete row.
+        // Rows without a value may lie between the names and the first complete row.
         let gaps = before.iter().rev().take_while(|line| is_gap(line, width, decimal_comma)).count();
         let (before, rows) = lines.split_at(first - gaps);
         let first_row = rows.first().map_or(1, |line| line.row);
@@ -123,13 +120,14 @@ impl Layout {
             columns,
             time_unit: hints.time_unit.or(time_unit).unwrap_or_default(),
             volts_per_unit: hints.volts_per_unit.unwrap_or(volt_unit.factor()),
-            // A given unit of the time column excludes sample numbers.
+            // A given unit for the time column excludes sample numbers.
             clock: clock.filter(|_| columns.time.is_some() && hints.time_unit.is_none()),
         })
     }
 }
 
-/// Removes a column whose name has an unsuitable unit: a position in metres is no absolute position.
+/// Removes columns whose first value does not fit: a reference angle must be a number, an absolute position a whole
+/// number.
 fn fitting(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) -> Columns {
     let read = |column: usize| {
         let field = first.and_then(|line| line.fields.get(column.checked_sub(1)?));
@@ -141,7 +139,7 @@ fn fitting(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) ->
     Columns { reference_angle: angle, absolute, ..columns }
 }
 
-/// Returns the head without a last line that was cut off; `read` is the number of bytes read.
+/// Returns the head without a truncated last line; `read` is the number of bytes read.
 fn whole_lines(head: &[u8], read: usize) -> &[u8] {
     match head.iter().rposition(|byte| *byte == b'\n') {
         Some(end) if read + 3 >= HEAD => head.get(..=end).unwrap_or(head),
@@ -149,8 +147,8 @@ fn whole_lines(head: &[u8], read: usize) -> &[u8] {
     }
 }
 
-/// Parses the columns `Start` and `Increment` of a header with the line below it: the first column then counts samples (the
-/// format of Rigol oscilloscopes).
+/// Parses the header columns `Start` and `Increment` with the line below them (the format of Rigol oscilloscopes). If
+/// both are present, the first column counts samples.
 fn sample_clock(before: &[HeaderLine], decimal_comma: bool) -> Result<Option<SampleClock>, CaptureError> {
     let at = |line: &HeaderLine, name: &[u8]| line.fields.iter().position(|field| field.eq_ignore_ascii_case(name));
     let places = |line: &HeaderLine| at(line, b"start").zip(at(line, b"increment"));
@@ -167,7 +165,6 @@ fn sample_clock(before: &[HeaderLine], decimal_comma: bool) -> Result<Option<Sam
     }
 }
 
-/// Returns the delimiter that most lines have, the surest first.
 fn delimiter(text: &[u8]) -> Option<Delimiter> {
     let lines = || text.split(|byte| *byte == b'\n').filter(|line| !line.trim_ascii().is_empty());
     let count = lines().count();
@@ -187,7 +184,7 @@ fn lines(text: &[u8], delimiter: Delimiter) -> Vec<HeaderLine> {
         .collect()
 }
 
-/// Returns the fields of one line; a quoted one may contain the delimiter.
+/// Splits a line into fields; a quoted field may contain the delimiter.
 fn fields(line: &[u8], delimiter: Delimiter) -> Vec<Vec<u8>> {
     let mut fields = vec![Vec::new()];
     let mut quoted = false;
@@ -205,21 +202,22 @@ fn fields(line: &[u8], delimiter: Delimiter) -> Vec<Vec<u8>> {
     fields.iter().map(|field| field.trim_ascii().to_vec()).collect()
 }
 
-/// Returns whether some number has a comma and none has a point.
+/// Returns whether some number has a decimal comma and none has a decimal point.
 fn decimal_comma(lines: &[HeaderLine]) -> bool {
     let numeric = |field: &&Vec<u8>| matches!(number(field, true), Number::Finite(_));
     let has = |byte: u8| lines.iter().flat_map(|line| &line.fields).filter(numeric).any(|field| field.contains(&byte));
     has(b',') && !has(b'.')
 }
 
-/// Returns whether all fields are numbers; or half of them, in a row as wide as the others: a broken number in the first
-/// row is an error and not a header, while a line about the instrument may contain a number as well.
+/// Returns whether a line is a row of data: all fields are numbers, or at least half of them in a row of the usual
+/// width. A broken number in the first row is thus an error and not a header, while a line about the instrument may
+/// still contain a number.
 fn is_data(line: &HeaderLine, usual: usize, decimal_comma: bool) -> bool {
     let (numbers, width) = (numbers(line, decimal_comma), filled(&line.fields));
     (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)
 }
 
-/// Returns whether it is a row of a time and of fields without a value.
+/// Returns whether a row contains at least one number, and its other fields have no value.
 fn is_gap(line: &HeaderLine, width: usize, decimal_comma: bool) -> bool {
     let is_text = |field: &Vec<u8>| matches!(number(field, decimal_comma), Number::Text);
     line.fields.len() >= width
@@ -231,7 +229,7 @@ fn numbers(line: &HeaderLine, decimal_comma: bool) -> usize {
     line.fields.iter().filter(|field| !matches!(number(field, decimal_comma), Number::Text)).count()
 }
 
-/// Returns the width of most rows that are at least half numbers; the larger of two.
+/// Returns the most frequent width of rows that are at least half numbers; in a tie, the larger width.
 fn usual_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
     let mut counts = std::collections::BTreeMap::<usize, usize>::new();
     for line in lines.iter().filter(|line| 2 * numbers(line, decimal_comma) >= filled(&line.fields)) {
@@ -240,19 +238,19 @@ fn usual_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
     counts.into_iter().max_by_key(|(width, count)| (*count, *width)).map_or(0, |(width, _)| width)
 }
 
-/// Returns the number of fields up to the last that is not empty: some programs end each line with a delimiter.
+/// Returns the number of fields up to the last non-empty one: some programs end each line with a delimiter.
 fn filled(fields: &[Vec<u8>]) -> usize {
     fields.iter().rposition(|field| !field.is_empty()).map_or(0, |at| at + 1)
 }
 
-/// Returns the names, and a line of units if there is one: the last lines before the numbers with as many columns.
+/// Returns the names, and the line of units if present: the last lines before the data with as many columns.
 fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     let wide = |line: &&HeaderLine| filled(&line.fields) >= width.min(2) && filled(&line.fields) + 1 >= width;
     let name = |field: &Vec<u8>| String::from_utf8_lossy(&latin(field)).into_owned();
     let mut found: Vec<Vec<String>> =
         before.iter().rev().take_while(wide).take(2).map(|line| line.fields.iter().map(name).collect()).collect();
-    // Of two lines, either the second has the units, or the first has no names. A field there that is no unit may be a
-    // count ("Sequence") or a number of the header.
+    // Of two lines, either the second has the units, or the first has no names. A field in the second that is not a
+    // unit may be a count ("Sequence") or a number from the header.
     let is_named = |line: &Vec<String>| Columns::named(line).is_some();
     let units = |line: &Vec<String>| {
         !is_named(line) && line.iter().any(|name| name.starts_with(['(', '[']) || is_unit(&name.to_lowercase()))
@@ -262,7 +260,7 @@ fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     }
     found.reverse();
     if let [names, units] = found.as_mut_slice() {
-        // A bare unit is written like units after names.
+        // A bare unit is written like a unit after a name.
         for unit in units.iter_mut().filter(|unit| is_unit(&unit.to_lowercase())) {
             *unit = format!("({unit})");
         }
@@ -271,7 +269,7 @@ fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     found
 }
 
-/// A lone B5h is a µ in the encoding of older programs; a leading # or % marks a comment.
+/// Converts a header field: a lone B5h is a µ in the encoding of older programs, and a leading # or % marks a comment.
 fn latin(field: &[u8]) -> Vec<u8> {
     let field = field.strip_prefix(b"#").or_else(|| field.strip_prefix(b"%")).unwrap_or(field).trim_ascii();
     if std::str::from_utf8(field).is_ok() {

@@ -1,12 +1,11 @@
-//! The encoding of a table: UTF-8 unchanged, UTF-16 (as Windows programs export "Unicode text") converted to it, piece by
-//! piece.
+//! Conversion of a table to UTF-8, piece by piece: UTF-8 passes unchanged, UTF-16 (exported by Windows programs as
+//! "Unicode text") is converted.
 
 use std::borrow::Cow;
 
-/// The encoding of the characters of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Encoding {
-    /// UTF-8, or one byte a character.
+    /// UTF-8, or one byte per character.
     Bytes,
     /// UTF-16, least significant byte first.
     Utf16Le,
@@ -14,26 +13,26 @@ enum Encoding {
     Utf16Be,
 }
 
-/// Converts the pieces of a table to UTF-8, without its byte order mark.
+/// Converter that turns a table into UTF-8 piece by piece and drops the byte order mark.
 #[derive(Debug)]
 pub(super) struct Decoder {
     encoding: Encoding,
-    /// Bytes of the byte order mark that are still to come.
+    /// Remaining length of the byte order mark in bytes.
     mark: usize,
-    /// The first byte of a unit that is cut by the end of a piece.
+    /// First byte of a code unit split across two pieces.
     half: Option<u8>,
-    /// The first unit of a surrogate pair, likewise.
+    /// First code unit of a surrogate pair split across two pieces.
     high: Option<u16>,
 }
 
-/// Returns the beginning of a table in UTF-8.
+/// Converts the beginning of a table to UTF-8.
 pub fn decode_head(head: &[u8]) -> Cow<'_, [u8]> {
     Decoder::of(head).decode(head)
 }
 
 impl Decoder {
     /// Detects the encoding from the beginning of a table. Without a byte order mark, UTF-16 is recognised by the zero
-    /// halves of its first two characters.
+    /// bytes in its first two characters.
     pub(super) fn of(head: &[u8]) -> Self {
         let (encoding, mark) = match head {
             [0xEF, 0xBB, 0xBF, ..] => (Encoding::Bytes, 3),
@@ -46,7 +45,6 @@ impl Decoder {
         Decoder { encoding, mark, half: None, high: None }
     }
 
-    /// Returns the next piece in UTF-8.
     pub(super) fn decode<'b>(&mut self, bytes: &'b [u8]) -> Cow<'b, [u8]> {
         let skipped = self.mark.min(bytes.len());
         self.mark -= skipped;

@@ -1,22 +1,21 @@
-//! The names and units of a table's columns: which of them are time, sine and cosine (SICK 8010701: SIN, REFSIN, COS,
+//! Names and units of a table's columns: which columns hold time, sine and cosine (SICK 8010701: SIN, REFSIN, COS,
 //! REFCOS).
 
-/// Columns of a table, from 1.
+/// Column numbers of a table, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
-    /// Time; `None` for evenly spaced samples at an unknown interval.
+    /// Time column; `None` for evenly spaced samples at an unknown interval.
     pub time: Option<usize>,
     pub sine: usize,
     pub cosine: usize,
-    /// REFSIN and REFCOS against ground, if sine and cosine are not already differences.
+    /// Columns of REFSIN and REFCOS against ground, unless sine and cosine are already differences.
     pub references: Option<(usize, usize)>,
-    /// The shaft's angle by a reference encoder in degrees.
+    /// Column with the shaft angle of a reference encoder in degrees, if any.
     pub reference_angle: Option<usize>,
-    /// The absolute position in whole steps of 1/32 period.
+    /// Column with the absolute position in whole steps of 1/32 period, if any.
     pub absolute: Option<usize>,
 }
 
-/// Unit of a time column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TimeUnit {
     #[default]
@@ -26,7 +25,6 @@ pub enum TimeUnit {
     Nanoseconds,
 }
 
-/// Unit of a voltage column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VoltUnit {
     #[default]
@@ -36,18 +34,18 @@ pub enum VoltUnit {
 }
 
 impl Columns {
-    /// Time, sine, cosine in this order.
+    /// Columns for time, sine and cosine in this order.
     pub const PLAIN: Columns =
         Columns { time: Some(1), sine: 2, cosine: 3, references: None, reference_angle: None, absolute: None };
 
-    /// Returns the last column that is needed.
+    /// Returns the highest column number in use.
     pub fn last(&self) -> usize {
         let (refsin, refcos) = self.references.unwrap_or_default();
         let others = [self.time, self.reference_angle, self.absolute].map(Option::unwrap_or_default);
         [self.sine, self.cosine, refsin, refcos].into_iter().chain(others).max().unwrap_or_default()
     }
 
-    /// Returns the columns of a table that counts its samples in the first column, whatever its name.
+    /// Returns the columns of a table whose first column counts samples, whatever its name.
     pub(super) fn counted(self) -> Columns {
         let others = [Some(self.sine), Some(self.cosine), self.reference_angle, self.absolute];
         let (refsin, refcos) = self.references.unzip();
@@ -55,7 +53,7 @@ impl Columns {
         Columns { time: self.time.or((!is_taken).then_some(1)), ..self }
     }
 
-    /// Returns the columns by their names; `None` if sine or cosine is not among them.
+    /// Finds the columns by name; `None` if sine or cosine is missing.
     pub(super) fn named(names: &[String]) -> Option<Columns> {
         let find = |known: &[&str]| {
             let at = names.iter().position(|name| known.contains(&bare_name(name).as_str()));
@@ -68,7 +66,7 @@ impl Columns {
             sine: find(&["sin", "sine", "sinus", "sin+", "+sin", "sinplus"])?,
             cosine: find(&["cos", "cosine", "cosinus", "kosinus", "cos+", "+cos", "cosplus"])?,
             references,
-            // A reference in volts is not one of an angle.
+            // A reference in volts is not a reference angle.
             reference_angle: find(&["reference", "referenz", "ref", "angle", "winkel", "mechanical angle"])
                 .filter(|at| !names.get(at - 1).is_some_and(|name| is_in_volts(name))),
             absolute: find(&["absolute", "absolut", "abs", "absolute position", "position", "pos"]),
@@ -77,7 +75,7 @@ impl Columns {
 }
 
 impl TimeUnit {
-    /// Returns its length in seconds.
+    /// Returns the unit's length in seconds.
     pub const fn factor(self) -> f64 {
         match self {
             TimeUnit::Seconds => 1.0,
@@ -91,7 +89,7 @@ impl TimeUnit {
         match text {
             "s" | "sec" | "second" | "seconds" => Some(TimeUnit::Seconds),
             "ms" => Some(TimeUnit::Milliseconds),
-            // The two micro signs of Unicode.
+            // Unicode has two micro signs.
             "us" | "\u{b5}s" | "\u{3bc}s" => Some(TimeUnit::Microseconds),
             "ns" => Some(TimeUnit::Nanoseconds),
             _ => None,
@@ -100,7 +98,7 @@ impl TimeUnit {
 }
 
 impl VoltUnit {
-    /// Returns its size in volts.
+    /// Returns the unit's size in volts.
     pub const fn factor(self) -> f64 {
         match self {
             VoltUnit::Volts => 1.0,
@@ -119,7 +117,6 @@ impl VoltUnit {
     }
 }
 
-/// Returns whether a unit in a header is an angular unit.
 fn is_degrees(text: &str) -> bool {
     ["deg", "degree", "degrees", "\u{b0}", "grad"].contains(&text)
 }
@@ -128,12 +125,12 @@ fn is_in_volts(name: &str) -> bool {
     unit_of(&name.trim().to_lowercase()).is_some_and(|unit| VoltUnit::parse(unit).is_some())
 }
 
-/// Returns whether it is a unit of times, voltages or angles, in small letters.
+/// Returns whether a lower-case string is a unit of time, voltage or angle.
 pub(super) fn is_unit(text: &str) -> bool {
     TimeUnit::parse(text).is_some() || VoltUnit::parse(text).is_some() || is_degrees(text)
 }
 
-/// Returns the name without its unit, in lower case: `Time [ms]` is `time`.
+/// Returns the name without its unit, in lower case: `Time [ms]` becomes `time`.
 fn bare_name(name: &str) -> String {
     let name = name.trim().to_lowercase();
     let bare = match unit_of(&name) {
@@ -143,8 +140,8 @@ fn bare_name(name: &str) -> String {
     bare.trim_end_matches([' ', '[', '(', '/', '_', ',']).trim().to_owned()
 }
 
-/// Returns the unit after a name, in brackets or after a space, a slash or an underscore: `ms` of `time_ms`. A name that
-/// consists of brackets only, as in a line of units, is all unit. Expects lower case.
+/// Returns the unit that follows a name, in brackets or after a space, a slash or an underscore: `ms` of `time_ms`. A
+/// name entirely in brackets, as in a line of units, is all unit. Expects lower case.
 pub(super) fn unit_of(name: &str) -> Option<&str> {
     let name = name.trim();
     let inside = name.strip_suffix([']', ')']).unwrap_or(name);

@@ -1,5 +1,5 @@
-//! From the bytes of a table to samples: split by csv-core, numbers by fast-float2, without storing the text of fields. The
-//! channels are those of SICK 8010701.
+//! Conversion of a table's bytes to samples: csv-core splits the fields and fast-float2 parses the numbers, without
+//! storing the text of the fields. The channels are those of SICK 8010701.
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
@@ -8,36 +8,34 @@ use super::encoding::Decoder;
 use super::header::Columns;
 use super::{Capture, CaptureError, Wires};
 
-/// A table that is being read.
 #[derive(Debug)]
 pub struct Import {
     layout: Layout,
     reader: Reader,
-    /// The present row, without delimiters and quotes, and the ends of its fields.
+    /// Current row without delimiters and quotes; `ends` holds the end of each field.
     row: Vec<u8>,
     written: usize,
     ends: Vec<usize>,
     ended: usize,
     last: Option<u8>,
     decoder: Decoder,
-    /// The first row that was left out, and the value missing in it.
+    /// First row that was left out, and the error for its missing value.
     first_left_out: Option<(u64, CaptureError)>,
     taken: ColumnChoice,
     capture: Capture,
 }
 
-/// Columns from 0, and factors.
+/// Columns to import, with conversion factors.
 #[derive(Clone, Copy, Debug)]
 struct ColumnChoice {
     columns: Columns,
-    /// The time in seconds is the first, and the second for each unit of the column.
+    /// Start time in seconds, and seconds per unit of the time column.
     seconds: (f64, f64),
     volts: f64,
     comma: bool,
     counts: bool,
 }
 
-/// The content of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Number {
     Finite(f64),
@@ -45,19 +43,19 @@ pub(super) enum Number {
     Text,
 }
 
-/// Maximum length of a row. A longer one is not of a table.
+/// Maximum length of a row in bytes; a longer row does not belong to a table.
 const LONGEST_ROW: usize = 1 << 20;
-/// Minimum number of rows for a measurement: a shorter table is refused for the first missing value.
+/// Minimum number of rows for a measurement; a shorter table is rejected at the first missing value.
 const LEAST_ROWS: u64 = 6;
-/// Maximum number of characters of a wrong field in a message.
+/// Maximum number of characters of an invalid field shown in a message.
 const SHOWN: usize = 24;
 
 impl Import {
-    /// Begins with the first bytes of a table ([`HEAD`] of them, or all if there are fewer), which are only examined: they
-    /// must be [fed](Self::feed) as well.
+    /// Begins an import with the first bytes of a table ([`HEAD`] bytes, or all bytes of a shorter table). The bytes
+    /// are only examined; they must be [fed](Self::feed) as well.
     ///
     /// # Errors
-    /// As [`Layout::detect`].
+    /// As for [`Layout::detect`].
     pub fn begin(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
         let head = head.get(..HEAD).unwrap_or(head);
         let import = Import::with(Layout::detect(head, hints)?);
@@ -100,12 +98,11 @@ impl Import {
         &self.layout
     }
 
-    /// Returns the number of rows so far.
     pub fn rows(&self) -> usize {
         self.capture.sine_v.len()
     }
 
-    /// Takes the next bytes, from the beginning of the file on, in pieces of any size.
+    /// Processes the next bytes, in pieces of any size, from the beginning of the file.
     ///
     /// # Errors
     /// [`CaptureError`] with the row and the column.
@@ -119,16 +116,16 @@ impl Import {
         Ok(())
     }
 
-    /// Returns the samples, after the last bytes.
+    /// Completes the import and returns the samples.
     ///
     /// # Errors
-    /// If no row had numbers, or most of them had none.
+    /// If no row contains numbers, or if most rows have no value.
     pub fn finish(mut self) -> Result<(Layout, Capture), CaptureError> {
-        // An unclosed quotation mark makes one row of everything after it: nothing of that was truncated.
+        // An unclosed quotation mark turns everything after it into one row, none of which was truncated.
         if self.last != Some(b'"') && self.lines_in_row() > 0 {
             return Err(self.open_quote());
         }
-        // No more bytes: a row without a line end ends here, and may be truncated.
+        // End of the input: a row without a line end stops at this point and may be truncated.
         if let Err(error) = self.step(&[]) {
             self.leave_out(self.reader.line(), error);
         }
@@ -141,7 +138,7 @@ impl Import {
         }
     }
 
-    /// Returns the line breaks in the incomplete row, which are between quotation marks.
+    /// Returns the number of line breaks in the incomplete row, all of them between quotation marks.
     fn lines_in_row(&self) -> usize {
         let row = self.row.get(..self.written).unwrap_or_default();
         row.iter().filter(|byte| **byte == b'\n').count()
@@ -156,7 +153,7 @@ impl Import {
         self.first_left_out.get_or_insert((row, why));
     }
 
-    /// Calls the splitter once; returns the number of bytes used.
+    /// Calls the splitter once and returns the number of bytes used.
     fn step(&mut self, bytes: &[u8]) -> Result<usize, CaptureError> {
         let row = self.row.get_mut(self.written..).unwrap_or_default();
         let ends = self.ends.get_mut(self.ended..).unwrap_or_default();
@@ -175,7 +172,7 @@ impl Import {
             ReadRecordResult::OutputFull | ReadRecordResult::OutputEndsFull => return Err(CaptureError::NoNumbers),
             ReadRecordResult::Record => {
                 let ends = self.ends.get(..self.ended).unwrap_or_default();
-                // After a row that ended with its line break, the splitter is in the next line.
+                // After a row that ended with a line break, the splitter is already on the next line.
                 let line = self.reader.line() - u64::from(self.last == Some(b'\n'));
                 if line >= self.layout.first_row
                     && let Some(missing) = self.taken.take(&self.row, ends, line, &mut self.capture)?
@@ -191,7 +188,7 @@ impl Import {
 }
 
 impl ColumnChoice {
-    /// Takes a row; returns what is missing if the row is left out.
+    /// Adds a row to the capture; returns the error for the missing value if the row is left out.
     fn take(
         &self,
         row: &[u8],
@@ -205,7 +202,7 @@ impl ColumnChoice {
             return Ok(None);
         }
         let columns = &self.columns;
-        // A time is always required: a table without one is broken.
+        // The time is always required: a table without it is broken.
         let time = columns.time.map(|column| self.time(row, ends, line, column)).transpose()?;
         let (refsin, refcos) = columns.references.unzip();
         let taken =
@@ -261,7 +258,7 @@ impl ColumnChoice {
         }
     }
 
-    /// Parses a value; the inner error if the instrument had none.
+    /// Parses a value; the inner error means that the instrument recorded none.
     fn value(
         &self,
         row: &[u8],
@@ -279,7 +276,7 @@ impl ColumnChoice {
         }
     }
 
-    /// Returns the content of a column, without surrounding spaces.
+    /// Returns the content of a column without surrounding spaces.
     fn field<'r>(&self, row: &'r [u8], ends: &[usize], line: u64, column: usize) -> Result<&'r [u8], CaptureError> {
         let at = column.saturating_sub(1);
         let start = at.checked_sub(1).and_then(|before| ends.get(before)).copied().unwrap_or(0);
@@ -289,7 +286,7 @@ impl ColumnChoice {
     }
 }
 
-/// Returns whether a field is an instrument's notation for no value: empty, dashes, or an overload.
+/// Returns whether a field is an instrument's notation for a missing value: empty, dashes, or an overload.
 pub(super) fn is_no_value(field: &[u8]) -> bool {
     const WORDS: [&str; 10] =
         ["overload", "overrange", "overflow", "ovld", "ol", "over", "clipped", "\u{221e}", "-\u{221e}", "n/a"];
@@ -297,16 +294,16 @@ pub(super) fn is_no_value(field: &[u8]) -> bool {
     text.chars().all(|sign| matches!(sign, '-' | '*' | '?')) && text.len() != 1 || WORDS.contains(&text.as_str())
 }
 
-/// Returns the value as a whole number; `None` beyond 2⁵³, where neighbouring numbers are not distinct.
+/// Returns the value as a whole number, or `None` beyond 2⁵³, where neighbouring integers are not distinct.
 pub(super) fn whole(value: f64) -> Option<i64> {
     const MOST: f64 = (1_i64 << 53) as f64;
     (value.fract() == 0.0 && value.abs() <= MOST).then_some(value as i64)
 }
 
-/// The values that SCPI instruments send for an overload (9.9E37) or not a number (9.91E37): SCPI-99, 7.2.1.
+/// Values that SCPI instruments send for an overload (9.9E37) and for "not a number" (9.91E37): SCPI-99, 7.2.1.
 const NO_VALUE: std::ops::RangeInclusive<f64> = 9.9e37..=9.91e37;
 
-/// Reads a field without spaces around it.
+/// Parses a field without surrounding spaces.
 pub(super) fn number(field: &[u8], comma: bool) -> Number {
     let field = field.strip_prefix(b"+").filter(|rest| rest.first() != Some(&b'-')).unwrap_or(field);
     let parsed = match field.iter().position(|byte| *byte == b',') {
@@ -321,7 +318,7 @@ pub(super) fn number(field: &[u8], comma: bool) -> Number {
 }
 
 fn with_point(field: &[u8], comma: usize) -> Option<f64> {
-    /// More digits than a double has, with sign and exponent.
+    /// Maximum length of a number, more than the digits of a double with sign and exponent.
     const LONGEST: usize = 64;
     let mut copy = [0; LONGEST];
     let copy = copy.get_mut(..field.len())?;

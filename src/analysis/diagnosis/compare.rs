@@ -1,43 +1,38 @@
-//! Comparison of two captures of one signal, as with the drive off and on: what became worse, what only changed, and what
-//! cannot be compared. Both must be judged by the same limits.
+//! Comparison of two captures of one signal, for example with the drive off and on: what became worse, what only
+//! changed, and what cannot be compared. Both captures must be judged by the same limits.
 
 use std::mem::discriminant;
 
 use super::lines::Interference;
 use super::{Diagnosis, DiagnosisFinding, FindingKind, LEAST_LINE, OutOfLimits, Severity, severity};
 
-/// The changes from one capture to another.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changes {
-    /// Findings that became worse or are new, the worst first.
+    /// Findings that became worse or are new, most severe first.
     pub worse: Vec<DiagnosisFinding>,
-    /// Findings that changed without being worse.
+    /// Findings that changed without becoming worse.
     pub changed: Vec<DiagnosisFinding>,
-    /// Findings that cannot be compared.
+    /// Properties that cannot be compared.
     pub untold: Vec<NotComparable>,
 }
 
-/// Something that cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotComparable {
-    /// The ellipse: the first capture has none.
     NoEllipseBefore,
-    /// The ellipse: the second capture has none.
     NoEllipseAfter,
-    /// Hum, interference and noise: one of them has no spectrum.
+    /// One of the captures has no spectrum, so that hum, interference and noise cannot be compared.
     NoSpectrum,
 }
 
 /// Factor above which a disturbance counts as increased.
 const MORE: f64 = 1.5;
-/// Factor above which a parameter of the ellipse counts as further out of its limits.
+/// Factor above which an ellipse parameter counts as further out of its limits.
 const FURTHER: f64 = 1.1;
-/// And by this share of the amplitude, for noise.
+/// Minimum noise increase that counts, as a fraction of the amplitude.
 const LEAST_NOISE: f64 = 0.001;
-/// An amplitude is another when it differs by this share.
+/// Relative difference from which an amplitude counts as changed.
 const AMPLITUDE: f64 = 0.02;
 
-/// Compares `after` with `before`.
 pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
     let mut changes = Changes::default();
     let is_worse = |finding: &&DiagnosisFinding| is_worse(finding, before, after);
@@ -45,7 +40,7 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
     match (before.amplitude_v, after.amplitude_v) {
         (Some(from_v), Some(to_v)) => {
             if (to_v / from_v - 1.0).abs() >= AMPLITUDE {
-                // One that left its limits is also among the worse ones.
+                // An amplitude that left its limits is also listed among the worse findings.
                 let what = FindingKind::AmplitudeChanged { from_v, to_v };
                 changes.changed.push(DiagnosisFinding { severity: Severity::Notice, kind: what });
             }
@@ -58,7 +53,7 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
     changes
 }
 
-/// Compares noise and the lines of the spectrum by their size.
+/// Compares noise and spectral lines by magnitude.
 fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut Changes) {
     let (Some(earlier), Some(later)) = (&before.interference, &after.interference) else {
         changes.untold.push(NotComparable::NoSpectrum);
@@ -75,21 +70,21 @@ fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: 
     changes.worse.extend(later.iter().filter_map(|line| rose(line, earlier, spacing, amplitude)));
 }
 
-/// Returns whether a finding of the second capture is new, or more than in the first.
+/// Returns whether a finding of the second capture is new, or greater than in the first.
 fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -> bool {
     match finding.kind {
-        // Without an ellipse for comparison, only these can be reported.
+        // Without an ellipse for comparison, only these kinds can be reported.
         FindingKind::Still
         | FindingKind::AtRest
         | FindingKind::Same
         | FindingKind::Dead { .. }
         | FindingKind::Level { .. } => {}
         _ if before.amplitude_v.is_none() => return false,
-        // Compared by their size.
+        // These findings are compared by magnitude.
         FindingKind::Hum { .. } | FindingKind::Interference { .. } | FindingKind::Noise { .. } => return false,
-        // Consequences of the others, and properties of the motion.
+        // Consequences of other findings, and properties of the motion.
         FindingKind::Uncertain { .. } | FindingKind::Reversed { .. } => return false,
-        // Another finding may have explained it in the first capture.
+        // Another finding may have explained the residual in the first capture.
         FindingKind::Limit(OutOfLimits::Residual(_)) => {
             return match (before.residual, after.residual) {
                 (Some(before), Some(after)) => after >= FURTHER * before,
@@ -105,7 +100,7 @@ fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -
     finding.severity > earlier.severity || comparable && amount(&finding.kind) >= factor * amount(&earlier.kind)
 }
 
-/// Returns whether the first finding is of the kind of the second, or a worse form of it.
+/// Returns whether the earlier finding is of the later one's kind, or a worse form of it.
 fn covers(earlier: &FindingKind, later: &FindingKind) -> bool {
     match (earlier, later) {
         (FindingKind::Limit(earlier), FindingKind::Limit(later)) => discriminant(earlier) == discriminant(later),
@@ -124,7 +119,6 @@ fn covers(earlier: &FindingKind, later: &FindingKind) -> bool {
     }
 }
 
-/// Returns the amount of a finding, comparable with another of its kind.
 fn amount(what: &FindingKind) -> f64 {
     let beyond = |value: f64, (least, most): (f64, f64)| (least - value).max(value - most).max(0.0);
     match *what {
@@ -142,7 +136,7 @@ fn amount(what: &FindingKind) -> f64 {
         FindingKind::Spikes { count, .. } | FindingKind::LetsGo { count, .. } => count as f64,
         FindingKind::Missing { gaps, .. } => gaps as f64,
         FindingKind::Half { share, .. } => 1.0 / share,
-        // Their presence counts: there is no amount to compare.
+        // Only the presence of such a finding counts: it has no magnitude.
         _ => f64::NAN,
     }
 }

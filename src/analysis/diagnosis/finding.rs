@@ -1,4 +1,4 @@
-//! The possible findings in a signal, with their amounts.
+//! Findings of a signal diagnosis, with their magnitudes.
 
 use super::OutOfLimits;
 use crate::analysis::ellipse::Channel;
@@ -7,7 +7,7 @@ use crate::analysis::wiring::Wire;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     Notice,
-    /// Out of its limits, or a disturbance that reduces accuracy.
+    /// A parameter is out of its limits, or a disturbance reduces accuracy.
     Warning,
     Fault,
 }
@@ -18,157 +18,152 @@ pub struct DiagnosisFinding {
     pub kind: FindingKind,
 }
 
-/// Kind of finding. Shares are of the amplitude of the cosine channel.
+/// Kind of finding. Shares are fractions of the cosine channel's amplitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FindingKind {
     Limit(OutOfLimits),
     Still,
     /// Both channels are constant, away from zero: the shaft stands still.
     AtRest,
-    /// One channel does not move while the other does.
+    /// One channel does not move while the other one does.
     Dead {
         channel: Channel,
         stuck: Stuck,
     },
-    /// One channel has half of the other's amplitude: one of its two wires is open.
+    /// One channel has half the amplitude of the other: one of its two wires is open.
     Half {
         channel: Channel,
-        /// Ratio of its amplitude to the other's.
+        /// Ratio of the channel's amplitude to that of the other channel.
         share: f64,
     },
-    /// Both channels show the same, or one the opposite of the other.
+    /// Both channels carry the same signal, or one carries the inverse of the other.
     Same,
-    /// The mean level of a reference is outside of the family's limits.
+    /// The mean level of a reference is outside the family's limits.
     Level {
         wire: Wire,
-        /// Its mean in volts.
+        /// Mean level in volts.
         volts: f64,
-        /// Good from, good to, in volts.
+        /// Permitted range in volts.
         ok_v: (f64, f64),
     },
     Hum {
-        /// 50 or 60 Hz.
         mains_hz: f64,
-        /// All of its lines together, peak, in volts.
+        /// Peak of all mains lines together, in volts.
         volts: f64,
         share: f64,
-        /// In phase and about equally strong in both channels: coupled in by the screen or the ground.
+        /// Whether the hum is in phase and about equally strong in both channels, that is, coupled in by the screen or
+        /// the ground.
         common: bool,
     },
-    /// A line that is no harmonic of the signal.
+    /// The spectrum contains a line that is not a harmonic of the signal.
     Interference {
-        /// Its frequency in hertz.
         frequency_hz: f64,
         /// Peak in the stronger channel, in volts.
         volts: f64,
         share: f64,
-        /// As for the hum.
+        /// Whether the line is in phase and about equally strong in both channels.
         common: bool,
     },
     Noise {
-        /// Of one channel, rms, in volts.
+        /// RMS noise of one channel in volts.
         volts: f64,
         share: f64,
     },
-    /// The distance from the ellipse repeats this many times per period: harmonics one below and one above that.
+    /// The distance from the ellipse repeats `order` times per period, which indicates harmonics one below and one
+    /// above that order.
     Harmonics {
-        /// Order, 3 to 8.
+        /// Repetitions per period, 3 to 8.
         order: usize,
-        /// As a share, peak; also the resulting error in radians.
+        /// Peak as a fraction of the amplitude, which equals the resulting error in radians.
         share: f64,
     },
     Clipping {
         channel: Channel,
-        /// Level in volts.
+        /// Clipping level in volts.
         volts: f64,
-        /// Share of the samples at that level.
+        /// Share of the samples at the clipping level.
         samples: f64,
     },
     Modulation {
-        /// Half of the difference between largest and least, over the mean.
+        /// Half the difference between the largest and the smallest amplitude, divided by the mean.
         share: f64,
     },
-    /// Single samples far off were left out.
+    /// Isolated outliers were left out.
     Spikes {
         count: usize,
-        /// The farthest, in volts off the ellipse.
+        /// Greatest distance of an outlier from the ellipse, in volts.
         volts: f64,
     },
-    /// Several samples in a row were far off and left out.
     LetsGo {
         count: usize,
-        /// The most in a row.
+        /// Length of the longest run in samples.
         longest: usize,
     },
     Missing {
         gaps: usize,
-        /// The longest time from one sample to the next, in seconds.
+        /// Longest time between consecutive samples, in seconds.
         longest_s: f64,
     },
     TimeBack {
-        /// The first sample that is before the one before it, counted from 0.
+        /// First sample that is earlier than the previous one, counted from 0.
         sample: usize,
     },
     Reversed {
         times: usize,
     },
-    /// Too few samples per period to follow the angle with certainty.
+    /// The capture has too few samples per period to follow the angle reliably.
     Coarse {
-        /// Median angle from one sample to the next, in degrees.
+        /// Median angle between consecutive samples, in degrees.
         step_deg: f64,
     },
     /// Hum, interference or harmonics make offset, gain and phase uncertain.
     Uncertain {
-        /// All of them together, as a share.
+        /// Combined share of the disturbances.
         share: f64,
     },
-    /// The position error after the correction is larger than before.
     CorrectionHarms {
-        /// Both channels are at the level of a single wire: no reference was subtracted.
+        /// Peak-to-peak position error before the correction, in electrical degrees.
         raw_deg: f64,
-        /// And after.
+        /// Peak-to-peak position error after the correction, in electrical degrees.
         corrected_deg: f64,
     },
-    /// Of two captures, the second has more noise.
+    /// Both channels are at the level of a single wire: no reference was subtracted.
     SingleEnded {
         /// Mean of the sine channel in volts.
         sine_v: f64,
         cosine_v: f64,
     },
-    /// Of two captures, the second has more noise.
     NoiseRose {
-        /// First, rms, in volts.
+        /// RMS noise of the first capture in volts.
         from_v: f64,
-        /// Second.
+        /// Peak amplitude in the second capture, in volts.
         to_v: f64,
     },
-    /// Of two captures, only the second has this interference, or has more of it.
+    /// An interference is present only in the second of two captures, or is stronger than in the first.
     InterferenceRose {
-        /// Its frequency in hertz.
         frequency_hz: f64,
-        /// In the first, peak, in volts; 0 if none was visible.
+        /// Peak in the first capture, in volts; 0 if no interference was visible.
         from_v: f64,
-        /// Second.
+        /// Peak in the second capture, in volts.
         to_v: f64,
-        /// In the second, as for the hum.
+        /// Whether the interference in the second capture is in phase and about equally strong in both channels.
         common: bool,
     },
-    /// Of two captures, the second has another amplitude.
     AmplitudeChanged {
-        /// First, peak, in volts.
+        /// Peak amplitude in the first capture, in volts.
         from_v: f64,
-        /// Second.
+        /// RMS noise of the second capture in volts.
         to_v: f64,
     },
 }
 
-/// The level of the wires of a channel that does not move.
+/// Level of the wires of a channel that does not move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stuck {
-    /// Both at the same level: one is open, or they are shorted to each other.
+    /// Both wires are at the same level: one is open, or they are shorted to each other.
     Together,
     Ground(Wire),
     Supply(Wire),
-    /// This many volts apart: one of them is shorted, or open without a resistor between them.
+    /// The wires differ by the given voltage: one is shorted, or open without a resistor between them.
     Apart(f64),
 }

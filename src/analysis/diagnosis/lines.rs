@@ -1,9 +1,10 @@
-//! Lines of the spectrum that are no harmonics of the signal: added by a drive, the mains or a switching supply.
+//! Detection of spectral lines that are not harmonics of the signal: interference from a drive, the mains or a
+//! switching supply.
 //!
-//! An uneven motion, or an amplitude that changes over the revolution, also adds lines beside those of the signal. They are
-//! distinguished from interference by direction: external interference moves the vector of both channels in any direction,
-//! half of it (on average over the period) along the radius; an uneven motion moves it along the circle only, and an uneven
-//! amplitude along the radius only.
+//! An uneven motion, or an amplitude that varies over the revolution, also adds lines beside those of the signal. Such
+//! lines are distinguished from interference by direction: external interference moves the vector of both channels in
+//! any direction, half of it (on average over the period) along the radius; an uneven motion moves the vector along the
+//! circle only, and an uneven amplitude along the radius only.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -14,74 +15,72 @@ use crate::analysis::position_error::Samples;
 use crate::analysis::signal_analysis::Analysis;
 use crate::analysis::spectrum::{Spectrum, sample_rate_hz};
 
-/// Frequencies of the mains.
 pub(super) const MAINS_HZ: [f64; 2] = [50.0, 60.0];
-/// Multiples of the mains that are taken for it.
+/// Highest multiple of the mains frequency that is attributed to the mains.
 const MULTIPLES: f64 = 10.0;
-/// Spacing of the lines of a spectrum above which they cannot be identified as the mains.
+/// Line spacing of a spectrum above which its lines cannot be attributed to the mains.
 const MAINS_SPACING_HZ: f64 = 10.0;
 
-/// Minimum length of the examined record in seconds, if available: ten periods of the mains.
+/// Minimum length of the examined record in seconds, if available: ten mains periods.
 const SECONDS: f64 = 0.2;
-/// Fewest and most samples of the spectrum.
+/// Minimum and maximum number of samples in the spectrum.
 const SAMPLES: (usize, usize) = (1 << 16, 1 << 20);
-/// Minimum number of periods: with fewer, the signal's own line covers everything.
+/// Minimum number of periods; with fewer, the signal's own line covers everything.
 const LEAST_PERIODS: f64 = 8.0;
-/// Harmonics of the signal that are skipped; fewer for an uneven motion, because they cover much, and spread lines do not
-/// stand out.
+/// Number of signal harmonics skipped, for an even and an uneven motion. An uneven motion has fewer, because its
+/// harmonics cover much of the spectrum and spread lines do not stand out.
 const HARMONICS: (usize, usize) = (25, 5);
-/// Lines to each side of a harmonic that belong to it in a Hann window.
+/// Number of lines on each side of a harmonic that belong to it in a Hann window.
 const REACH: usize = 3;
-/// Share of its peak down to which the signal's line counts as wide.
+/// Fraction of the peak down to which lines count towards the width of the signal's line.
 const WIDTH: f64 = 0.01;
-/// Lines on each side from which the noise is determined.
+/// Number of lines on each side from which the noise is determined.
 const NEIGHBOURS: usize = 50;
-/// Factor above the median of its neighbours from which a line is no noise.
+/// Factor above the median of its neighbours from which a line is not noise.
 const ABOVE: f64 = 6.0;
 /// Maximum number of lines reported.
 const MOST: usize = 8;
-/// Share of an interference that moves the vector along the radius.
+/// Permitted radial share of an interference, the part that moves the vector along the radius.
 const RADIAL: Range<f64> = 0.25..0.75;
-/// Within this angle both channels are in phase.
+/// Maximum phase difference at which both channels count as in phase, in radians.
 const IN_PHASE: f64 = TAU / 12.0;
 
-/// A line that is no harmonic of the signal.
+/// Spectral line that is not a harmonic of the signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interference {
-    /// Its frequency in hertz.
     pub frequency_hz: f64,
     /// Peak in the stronger channel, in volts.
     pub volts: f64,
-    /// In phase and about equally strong in both channels.
+    /// Whether the line is in phase and about equally strong in both channels.
     pub common: bool,
-    /// The mains frequency, if it is this or a multiple of it.
+    /// Mains frequency, if the line is at that frequency or a multiple of it.
     pub mains_hz: Option<f64>,
 }
 
-/// Line with its contribution to the distance from the ellipse, mean square in V².
+/// Line with its contribution to the distance from the ellipse, as a mean square in V².
 struct StrongLine {
     line: Interference,
     radial_v2: f64,
 }
 
 pub(super) struct SpectrumContent {
-    /// The strongest first.
+    /// Lines found, strongest first.
     pub(super) lines: Vec<Interference>,
-    /// White noise of one channel, rms, in volts.
+    /// RMS white noise of one channel, in volts.
     pub(super) noise_v: f64,
-    /// Distance of two lines in hertz.
+    /// Spacing of the spectrum's lines in hertz.
     pub(super) spacing_hz: f64,
-    /// Effect of all lines on the distance from the ellipse, mean square in V².
+    /// Effect of all lines on the distance from the ellipse, as a mean square in V².
     pub(super) radial_v2: f64,
 }
 
-/// Finds the lines; `None` if the times are not even, or there are too few samples.
+/// Finds the interference lines; `None` if the samples are not evenly spaced, too few, or cover too few periods.
 pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<SpectrumContent> {
     let count = samples.sine_v.len().min(samples.cosine_v.len()).min(samples.time_s.len());
     let all = samples.time_s.get(..count)?;
     let wanted = (SECONDS * count.saturating_sub(1) as f64 / (all.last()? - all.first()?)) as usize;
     let length = wanted.clamp(SAMPLES.0, SAMPLES.1).min(count);
-    // The middle, where a motion is steadiest.
+    // The middle of the record, where a motion is steadiest.
     let start = (count - length) / 2;
     let rate_hz = sample_rate_hz(all.get(start..start + length)?).ok()?;
     if analysis.coverage.periods * length as f64 / (count as f64) < LEAST_PERIODS {
@@ -125,7 +124,7 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Spectru
     Some(SpectrumContent { lines, noise_v, spacing_hz, radial_v2 })
 }
 
-/// Replaces outliers by the value before them: a spike would raise every line.
+/// Replaces each outlier by the preceding value: a spike would raise every line.
 fn hold(values: &mut [f64], start: usize, analysis: &Analysis) {
     let end = start + values.len();
     let stretches = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
@@ -142,12 +141,13 @@ fn height(lines: &[f64], at: usize) -> f64 {
     lines.get(at).copied().unwrap_or(0.0)
 }
 
-/// Returns which lines belong to the signal: its own and its harmonics, also those aliased at half the sample rate.
+/// Returns which lines belong to the signal: its fundamental and its harmonics, including those aliased at half the
+/// sample rate.
 fn signal(both: &[f64]) -> Vec<bool> {
     let mut belongs = vec![false; both.len()];
     let first = REACH.min(both.len());
     let peak = (first..both.len()).max_by(|a, b| height(both, *a).total_cmp(&height(both, *b))).unwrap_or(0);
-    // An uneven motion widens a line, and the harmonics by their order.
+    // An uneven motion widens a line, and each harmonic in proportion to its order.
     let above = |at: usize| height(both, at) > WIDTH * height(both, peak);
     let up = (peak..both.len()).take_while(|at| above(*at)).count();
     let down = (0..=peak).rev().take_while(|at| above(*at)).count();
@@ -164,7 +164,6 @@ fn signal(both: &[f64]) -> Vec<bool> {
     belongs
 }
 
-/// Peaks above the noise around them, the highest first.
 fn candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usize> {
     let free = |at: usize| !is_signal.get(at).copied().unwrap_or(true);
     let mut found: Vec<usize> = (1..both.len().saturating_sub(1))
@@ -176,7 +175,7 @@ fn candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usize> {
         .collect();
     found.sort_by(|a, b| height(both, *b).total_cmp(&height(both, *a)));
     let mut taken: Vec<usize> = Vec::new();
-    // Of many lines at noise level none is taken, however many there are.
+    // Lines at noise level are never reported, no matter how many exist.
     for at in found.into_iter().take(4 * MOST) {
         let near =
             (at.saturating_sub(NEIGHBOURS)..at + NEIGHBOURS).filter(|other| free(*other) && other.abs_diff(at) > REACH);
@@ -188,11 +187,11 @@ fn candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usize> {
     taken
 }
 
-/// Returns the white noise of one channel from the median line of both together: the square of such a line is the sum of
-/// four squares of the normal distribution, whose median is 3.3567 times their variance.
+/// Returns the white noise of one channel from the median line of both channels combined. The square of such a line is
+/// the sum of four squares of the normal distribution, whose median is 3.3567 times their variance.
 fn noise(median: f64, samples: usize) -> f64 {
     const MEDIAN: f64 = 3.356_694;
-    // A line is 4/n times a sum whose real and imaginary part each have the variance σ²·Σw²/2, Σw² = 3n/8.
+    // A line is 4/n times a sum whose real and imaginary parts each have the variance σ²·Σw²/2, Σw² = 3n/8.
     median * samples as f64 / 4.0 / (MEDIAN * 3.0 * samples as f64 / 16.0).sqrt()
 }
 
@@ -201,7 +200,8 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     (middle < values.len()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Names the lines of the mains. 300 Hz and 600 Hz belong to both frequencies: they follow the other lines present.
+/// Assigns lines to a mains frequency. 300 Hz and 600 Hz are multiples of both frequencies and are assigned according
+/// to the other lines present.
 fn name_mains(lines: &mut [Interference], spacing_hz: f64) {
     if spacing_hz > MAINS_SPACING_HZ {
         return;
@@ -218,7 +218,6 @@ fn name_mains(lines: &mut [Interference], spacing_hz: f64) {
     }
 }
 
-/// A number in the plane.
 #[derive(Clone, Copy, Default)]
 struct Complex {
     re: f64,
@@ -243,7 +242,7 @@ impl Complex {
     }
 }
 
-/// Examines one frequency in both channels, and its part along the radius.
+/// Examines a single frequency in both channels, and its radial component.
 struct Projector<'a> {
     sine: &'a [f64],
     cosine: &'a [f64],
@@ -253,7 +252,7 @@ struct Projector<'a> {
 }
 
 impl Projector<'_> {
-    /// Returns the line at a frequency, if it is interference.
+    /// Returns the line at a frequency, or `None` if it is not interference.
     fn line(&self, frequency_hz: f64) -> Option<StrongLine> {
         let [sine, cosine, along_sine, along_cosine] = self.at(frequency_hz);
         let stretch = self.correction.stretch();
@@ -268,11 +267,11 @@ impl Projector<'_> {
         let equal = (0.5..2.0).contains(&(sine_v / cosine_v));
         let common = equal && apart.abs() < IN_PHASE;
         let line = Interference { frequency_hz, volts: sine_v.max(cosine_v), common, mains_hz: None };
-        // Of the mean squares of both channels half is along the radius.
+        // Half of the sum of both channels' mean squares is radial.
         Some(StrongLine { line, radial_v2: (sine.square() + cosine.square()) / 4.0 })
     }
 
-    /// Returns amplitude and phase of sine, cosine and the radial part of their corrected values, in a Hann window.
+    /// Returns amplitude and phase, in a Hann window, of sine, cosine and the radial part of their corrected values.
     fn at(&self, frequency_hz: f64) -> [Complex; 4] {
         let count = self.sine.len() as f64;
         let turn = |angle: f64| Complex { re: angle.cos(), im: angle.sin() };
@@ -283,7 +282,7 @@ impl Projector<'_> {
             let (own_y, own_x) = self.correction.apply(*y, *x);
             let length = own_y.hypot(own_x);
             let off = 1.0 - self.analysis.ellipse.amplitude_v / length.max(f64::MIN_POSITIVE);
-            // The mean level is subtracted, or it would leak into low frequencies.
+            // Without subtraction, the mean level would leak into low frequencies.
             let y = y - self.analysis.ellipse.offset_sine_v;
             let x = x - self.analysis.ellipse.offset_cosine_v;
             let weight = 1.0 - window.re;
@@ -292,7 +291,7 @@ impl Projector<'_> {
             }
             (phasor, window) = (phasor.rotated(step), window.rotated(window_step));
         }
-        // The weights have the mean 1, and a sine has half its amplitude at its frequency.
+        // The weights have a mean of 1, and a sine contributes half its amplitude at its frequency.
         sums.map(|sum| sum.times(2.0 / count))
     }
 }

@@ -1,9 +1,9 @@
-//! Diagnosis of a recorded signal: what is wrong and its likely cause, such as a broken wire, the screen, a drive, the
-//! scale. The limits of the parameters are those of the family (`quality`); faults of the wiring are recognised by the
-//! distribution of the samples (sections 1 and 2 of the project's sine/cosine reference), by lines of the spectrum and
-//! by what repeats with the period or the revolution.
+//! Diagnosis of a recorded signal: what is wrong and its likely cause, such as a broken wire, the screen, a drive, or
+//! the scale. The parameter limits are those of the family (`quality`). Wiring faults are recognised by the
+//! distribution of the samples (sections 1 and 2 of the project's sine/cosine reference), by spectral lines, and by
+//! effects that repeat with the period or the revolution.
 //!
-//! Thresholds without a source are assumptions (U) and are in one place, below.
+//! Thresholds without a source are assumptions (U) and are collected below.
 
 mod compare;
 mod finding;
@@ -21,56 +21,55 @@ use super::quality::{Limits, QualityFinding as OutOfLimits, Verdict, within};
 use super::signal_analysis::{Analysis, AnalysisError};
 use super::wiring::Wire;
 
-/// Share of the amplitude below which hum and interference are not reported.
+/// Fraction of the amplitude below which hum and interference are not reported.
 pub const LEAST_LINE: f64 = 0.002;
-/// Share of the amplitude from which a disturbance is a warning and not a notice: it costs 0.6 electrical degrees.
+/// Fraction of the amplitude from which a disturbance is a warning instead of a notice; it costs 0.6 electrical
+/// degrees.
 pub const WARNING_SHARE: f64 = 0.01;
-/// Ratio of a channel's amplitude to the other's at which it has lost one of its two wires.
+/// Range of the amplitude ratio to the other channel in which a channel has lost one of its two wires.
 const HALF: (f64, f64) = (0.4, 0.6);
-/// Volts from zero within which both wires of a pair count as equal.
+/// Voltage difference within which both wires of a pair count as equal.
 const SAME_LEVEL_V: f64 = 0.1;
-/// A wire below or above these is shorted to ground or to a supply, in volts.
+/// Levels in volts below and above which a wire is shorted to ground or to a supply.
 const RAILS_V: (f64, f64) = (0.5, 4.5);
-/// Samples left out of the fit, as a share of all, from which on they are a warning.
+/// Share of samples left out of the fit from which spikes are a warning.
 const MANY_SPIKES: f64 = 1e-3;
-/// Number of consecutive samples from which an outlier is not a spike but an intermittent contact.
+/// Number of consecutive samples from which an outlier is an intermittent contact rather than a spike.
 const LETS_GO: usize = 16;
-/// Amplitude modulation over a revolution from which it is reported, and warned of.
+/// Amplitude modulation over a revolution from which a finding is reported, and from which it is a warning.
 const MODULATION: (f64, f64) = (0.03, 0.1);
 
-/// The part of the residual's mean square that other findings have to explain.
+/// Fraction of the residual's mean square that other findings must explain.
 const EXPLAINED: f64 = 0.7;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
     pub samples: Samples<'a>,
-    /// REFSIN and REFCOS in volts, if they were recorded.
+    /// REFSIN and REFCOS in volts, if recorded.
     pub references_v: Option<(&'a [f64], &'a [f64])>,
     /// Signal periods per revolution, if known.
     pub periods: Option<u32>,
 }
 
-/// The findings, and the values that a later capture is compared with.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnosis {
-    /// The findings, the worst first.
+    /// Findings, most severe first.
     pub findings: Vec<DiagnosisFinding>,
-    /// Amplitude of the cosine channel, peak, in volts; `None` without an ellipse.
+    /// Peak amplitude of the cosine channel in volts; `None` without an ellipse.
     pub amplitude_v: Option<f64>,
-    /// White noise of one channel, rms, in volts.
+    /// RMS white noise of one channel in volts, if known.
     pub noise_v: Option<f64>,
-    /// Lines that are no harmonics of the signal, including the mains, strongest first; `None` if the times are not even,
-    /// or the capture is too short for a spectrum.
+    /// Spectral lines that are not harmonics of the signal, including the mains, strongest first; `None` if the samples
+    /// are not evenly spaced, or the capture is too short for a spectrum.
     pub interference: Option<Vec<Interference>>,
-    /// Distance of two lines of that spectrum in hertz.
+    /// Line spacing of the interference spectrum in hertz, if available.
     pub spacing_hz: Option<f64>,
-    /// Distance of the samples from the ellipse, rms, as a share of the amplitude.
+    /// RMS distance of the samples from the ellipse as a fraction of the amplitude, if known.
     pub residual: Option<f64>,
-    /// Other findings explain that distance.
     explained: bool,
 }
 
-/// Diagnoses a capture with the result of its analysis.
+/// Diagnoses a capture from its samples and the result of its analysis.
 pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>, limits: &Limits) -> Diagnosis {
     let mut diagnosis = Diagnosis::default();
     let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, kind: what });
@@ -104,14 +103,14 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
             diagnosis.interference = seen.map(|seen| seen.lines);
         }
     }
-    // The order within one severity stays.
+    // The sort is stable: findings of equal severity keep their order.
     diagnosis.findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     diagnosis
 }
 
 impl Diagnosis {
-    /// Returns the same by other limits, without the samples: findings that depend on limits are judged again from the
-    /// analysis and the mean levels of REFSIN and REFCOS in volts.
+    /// Returns the diagnosis under other limits, without the samples. Findings that depend on limits are judged again
+    /// from the analysis and the mean levels of REFSIN and REFCOS in volts.
     #[must_use]
     pub fn by_limits(
         &self,
@@ -151,7 +150,7 @@ fn severity(share: f64) -> Severity {
     if share >= WARNING_SHARE { Severity::Warning } else { Severity::Notice }
 }
 
-/// Reports mean levels of REFSIN and REFCOS outside their limits, in volts.
+/// Reports mean levels of REFSIN and REFCOS, in volts, that are outside their limits.
 fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let Some((refsin, refcos)) = levels_v else { return };
     let ok_v = limits.level_v;
@@ -164,7 +163,7 @@ fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &m
     }
 }
 
-/// Diagnoses samples without an ellipse: their distribution still shows the cause.
+/// Diagnoses samples without an ellipse; their distribution still reveals the cause.
 fn without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnMut(Severity, FindingKind)) {
     match error {
         AnalysisError::AtRest => say(Severity::Warning, FindingKind::AtRest),
@@ -185,7 +184,7 @@ fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
     };
     let difference = mean(values).unwrap_or(0.0);
     let level = mean(reference);
-    // Both may be at ground, if the pair is open at the encoder and the receiver has no bias.
+    // Both wires may be at ground if the pair is open at the encoder and the receiver has no bias.
     let wires = level.map(|level| [(wires.0, level + difference), (wires.1, level)]);
     let at = |is: fn(f64) -> bool| wires.and_then(|wires| wires.into_iter().find(|(_, level)| is(*level)));
     match (at(|level| level < RAILS_V.0), at(|level| level > RAILS_V.1)) {
@@ -196,7 +195,7 @@ fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
     }
 }
 
-/// Judges the ellipse by its limits. A channel that has lost a wire explains amplitude and gain.
+/// Judges the ellipse by its limits. A channel that has lost a wire explains deviations in amplitude and gain.
 fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ratio = analysis.ellipse.gain_ratio;
     let half = if within(1.0 / ratio, HALF) {

@@ -1,5 +1,6 @@
-//! Effects that repeat with the period or the revolution, or occur at an end of the range: harmonics of the scale,
-//! clipped channels, an amplitude that changes over the revolution. None of them needs evenly spaced times.
+//! Detection of effects that repeat with the period or the revolution, or occur at an end of the range: harmonics of
+//! the scale, clipped channels, an amplitude that varies over the revolution. None of the methods needs evenly spaced
+//! samples.
 
 use std::f64::consts::TAU;
 
@@ -8,32 +9,32 @@ use crate::analysis::outliers::kept;
 use crate::analysis::position_error::Samples;
 use crate::analysis::signal_analysis::Analysis;
 
-/// Sectors of the period in which the distance from the ellipse is averaged.
+/// Number of sectors per period in which the distance from the ellipse is averaged.
 const SECTORS: usize = 64;
-/// Maximum number of samples examined for that.
+/// Maximum number of samples examined for harmonics.
 const SAMPLES: usize = 1 << 18;
-/// Orders of that curve; the ellipse absorbs the first two.
+/// Orders of the averaged distance that are examined; the ellipse absorbs the first two.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=8;
-/// Sectors of a revolution.
 const OF_REVOLUTION: usize = 36;
-/// Samples per period that are enough to follow the angle.
+/// Number of samples per period sufficient to follow the angle.
 const FOLLOWED: f64 = 16.0;
 
-/// Distance from the end of the range at which a sample counts as there, as a share of the amplitude.
+/// Distance from the end of the range within which a sample counts as being at the end, as a fraction of the amplitude.
 const AT_END: f64 = 0.002;
-/// Factor over the share of an unclipped sine, which has √(2·0.002)/π = 2 % there.
+/// Share of samples at the end of the range from which a channel counts as clipped: three times that of an unclipped
+/// sine, √(2·0.002)/π = 2 %.
 const CUT_OFF: f64 = 3.0 * 0.0201;
-/// Minimum number of periods: a shaft at rest would have its samples in one place.
+/// Minimum number of periods; with the shaft at rest, all samples would be at one level.
 const LEAST_PERIODS: f64 = 2.0;
-/// Minimum distance of a clipped sine from its ellipse, rms as a share of the amplitude.
+/// Minimum RMS distance of a clipped sine from its ellipse, as a fraction of the amplitude.
 const LEAST_RESIDUAL: f64 = 0.002;
 
-/// Returns the strongest order of the distance from the ellipse over the period, and its peak as a share of the amplitude;
-/// `None` if not every part of the period has samples.
+/// Returns the strongest order of the distance from the ellipse over the period, and its peak as a fraction of the
+/// amplitude. `None` if part of the period has no samples.
 pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(usize, f64)> {
     let correction = analysis.ellipse.correction();
     let mut sectors = [(0.0, 0_u32); SECTORS];
-    // An odd stride is not synchronous with a period of 2ⁿ samples.
+    // An odd stride does not lock onto a period of 2ⁿ samples.
     let stride = (analysis.samples / SAMPLES) | 1;
     for (y, x) in good(samples, analysis).step_by(stride) {
         let (y, x) = correction.apply(y, x);
@@ -53,14 +54,14 @@ pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(u
             let height = sum / f64::from(*count);
             (sine, cosine) = (sine + height * angle.sin(), cosine + height * angle.cos());
         }
-        // The mean over a sector reduces the higher orders.
+        // Averaging over a sector attenuates the higher orders.
         let half = TAU / 2.0 * order as f64 / SECTORS as f64;
         2.0 / SECTORS as f64 * f64::hypot(sine, cosine) * half / half.sin()
     };
     ORDERS.map(|order| (order, order_of(order))).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Returns clipped channels: the voltage, and the share of the samples at it.
+/// Returns the clipped channels, each with its clipping voltage and the share of samples at that voltage.
 pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(Channel, f64, f64)> {
     if analysis.coverage.periods < LEAST_PERIODS || analysis.coverage.residual_rms < LEAST_RESIDUAL {
         return Vec::new();
@@ -85,8 +86,8 @@ pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(Chann
     found
 }
 
-/// Returns the rise and fall of the amplitude over a revolution of this many periods, as a share; `None` if the capture
-/// covers less than one.
+/// Returns the amplitude variation over a revolution of the given number of periods, as a fraction; `None` if the
+/// capture covers less than one revolution.
 pub(super) fn modulation(samples: &Samples<'_>, analysis: &Analysis, periods: u32) -> Option<f64> {
     let revolution = f64::from(periods);
     if periods == 0 || analysis.coverage.periods < revolution {

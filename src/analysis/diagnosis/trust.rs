@@ -1,4 +1,4 @@
-//! Reasons to doubt the numbers of an analysis: gaps in the times, a shaft that reversed, few samples per period,
+//! Reasons to doubt the results of an analysis: gaps in the times, a shaft that reversed, few samples per period,
 //! disturbances in the samples of the ellipse, columns that are not differences.
 
 use super::{DiagnosisFinding, FindingKind, OutOfLimits, Severity, WARNING_SHARE};
@@ -6,11 +6,11 @@ use crate::analysis::ellipse::Ellipse;
 use crate::analysis::position_error::Basis;
 use crate::analysis::signal_analysis::Analysis;
 
-/// Mean level of a wire, and its amplitude, peak, in volts: 2.0 … 3.0 V and 0.5 Vpp by section 1 of the project's
-/// sine/cosine reference, with a margin for levels and amplitudes out of their limits.
+/// Range of the mean level that identifies a single wire, in volts. Section 1 of the project's sine/cosine reference
+/// gives 2.0 … 3.0 V and 0.5 Vpp; the ranges have a margin for levels and amplitudes outside their limits.
 const WIRE_LEVEL_V: (f64, f64) = (1.5, 3.5);
 const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
-/// A correction is harmful if it increases the error by this factor and by this many electrical degrees.
+/// Factor by which a harmful correction increases the error; the increase must also exceed `LARGER_DEG`.
 const LARGER: f64 = 1.1;
 const LARGER_DEG: f64 = 0.2;
 
@@ -22,15 +22,15 @@ pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKi
         say(Severity::Warning, FindingKind::Missing { gaps: missing.gaps, longest_s: missing.longest_s });
     }
     if !analysis.is_followed() {
-        // An apparent reversal may be half a period too much.
+        // An apparent reversal may add half a period to the true angle.
         say(Severity::Warning, FindingKind::Coarse { step_deg: analysis.step_deg });
     } else if analysis.coverage.reversals > 0 {
         say(Severity::Notice, FindingKind::Reversed { times: analysis.coverage.reversals });
     }
 }
 
-/// Checks for an ellipse that takes harmonics for gain or phase and adds them once more. Only a motion shows it: the
-/// distance from the ellipse contains noise.
+/// Checks for an ellipse that mistakes harmonics for gain or phase and adds them once more. Only a motion reveals this:
+/// the distance from the ellipse contains noise.
 pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     let Basis::Motion { noise_deg } = analysis.error.basis else { return };
     let (raw_deg, corrected_deg) = (analysis.error.raw_pp_deg(), analysis.error.corrected_pp_deg);
@@ -39,7 +39,7 @@ pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, Find
     }
 }
 
-/// Returns the uncertainty of the ellipse: about the share of the disturbances found.
+/// Returns the uncertainty of the ellipse, approximately the combined share of the disturbances found.
 pub(super) fn uncertain(findings: &[DiagnosisFinding]) -> Option<FindingKind> {
     let share = |finding: &DiagnosisFinding| match finding.kind {
         FindingKind::Hum { share, .. }
@@ -52,7 +52,7 @@ pub(super) fn uncertain(findings: &[DiagnosisFinding]) -> Option<FindingKind> {
     (share > 0.0).then_some(FindingKind::Uncertain { share })
 }
 
-/// Returns SIN and COS against ground instead of against their references.
+/// Reports whether SIN and COS were recorded against ground instead of against their references.
 pub(super) fn single_ended(ellipse: &Ellipse) -> Option<FindingKind> {
     let within = |value: f64, (least, most): (f64, f64)| (least..=most).contains(&value);
     let (sine_v, cosine_v) = (ellipse.offset_sine_v, ellipse.offset_cosine_v);
@@ -62,7 +62,8 @@ pub(super) fn single_ended(ellipse: &Ellipse) -> Option<FindingKind> {
     (levels && amplitudes).then_some(FindingKind::SingleEnded { sine_v, cosine_v })
 }
 
-/// Such columns have the wire's level for an offset and half of the amplitude.
+/// Returns whether a finding results from single-ended columns, whose offset is the wire's level and whose amplitude is
+/// halved.
 pub(super) fn is_of_single_ended(found: &OutOfLimits) -> bool {
     matches!(found, OutOfLimits::Amplitude { .. } | OutOfLimits::OffsetSine(_) | OutOfLimits::OffsetCosine(_))
 }

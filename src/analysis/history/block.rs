@@ -1,5 +1,5 @@
-//! A block of samples of one column with its pyramid: the minimum and maximum of every 8 samples, of every 8 of those, and
-//! so on up to the whole block. Independent of time and of its place in the history.
+//! Block of samples of one column with its pyramid: the minimum and maximum of every 8 samples, of every 8 such
+//! buckets, and so on up to the whole block. A block is independent of time and of its position in the history.
 
 use std::ops::Range;
 
@@ -8,25 +8,24 @@ use super::number::Number;
 use super::spread::{Spread, extremes, extremes_of_eight, together};
 use super::{BLOCK, FAN};
 
-/// A level of the pyramid.
 #[derive(Clone, Copy)]
 struct Level {
     size: usize,
-    /// Index of its first bucket within the block.
+    /// Index of the level's first bucket within the block.
     start: usize,
 }
 
-/// The levels between the samples and the whole block, coarsest first, as in memory.
+/// Levels between the samples and the whole block, coarsest first, as stored in memory.
 const LEVELS: [Level; 3] = [
     Level { size: FAN * FAN * FAN, start: 0 },
     Level { size: FAN * FAN, start: FAN },
     Level { size: FAN, start: FAN + FAN * FAN },
 ];
 
-/// Buckets of all levels.
 const BUCKETS: usize = FAN + FAN * FAN + FAN * FAN * FAN;
 
-/// Minimum and maximum of some samples, as distances from the block's base, rounded outward. Empty: (∞, −∞).
+/// Minimum and maximum of some samples, as distances from the block's base, rounded outward. An empty bucket is (∞,
+/// −∞).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Bucket {
     low: f32,
@@ -59,13 +58,13 @@ impl Bucket {
         other.low >= self.low && other.high <= self.high
     }
 
-    /// Returns whether a value is so far from the base that no `f32` reaches it.
+    /// Returns whether a value is too far from the base for an `f32` distance.
     fn is_beyond(self) -> bool {
         self.low == f32::NEG_INFINITY || self.high == f32::INFINITY
     }
 }
 
-/// Range of values that contains its sources. Empty: (∞, −∞).
+/// Range of values that contains all values of its sources. An empty range is (∞, −∞).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
     pub(super) min: f64,
@@ -83,20 +82,20 @@ impl Extent {
     }
 }
 
-/// Up to `BLOCK` samples. Its memory is allocated at once, except the flags, and reused after [`clear`](Block::clear). It
-/// has few fields, so that those of many blocks are scanned quickly.
+/// Block of up to `BLOCK` samples. Its memory, except that of the flags, is allocated at once and reused after
+/// [`clear`](Block::clear). A block has few fields, so that many blocks are scanned quickly.
 #[derive(Debug)]
 pub(super) struct Block<T> {
     values: Vec<T>,
-    /// `BUCKETS` of them; those with complete samples are valid.
+    /// All `BUCKETS` buckets; a bucket is valid once its samples are complete.
     buckets: Box<[Bucket]>,
-    /// Bucket of the whole block, when it is full.
+    /// Bucket of the whole block, once the block is full.
     top: Bucket,
-    /// Base of the buckets: the median of the first few values, so that one outlier does not coarsen the rest. `None` until
-    /// there is a bucket with a value.
+    /// Base of the buckets: the median of the first few values, so that one outlier does not coarsen the rest. `None`
+    /// until a bucket contains a value.
     base: Option<T>,
     flags: FlagBlock,
-    /// Spread of the whole block, when it is full and has a value.
+    /// Spread of the whole block, if the block is full and contains a value.
     spread: Option<Box<Spread<T>>>,
 }
 
@@ -119,7 +118,8 @@ impl<T: Number> Block<T> {
         self.values.len()
     }
 
-    /// Appends `values`, which must fit, with their flags (empty: no flags). A value that is not a number is bad.
+    /// Appends `values`, which must fit, with their flags (empty: no flags). A value that is not a finite number is
+    /// marked as bad.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags]) {
         let start = self.values.len();
         self.values.extend_from_slice(values);
@@ -149,8 +149,8 @@ impl<T: Number> Block<T> {
         &self.flags
     }
 
-    /// Returns `known`, widened by the values of some samples: exact from samples, rounded outward from buckets. Only
-    /// examines what can widen it.
+    /// Returns `known`, widened to include the values in `range`. Values from samples are exact, those from buckets are
+    /// rounded outward; only parts that can widen the result are examined.
     pub(super) fn widen(&self, known: Extent, range: Range<usize>) -> Extent {
         let Some(base) = self.base else { return known.with(self.scan(range)) };
         let mut search = Search {
@@ -173,7 +173,7 @@ impl<T: Number> Block<T> {
         known.with(Extent { min: base.at_most(search.found.low), max: base.at_least(search.found.high) })
     }
 
-    /// Returns the count, mean and deviation of some samples, from the samples themselves.
+    /// Returns the count, mean and deviation of the samples in `range`, computed from the samples themselves.
     pub(super) fn spread(&self, range: Range<usize>) -> Option<Spread<T>> {
         if range == (0..BLOCK) {
             return self.spread.as_deref().copied();
@@ -181,7 +181,6 @@ impl<T: Number> Block<T> {
         self.spread_of(range)
     }
 
-    /// Returns the first sample in `range` that has a value.
     pub(super) fn first_good(&self, range: Range<usize>) -> Option<usize> {
         if self.flags.is_surely_good(range.start) {
             return (!range.is_empty()).then_some(range.start);
@@ -199,7 +198,6 @@ impl<T: Number> Block<T> {
         None
     }
 
-    /// Returns the last sample in `range` that has a value.
     pub(super) fn last_good(&self, range: Range<usize>) -> Option<usize> {
         if self.flags.is_surely_good(range.end.saturating_sub(1)) {
             return range.end.checked_sub(1).filter(|last| *last >= range.start);
@@ -217,14 +215,13 @@ impl<T: Number> Block<T> {
         None
     }
 
-    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         let spread = self.spread.as_ref().map_or(0, |_| size_of::<Spread<T>>());
         let buckets = self.buckets.len() * size_of::<Bucket>();
         self.values.capacity() * size_of::<T>() + buckets + self.flags.memory() + spread
     }
 
-    /// Fills the buckets that have become complete since there were `before` samples.
+    /// Fills the buckets that have become complete since the block held `before` samples.
     fn complete(&mut self, before: usize) {
         let first = before / FAN;
         let (groups, _) = self.values.get(first * FAN..).unwrap_or_default().as_chunks::<FAN>();
@@ -258,7 +255,7 @@ impl<T: Number> Block<T> {
         }
     }
 
-    /// Fills the buckets of the level `upper`, likewise, from those of the one below it.
+    /// Fills the newly completed buckets of the level `upper` from those of the level below.
     fn raise(&mut self, lower: Level, upper: Level, before: usize) {
         let (first, end) = (before / upper.size, self.values.len() / upper.size);
         let (uppers, lowers) = self.buckets.split_at_mut(lower.start);
@@ -268,15 +265,15 @@ impl<T: Number> Block<T> {
         }
     }
 
-    /// Returns the bucket of a level that contains the sample `at`, if it is complete.
+    /// Returns the bucket of a level that contains the sample `at`, or `None` if the bucket is incomplete.
     fn bucket(&self, level: Level, at: usize) -> Option<Bucket> {
         let number = at / level.size;
         let complete = (number + 1) * level.size <= self.len();
         self.buckets.get(level.start + number).copied().filter(|_| complete)
     }
 
-    /// Searches `range` for what widens the search: in the buckets of the coarsest of `levels` inside it, then in the rest
-    /// on both sides, where a single bucket may show that there is nothing.
+    /// Searches `range` for values that widen the result: first in the buckets of the coarsest level inside the range,
+    /// then in the remainder on both sides, which a single bucket may rule out.
     fn search(&self, levels: &[Level], range: Range<usize>, search: &mut Search) {
         let Some((level, finer)) = levels.split_first() else {
             search.samples = search.samples.with(self.scan(range));
@@ -304,7 +301,8 @@ impl<T: Number> Block<T> {
         extremes.map_or(Extent::EMPTY, |(min, max)| Extent { min: min.below(), max: max.above() })
     }
 
-    /// Returns how many samples from `at` on, before `end`, have no value, as far as one check shows.
+    /// Returns the length of a run of samples without a value, from `at` and within `end`, as far as a single check
+    /// reveals.
     fn nothing_from(&self, at: usize, end: usize) -> usize {
         let empty = |level: &&Level| {
             let inside = at.is_multiple_of(level.size) && at + level.size <= end;
@@ -313,7 +311,8 @@ impl<T: Number> Block<T> {
         LEVELS.iter().find(empty).map_or(usize::from(self.flags.get(at).contains(Flags::BAD)), |level| level.size)
     }
 
-    /// Returns how many samples before `end`, from `start` on, have no value, as far as one check shows.
+    /// Returns the length of a run of samples without a value that ends before `end`, within `start`, as far as a
+    /// single check reveals.
     fn nothing_before(&self, end: usize, start: usize) -> usize {
         let empty = |level: &&Level| {
             let inside = end.is_multiple_of(level.size) && start + level.size <= end;
@@ -324,11 +323,10 @@ impl<T: Number> Block<T> {
     }
 }
 
-/// A search in a block, and its result.
 struct Search {
     samples: Extent,
     found: Bucket,
-    /// Values within this do not widen the result.
+    /// Values within this bucket do not widen the result.
     enough: Bucket,
 }
 
@@ -339,7 +337,7 @@ impl Search {
     }
 }
 
-/// Returns the least and greatest value of the samples in `range` that have one.
+/// Returns the minimum and maximum of the valid samples in `range`, or `None` if no sample is valid.
 fn extremes_within<T: Number>(values: &[T], flags: &FlagBlock, range: Range<usize>) -> Option<(T, T)> {
     flags.good(range).filter_map(|good| extremes(values.get(good)?)).reduce(|one, other| {
         (if other.0 < one.0 { other.0 } else { one.0 }, if other.1 > one.1 { other.1 } else { one.1 })

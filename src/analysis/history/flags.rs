@@ -1,30 +1,28 @@
-//! Flags of samples, and of a block of samples with their summary, independent of values.
+//! Flags of single samples, and of a block of samples with a summary. Flags are independent of the values.
 
 use std::ops::{BitOr, BitOrAssign, Range};
 
 use super::BLOCK;
 
-/// The flags of a sample: a set of [`BREAK`](Flags::BREAK), [`BAD`](Flags::BAD) and [`WARNING`](Flags::WARNING).
+/// Flags of a sample: a set of [`BREAK`](Flags::BREAK), [`BAD`](Flags::BAD) and [`WARNING`](Flags::WARNING).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(transparent)]
 pub struct Flags(u8);
 
 impl Flags {
-    /// Nothing.
     pub const NONE: Flags = Flags(0);
-    /// Samples are missing between the previous one and this one: they must not be joined by a line.
+    /// Samples are missing before the flagged sample, which must not be joined to the previous one by a line.
     pub const BREAK: Flags = Flags(1);
-    /// The value is invalid: it counts nowhere, and the line is broken. Implies [`BREAK`](Flags::BREAK).
+    /// The value is invalid: it is excluded everywhere, and the line is broken. Implies [`BREAK`](Flags::BREAK).
     pub const BAD: Flags = Flags(2);
-    /// The device warned; the value counts.
+    /// The device has issued a warning; the value is valid.
     pub const WARNING: Flags = Flags(4);
 
-    /// Returns whether every flag of `other` is set.
     pub const fn contains(self, other: Flags) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// Returns these flags with those that follow from them, as stored.
+    /// Returns the flags with all implied flags added, as stored.
     pub(super) const fn completed(self) -> Flags {
         if self.contains(Flags::BAD) { Flags(self.0 | Flags::BREAK.0) } else { self }
     }
@@ -43,18 +41,17 @@ impl BitOrAssign for Flags {
     }
 }
 
-/// Samples that share one summary; a block has as many groups as a `u64` has bits.
+/// Number of samples that share one summary; a block has as many groups as a `u64` has bits.
 const GROUP: usize = BLOCK / u64::BITS as usize;
 
 const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
 
-/// Flags of a block. The flags of groups of samples are stored here, so that those of the samples, which are elsewhere in
-/// memory, are read only if there are any. Allocates memory with the first flag.
+/// Flags of a block. The combined flags of each group are stored inline, so that the flags of single samples, which are
+/// elsewhere in memory, are read only if any are set. Allocates memory with the first flag.
 #[derive(Debug, Default)]
 pub(super) struct FlagBlock {
-    /// The union over the block.
     any: Flags,
-    /// For each kind of flag, one bit per group that has it.
+    /// One bit per group for each kind of flag, set if the group contains that flag.
     groups: [u64; KINDS.len()],
     kept: Option<Box<[Flags; BLOCK]>>,
 }
@@ -64,12 +61,11 @@ impl FlagBlock {
         *self = FlagBlock::default();
     }
 
-    /// Returns the union of the flags of the block.
     pub(super) fn any(&self) -> Flags {
         self.any
     }
 
-    /// Adds to the flags of the sample `at`, which is below `BLOCK`.
+    /// Adds flags to the sample `at`, which must be below `BLOCK`.
     pub(super) fn mark(&mut self, at: usize, flags: Flags) {
         if flags == Flags::NONE {
             return;
@@ -96,7 +92,6 @@ impl FlagBlock {
         }
     }
 
-    /// Returns the union of the flags in `range`.
     pub(super) fn within(&self, range: Range<usize>) -> Flags {
         if self.any == Flags::NONE || range.is_empty() {
             return Flags::NONE;
@@ -105,7 +100,7 @@ impl FlagBlock {
         let mut found = self.of_groups(from..to.max(from));
         let edges = if from > to { [range, 0..0] } else { [range.start..from * GROUP, to * GROUP..range.end] };
         for edge in edges.into_iter().filter(|edge| !edge.is_empty()) {
-            // Part of one group, which may give nothing new.
+            // Part of one group, which may add no new flags.
             let group = edge.start / GROUP;
             if !found.contains(self.of_groups(group..group + 1)) {
                 found |= union(self.samples(edge));
@@ -114,7 +109,7 @@ impl FlagBlock {
         found
     }
 
-    /// Returns whether checking its group is enough to know that sample `at` has a valid value.
+    /// Returns whether the summary of the group already proves that sample `at` has a valid value.
     pub(super) fn is_surely_good(&self, at: usize) -> bool {
         !self.of_groups(at / GROUP..at / GROUP + 1).contains(Flags::BAD)
     }
@@ -126,12 +121,10 @@ impl FlagBlock {
         Good { samples, range }
     }
 
-    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         self.kept.as_ref().map_or(0, |_| size_of::<[Flags; BLOCK]>())
     }
 
-    /// Returns the union of the flags of these groups.
     fn of_groups(&self, groups: Range<usize>) -> Flags {
         if groups.is_empty() || self.any == Flags::NONE {
             return Flags::NONE;
@@ -147,9 +140,9 @@ fn union(flags: &[Flags]) -> Flags {
     flags.iter().fold(Flags::NONE, |all, flags| all | *flags)
 }
 
-/// See [`FlagBlock::good`].
+/// Iterator over ranges of valid samples; see [`FlagBlock::good`].
 pub(super) struct Good<'a> {
-    /// None: all of them are good.
+    /// Flags of the samples; empty if all samples are good.
     samples: &'a [Flags],
     range: Range<usize>,
 }
@@ -227,7 +220,7 @@ mod tests {
             }
             for _ in 0..2_000 {
                 let (one, other) = (random.usize(..=BLOCK), random.usize(..=BLOCK));
-                // Short ranges as well as long ones.
+                // Covers short ranges as well as long ones.
                 let other = if random.bool() { other } else { (one + other % 70).min(BLOCK) };
                 let range = one.min(other)..one.max(other);
                 assert_eq!(block.within(range.clone()), union(&plain[range.clone()]), "{range:?}");

@@ -1,9 +1,9 @@
-//! Samples as received, for hours: columns of values over one column of times, in blocks of fixed size, with a pyramid of
-//! minimum and maximum values that gives a picture of any range quickly. Appended samples stay unchanged until they are
-//! evicted; nothing is interpolated, smoothed or thinned out.
+//! Samples as received over several hours: columns of values over one column of times, in blocks of fixed size, with a
+//! pyramid of minimum and maximum values that quickly yields a picture of any range. Appended samples stay unchanged
+//! until they are evicted; nothing is interpolated, smoothed or thinned out.
 //!
-//! Samples are counted from the very first, and keep this index: blocks and buckets begin at multiples of their size, so
-//! the drawing of a sample does not change while others are added or evicted.
+//! Samples are counted from the very first and keep their index: blocks and buckets begin at multiples of their size,
+//! so the drawing of a sample does not change while others are added or evicted.
 
 mod block;
 mod flags;
@@ -29,22 +29,20 @@ use times::Times;
 
 use super::Time;
 
-/// Samples in a block, the unit of allocation and eviction.
+/// Number of samples in a block, the unit of allocation and eviction.
 const BLOCK: usize = 4096;
 
-/// Samples under a bucket of the pyramid, and buckets under a bucket of the next level.
+/// Number of samples per bucket of the pyramid, and of buckets per bucket of the next level.
 const FAN: usize = 8;
 
-/// The kind of the values of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// `f64`.
     Real,
-    /// `i64`, kept exactly.
+    /// `i64`, stored exactly.
     Whole,
 }
 
-/// A part of a column that is appended.
 #[derive(Clone, Copy, Debug)]
 pub struct Part<'a> {
     values: Values<'a>,
@@ -58,18 +56,17 @@ enum Values<'a> {
 }
 
 impl<'a> Part<'a> {
-    /// Creates a part with values of a [`Kind::Real`] column. An infinite or NaN value is kept, and counts as
-    /// [bad](Flags::BAD).
+    /// Creates values for a [`Kind::Real`] column. An infinite or NaN value is kept and counts as [bad](Flags::BAD).
     pub fn real(values: &'a [f64]) -> Self {
         Part { values: Values::Real(values), flags: &[] }
     }
 
-    /// Creates values of a [`Kind::Whole`] column.
+    /// Creates values for a [`Kind::Whole`] column.
     pub fn whole(values: &'a [i64]) -> Self {
         Part { values: Values::Whole(values), flags: &[] }
     }
 
-    /// Adds the flags of each value.
+    /// Adds flags, one entry per value.
     #[must_use]
     pub fn flagged(self, flags: &'a [Flags]) -> Self {
         Part { flags, ..self }
@@ -91,13 +88,13 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Why nothing of a batch was appended.
+/// Reason why a batch was refused as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refused {
-    /// Another number of columns, of values in a column or of its flags, or another kind of values.
+    /// The number of columns, values or flags does not match, or a column has values of another kind.
     #[error("the batch does not have the history's columns")]
     Shape,
-    /// A sample is earlier than the one before.
+    /// A sample is earlier than the previous one.
     #[error("the time goes back at sample {at} of the batch")]
     TimeGoesBack {
         /// Index of the sample in the batch.
@@ -105,26 +102,23 @@ pub enum Refused {
     },
 }
 
-/// A sample of one column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Its number, counted from the very first sample.
     pub index: u64,
     pub time: Time,
-    /// The value as it was appended.
+    /// Value as appended.
     pub value: Value,
     pub flags: Flags,
 }
 
-/// Columns of samples that were taken together. A column is identified by its index in the list given to
-/// [`new`](History::new).
+/// Columns of simultaneous samples. A column is identified by its index in the list given to [`new`](History::new).
 #[derive(Debug)]
 pub struct History {
     times: Times,
     columns: Vec<Column>,
-    /// Blocks that are kept, the one being filled included.
+    /// Number of blocks to keep, including the one being filled.
     keep: usize,
-    /// Nanoseconds.
+    /// Longest pause in nanoseconds across which samples are joined, if limited.
     longest_pause: Option<i64>,
     broken: bool,
 }
@@ -136,7 +130,7 @@ enum Column {
 }
 
 impl History {
-    /// Keeps the last `capacity` samples, and never more than two blocks of 4096 beyond them.
+    /// Creates a history that keeps the last `capacity` samples, and at most two additional blocks of 4096 samples.
     pub fn new(columns: &[Kind], capacity: usize) -> Self {
         let keep = capacity.div_ceil(BLOCK) + 1;
         let column = |kind: &Kind| match kind {
@@ -147,18 +141,17 @@ impl History {
         History { times: Times::new(keep), columns, keep, longest_pause: None, broken: false }
     }
 
-    /// Sets the pause in nanoseconds beyond which samples are not joined: some are missing between them.
+    /// Sets the pause in nanoseconds beyond which samples are missing and the line is not joined.
     #[must_use]
     pub fn with_longest_pause(self, nanoseconds: i64) -> Self {
         History { longest_pause: Some(nanoseconds), ..self }
     }
 
-    /// Notes that samples are missing before the next ones, in every column.
     pub fn break_before_next(&mut self) {
         self.broken = true;
     }
 
-    /// Appends samples: their times, none earlier than the one before, and a part of the same length for every column.
+    /// Appends samples: their times, none earlier than the previous one, and a part of equal length for every column.
     pub fn append(&mut self, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
         let fits = |(column, part): (&Column, &Part<'_>)| column.kind() == part.kind() && part.fits(times.len());
         if parts.len() != self.columns.len() || !self.columns.iter().zip(parts).all(fits) {
@@ -188,31 +181,30 @@ impl History {
         Ok(())
     }
 
-    /// Returns the samples that are there, by index.
     pub fn all(&self) -> Range<u64> {
         self.times.first()..self.times.end()
     }
 
-    /// Returns the time of the oldest sample that remains after `more` further samples; `None` if none of the present
-    /// ones does.
+    /// Returns the time of the oldest sample that will remain after `more` further samples, or `None` if all present
+    /// samples will have been evicted.
     pub fn oldest_after(&self, more: usize) -> Option<Time> {
         let blocks = self.times.end().saturating_add(more as u64).div_ceil(BLOCK as u64);
         let first = blocks.saturating_sub(self.keep as u64) * BLOCK as u64;
         self.times.get(first.max(self.times.first()))
     }
 
-    /// Returns the samples from `from` on, before `to`, by index.
+    /// Returns the index range of the samples from `from` up to but not including `to`.
     pub fn indices(&self, from: Time, to: Time) -> Range<u64> {
         let from = self.times.search(from);
         from..self.times.search(to).max(from)
     }
 
-    /// Returns the time of sample `index`; `None` if it is not stored.
+    /// Returns the time of sample `index`, or `None` if the sample is not stored.
     pub fn time(&self, index: u64) -> Option<Time> {
         self.times.get(index)
     }
 
-    /// Returns the sample `index` of a column; `None` if it is not stored.
+    /// Returns the sample `index` of a column, or `None` if the sample is not stored.
     pub fn sample(&self, column: usize, index: u64) -> Option<Sample> {
         let time = self.times.get(index)?;
         let (value, flags) = match self.columns.get(column)? {
@@ -222,7 +214,7 @@ impl History {
         Some(Sample { index, time, value, flags })
     }
 
-    /// Returns the index of the sample nearest to `time`, the earlier of two equally near ones; `None` if there are no
+    /// Returns the index of the sample nearest to `time`, the earlier one if two are equally near, or `None` without
     /// samples.
     pub fn nearest(&self, time: Time) -> Option<u64> {
         let after = self.times.search(time);
@@ -237,13 +229,12 @@ impl History {
         }
     }
 
-    /// Returns the allocated bytes on the heap, used or not.
     pub fn memory(&self) -> usize {
         let columns: usize = self.columns.iter().map(Column::memory).sum();
         self.times.memory() + columns + self.columns.capacity() * size_of::<Column>()
     }
 
-    /// Breaks the line in every column where samples of `range` follow a pause or known missing samples.
+    /// Breaks the line in every column where samples in `range` follow a pause or known missing samples.
     fn mark_breaks(&mut self, times: &[Time], range: Range<usize>, last: Option<Time>, index: u64) {
         let pause = self.longest_pause.unwrap_or(i64::MAX);
         let mut before = range.start.checked_sub(1).and_then(|at| times.get(at).copied()).or(last);
@@ -269,7 +260,8 @@ impl Column {
         }
     }
 
-    /// Appends the values of `part` in `range`; ignores values of another kind, which `History::append` has excluded.
+    /// Appends the values of `part` in `range`. Values of another kind are ignored; `History::append` has already
+    /// excluded them.
     fn append(&mut self, part: &Part<'_>, range: Range<usize>, keep: usize) {
         let flags = part.flags.get(range.clone()).unwrap_or_default();
         match (self, part.values) {

@@ -1,10 +1,10 @@
-//! The two kinds of numbers that are stored, and their rounding: outward, so that a range never becomes too small.
+//! The two kinds of stored numbers, and their outward rounding, so that a range never becomes too small.
 
-/// A value as it was appended, with nothing rounded.
+/// Value as appended, without rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     Real(f64),
-    /// A count, steps of a position for example.
+    /// A count, for example the steps of a position.
     Whole(i64),
 }
 
@@ -18,24 +18,24 @@ impl Value {
     }
 }
 
-/// The type of the values of a series.
 pub(super) trait Number: Copy + PartialOrd {
     fn is_number(self) -> bool;
 
-    /// Returns the number's distance from `base` such that [`at_most`](Number::at_most) gives a number that is not above
-    /// it, and hardly below; −∞ if no `f32` reaches.
+    /// Returns the distance from `base` for which [`at_most`](Number::at_most) yields a value not above the number, and
+    /// hardly below it; −∞ if the distance exceeds the range of `f32`.
     fn down(self, base: Self) -> f32;
 
-    /// Returns the same for [`at_least`](Number::at_least); +∞ if no `f32` reaches.
+    /// Returns the distance from `base` for which [`at_least`](Number::at_least) yields a value not below the number;
+    /// +∞ if the distance exceeds the range of `f32`.
     fn up(self, base: Self) -> f32;
 
-    /// Returns `self + distance`, rounded down if at all.
+    /// Returns `self + distance`, rounded down if rounding is necessary.
     fn at_most(self, distance: f32) -> f64;
 
-    /// Returns `self + distance`, rounded up if at all.
+    /// Returns `self + distance`, rounded up if rounding is necessary.
     fn at_least(self, distance: f32) -> f64;
 
-    /// Returns a distance such that a value not below it, counted from `self`, is not below `known` either; +∞ if none is
+    /// Returns a distance from `self` such that no value at or above that distance is below `known`; +∞ if none is
     /// found.
     fn within_up(self, known: f64) -> f32 {
         let distance = (known - self.value().to_f64()) as f32;
@@ -44,7 +44,8 @@ pub(super) trait Number: Copy + PartialOrd {
         candidates.into_iter().find(holds).unwrap_or(f32::INFINITY)
     }
 
-    /// Returns the same for a value that is not above; −∞ if none is found.
+    /// Returns a distance from `self` such that no value at or below that distance is above `known`; −∞ if none is
+    /// found.
     fn within_down(self, known: f64) -> f32 {
         let distance = (known - self.value().to_f64()) as f32;
         let candidates = [distance, distance.next_down(), distance.next_down().next_down()];
@@ -52,13 +53,13 @@ pub(super) trait Number: Copy + PartialOrd {
         candidates.into_iter().find(holds).unwrap_or(f32::NEG_INFINITY)
     }
 
-    /// Returns `self − base`, rounded to the nearest.
+    /// Returns `self − base`, rounded to nearest.
     fn minus(self, base: Self) -> f64;
 
-    /// Returns the greatest `f64` that is not above.
+    /// Returns the greatest `f64` that is not above the number.
     fn below(self) -> f64;
 
-    /// Returns the least `f64` that is not below.
+    /// Returns the least `f64` that is not below the number.
     fn above(self) -> f64;
 
     fn value(self) -> Value;
@@ -74,7 +75,7 @@ impl Number for f64 {
         if distance.is_infinite() {
             return f32::NEG_INFINITY;
         }
-        // Every second number is rounded to the wrong side, which no processor predicts: hence no branch.
+        // Every second number is rounded to the wrong side, which no processor can predict; hence no branch.
         distance = moved(distance, -i32::from(base.at_most(distance) > self));
         while base.at_most(distance) > self {
             distance = distance.next_down();
@@ -94,7 +95,7 @@ impl Number for f64 {
         distance
     }
 
-    // The sum is rounded to the nearest, which `down` and `up` have taken into account.
+    // The sum is rounded to nearest, which `down` and `up` have taken into account.
     fn at_most(self, distance: f32) -> f64 {
         self + f64::from(distance)
     }
@@ -120,18 +121,18 @@ impl Number for f64 {
     }
 }
 
-/// Returns the `f32` this many steps up, of a finite one by one step; −0 is a step below 0.
+/// Moves a finite `f32` up by the given number of steps to neighbouring values; −0 is one step below 0.
 fn moved(distance: f32, steps: i32) -> f32 {
-    // Inverted below zero, the bits of the numbers are in their order.
+    // With the bits of negative numbers inverted, the bit patterns are in numerical order.
     let ordered = |bits: i32| bits ^ ((bits >> 31) & i32::MAX);
     let place = ordered(distance.to_bits().cast_signed()).wrapping_add(steps);
     f32::from_bits(ordered(place).cast_unsigned())
 }
 
-/// Counts up to this are exact in `f32`.
+/// Largest count up to which all counts are exact in `f32`.
 const EXACT_F32: u64 = 1 << 24;
 
-/// Sums of two such numbers are exact in `f64`.
+/// Limit up to which the sum of two numbers is exact in `f64`.
 const EXACT: f64 = (1_i64 << 52) as f64;
 
 impl Number for i64 {

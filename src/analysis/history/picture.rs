@@ -1,5 +1,5 @@
-//! A range of time divided into pixel columns, and what is drawn in each. Contains every extreme, break and flag of the raw
-//! samples at any zoom; independent of screens.
+//! Division of a time range into pixel columns, and the content to draw in each. A picture contains every extreme,
+//! break and flag of the raw samples at any zoom, and is independent of screens.
 
 use std::ops::Range;
 
@@ -10,8 +10,8 @@ use super::series::Series;
 use super::{Column, FAN, History};
 use crate::analysis::Time;
 
-/// Equal steps of time, one per pixel column, whose edges are multiples of their width: a picture that scrolls at one zoom
-/// keeps its columns.
+/// Equal time steps, one per pixel column, whose edges are multiples of their width: a picture that scrolls at constant
+/// zoom keeps its columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
     start: Time,
@@ -20,7 +20,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Creates the columns for the time from `from` until `to`: as many as there are `pixels`, or one more.
+    /// Creates the columns for the time from `from` until `to`, either `pixels` columns or one more.
     pub fn new(from: Time, to: Time, pixels: usize) -> Self {
         let span = i128::from(to.nanoseconds()) - i128::from(from.nanoseconds());
         let width = match i128::try_from(pixels) {
@@ -34,96 +34,98 @@ impl Grid {
         Grid { start: Time::from_nanoseconds(start), width, pixels: usize::try_from(columns).unwrap_or(0) }
     }
 
-    /// Returns the number of pixel columns.
     pub fn pixels(&self) -> usize {
         self.pixels
     }
 
-    /// Nanoseconds a pixel column, at least 1.
+    /// Returns the width of a pixel column in nanoseconds, at least 1.
     pub fn width(&self) -> i64 {
         self.width
     }
 
-    /// Returns the start of pixel column `pixel`, which belongs to it; the previous column ends there.
+    /// Returns the start of pixel column `pixel`, inclusive, where the previous column ends.
     pub fn edge(&self, pixel: usize) -> Time {
         let edge = i128::from(self.start.nanoseconds()) + pixel as i128 * i128::from(self.width);
         Time::from_nanoseconds(i64::try_from(edge).unwrap_or(i64::MAX))
     }
 }
 
-/// Intersection of a [`Grid`] with the samples of a history; the same for all of its columns. Samples appended later are
-/// not included, and evicted ones are not drawn.
+/// Intersection of a [`Grid`] with the samples of a history, valid for all columns of the history. Samples appended
+/// later are not included, and evicted samples are not drawn.
 #[derive(Clone, Debug)]
 pub struct GridCut {
-    /// The beginning of each pixel column, and the end of the last one.
+    /// Start of each pixel column, and end of the last one.
     edges: Vec<Edge>,
 }
 
-/// The boundary between two pixel columns.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
-    /// Index of the first sample after it.
+    /// Index of the first sample after the boundary.
     index: u64,
-    /// Time of the last sample before it.
+    /// Time of the last sample before the boundary, if any.
     before: Option<Time>,
-    /// Time of the first sample after it.
+    /// Time of the first sample after the boundary, if any.
     after: Option<Time>,
 }
 
-/// The content of one pixel column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// Time of the first sample with a value, or without any value of the first sample.
+    /// Time of the first valid sample, or of the first sample if none is valid.
     pub from: Time,
-    /// Time of the last one.
+    /// Time of the last valid sample, or of the last sample if none is valid.
     pub to: Time,
-    /// `None` when no sample has a value to believe.
+    /// Values of the valid samples, or `None` if no sample is valid.
     pub values: Option<Reduced>,
-    /// The union of the flags of the samples; [`BREAK`](Flags::BREAK) if the line is broken in this column or before it.
+    /// Union of the samples' flags; [`BREAK`](Flags::BREAK) if the line is broken inside or before the pixel column.
     pub flags: Flags,
-    /// A line leads from the last value of the previous pixel column to the first of this one: there is no break between
-    /// them.
+    /// Whether a line leads from the last value of the previous pixel column to the first value of the column, without
+    /// a break in between.
     pub joined: bool,
 }
 
-/// The values of the samples of one pixel column, in the column's unit; `f64` holds counts below 2⁵³ exactly.
+/// Values of the samples in one pixel column, in the column's unit; `f64` holds counts below 2⁵³ exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reduced {
-    /// The first, exactly.
+    /// First value, exact.
     pub first: f64,
-    /// Not above the minimum, and below it by at most 2⁻²² of the range of the values within 4096 samples around.
+    /// Lower bound of the minimum, below the true value by at most 2⁻²² of the value range within the surrounding 4096
+    /// samples.
     pub min: f64,
-    /// Not below the maximum, and above it by at most 2⁻²² of the range of the values within 4096 samples around.
+    /// Upper bound of the maximum, above the true value by at most 2⁻²² of the value range within the surrounding 4096
+    /// samples.
     pub max: f64,
-    /// The last, exactly.
+    /// Last value, exact.
     pub last: f64,
 }
 
-/// Picture of a column: pixel columns that have samples, in order of time. A line goes through first, min, max and last of
-/// each. The nearest samples to the left and right are included, so that the line leads there.
+/// Picture of a column: pixel columns that contain samples, in chronological order. A line goes through first, min, max
+/// and last of each. The nearest samples to the left and right are included, so that the line extends beyond both
+/// edges.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
-    /// The pixel columns; see `raw`.
+    /// Pixel columns that contain samples, or single samples if `raw` is set.
     pub pixels: Vec<Pixel>,
-    /// There are so few samples that each has its own pixel and its own time.
+    /// Whether samples are so few that each has its own pixel and its own time.
     pub raw: bool,
 }
 
-/// Up to this many samples per pixel column are included unchanged, which is no more to draw than first, min, max and last.
+/// Number of samples per pixel column up to which samples are included unchanged, which takes no more drawing than
+/// first, min, max and last.
 const FEW: u64 = 4;
 
-/// Part (as divisor) of its width by which a pixel column may extend over its edge, to begin with a bucket of the pyramid.
+/// Divisor of a pixel column's width that limits how far the column may extend over its edge to begin with a bucket of
+/// the pyramid.
 const REACH: i64 = 16;
-/// Sizes of the buckets in samples, the largest first.
+/// Bucket sizes in samples, largest first.
 const BUCKETS: [u64; 3] = [(FAN * FAN * FAN) as u64, (FAN * FAN) as u64, FAN as u64];
 
 impl History {
-    /// Finds the samples of each pixel column. A column of many samples begins where a bucket of the pyramid does, up to a
-    /// sixteenth of its width before its edge; its samples depend only on them and the edge.
+    /// Finds the samples of each pixel column. A column of many samples begins where a bucket of the pyramid does, up
+    /// to a sixteenth of its width before its edge; the result depends only on the samples and the edge.
     pub fn cut(&self, grid: &Grid) -> GridCut {
         let edge = |pixel: usize| {
             let exact = self.times.search(grid.edge(pixel));
-            // The first and the last one are the picture's own.
+            // The first and last edges are the picture's own.
             let index = if pixel == 0 || pixel == grid.pixels() { exact } else { self.rounded(exact, grid, pixel) };
             let before = index.checked_sub(1).and_then(|before| self.times.get(before));
             Edge { index, before, after: self.times.get(index) }
@@ -131,14 +133,15 @@ impl History {
         GridCut { edges: (0..=grid.pixels()).map(edge).collect() }
     }
 
-    /// Returns the beginning of a bucket in place of the first sample after an edge, if it is only slightly earlier.
+    /// Returns the start of a bucket in place of the first sample after an edge, if the bucket starts only slightly
+    /// earlier.
     fn rounded(&self, exact: u64, grid: &Grid, pixel: usize) -> u64 {
         let earliest = grid.edge(pixel).plus(-(grid.width() / REACH));
         let is_near = |start: &u64| *start == exact || self.times.get(*start).is_some_and(|time| time >= earliest);
         BUCKETS.iter().map(|size| exact - exact % size).find(is_near).unwrap_or(exact)
     }
 
-    /// Draws a column into `picture`, whose memory is reused.
+    /// Draws a column into `picture`, reusing its memory.
     pub fn picture(&self, column: usize, cut: &GridCut, picture: &mut Picture) {
         picture.pixels.clear();
         match self.columns.get(column) {
@@ -152,7 +155,7 @@ impl History {
 struct Painter<'a, T> {
     history: &'a History,
     series: &'a Series<T>,
-    /// The last sample with a value that is already painted.
+    /// Index of the last valid sample already painted, if any.
     last: Option<u64>,
     picture: &'a mut Picture,
 }
@@ -170,7 +173,7 @@ impl<T: Number> Painter<'_, T> {
         if self.picture.raw {
             (from..to).for_each(|index| self.sample(index));
         } else {
-            // Fetched together: these are far apart in memory, and do not wait for each other.
+            // The end values are far apart in memory; fetched together, they do not wait for each other.
             let ends: Vec<Option<(T, T)>> =
                 pixels.clone().map(|(from, to)| self.series.ends(from.index..to.index)).collect();
             for ((from, to), ends) in pixels.zip(ends) {
@@ -184,7 +187,6 @@ impl<T: Number> Painter<'_, T> {
         }
     }
 
-    /// Adds one sample as a separate pixel.
     fn sample(&mut self, index: u64) {
         let (Some((value, flags)), Some(time)) = (self.series.get(index), self.history.time(index)) else { return };
         let good = !flags.contains(Flags::BAD);
@@ -197,7 +199,7 @@ impl<T: Number> Painter<'_, T> {
         self.picture.pixels.push(Pixel { from: time, to: time, values, flags, joined });
     }
 
-    /// The samples between two edges, of which the first and the last are `ends`, as one pixel.
+    /// Adds the samples between two edges as one pixel; `ends` holds the first and last values.
     fn pixel(&mut self, from: &Edge, to: &Edge, ends: (T, T)) {
         let range = from.index..to.index;
         let (Some(start), Some(end)) = (from.after, to.before) else { return };
@@ -213,7 +215,7 @@ impl<T: Number> Painter<'_, T> {
         if let (Some(first), Some(last)) = (self.series.first_good(range.clone()), self.series.last_good(range)) {
             let good = first..last + 1;
             pixel.joined = self.is_joined(first);
-            // Usually the first and the last sample are good, and their known values need not be fetched again.
+            // Usually the first and last samples are good, and their known values need not be fetched again.
             let ends = if good == (from.index..to.index) { Some(ends) } else { self.series.ends(good.clone()) };
             pixel.values = ends.map(|ends| self.reduced(good, ends));
             pixel.from = if first == from.index { start } else { self.history.time(first).unwrap_or(start) };
@@ -223,7 +225,7 @@ impl<T: Number> Painter<'_, T> {
         self.picture.pixels.push(pixel);
     }
 
-    /// Returns whether a line leads from the last sample with a value to the sample `index`.
+    /// Returns whether a line leads from the last valid sample to the sample `index`.
     fn is_joined(&self, index: u64) -> bool {
         self.last.is_some_and(|last| !self.series.flags(last + 1..index + 1).contains(Flags::BREAK))
     }

@@ -1,4 +1,4 @@
-//! The blocks of one column, found by absolute sample index. When the limit is reached, the oldest is reused.
+//! Blocks of one column, found by absolute sample index. When the limit is reached, the oldest block is reused.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -12,17 +12,17 @@ use super::spread::{Spread, together};
 #[derive(Debug)]
 pub(super) struct Series<T> {
     blocks: VecDeque<Block<T>>,
-    /// Absolute index of the oldest sample; a multiple of `BLOCK`.
+    /// Absolute index of the oldest sample, a multiple of `BLOCK`.
     first: u64,
 }
 
 impl<T: Number> Series<T> {
-    /// Creates room for `blocks` blocks, which are allocated when they are needed.
+    /// Creates a series with room for `blocks` blocks, which are allocated on demand.
     pub(super) fn new(blocks: usize) -> Self {
         Series { blocks: VecDeque::with_capacity(blocks), first: 0 }
     }
 
-    /// Appends `values`, which fit into the newest block or begin a new one. At most `keep` blocks are kept.
+    /// Appends `values`, which must fit into the newest block or begin a new one. At most `keep` blocks are kept.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags], keep: usize) {
         if self.blocks.back().is_none_or(|block| block.len() == BLOCK) {
             self.open(keep);
@@ -32,7 +32,6 @@ impl<T: Number> Series<T> {
         }
     }
 
-    /// Breaks the line before the sample `index`.
     pub(super) fn break_before(&mut self, index: u64) {
         let (block, at) = self.place(index);
         if let Some(block) = self.blocks.get_mut(block) {
@@ -40,14 +39,13 @@ impl<T: Number> Series<T> {
         }
     }
 
-    /// Returns the sample `index` as it was appended.
     pub(super) fn get(&self, index: u64) -> Option<(T, Flags)> {
         let (block, at) = self.place(index);
         let block = self.blocks.get(block).filter(|_| index >= self.first)?;
         Some((block.value(at)?, block.flags().get(at)))
     }
 
-    /// Returns the values of the first and the last sample of `range`, as appended; `None` if one is not stored.
+    /// Returns the values of the first and last samples in `range`, as appended, or `None` if either is not stored.
     pub(super) fn ends(&self, range: Range<u64>) -> Option<(T, T)> {
         if range.start < self.first || range.is_empty() {
             return None;
@@ -59,8 +57,8 @@ impl<T: Number> Series<T> {
         Some((value(range.start)?, value(range.end - 1)?))
     }
 
-    /// Returns `known`, widened by the values of the samples in `range`, which must all be stored; see [`Block::widen`].
-    /// Whole blocks first: they save most of the work on the rest.
+    /// Returns `known`, widened by the values of the samples in `range`, which must all be stored; see
+    /// [`Block::widen`]. Whole blocks come first, since they save most of the work on the rest.
     pub(super) fn widen(&self, known: Extent, range: Range<u64>) -> Extent {
         let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end - 1));
         let widen = |known: Extent, block: usize, range: Range<usize>| {
@@ -73,17 +71,17 @@ impl<T: Number> Series<T> {
         widen(widen(known, first, from..BLOCK), last, 0..to + 1)
     }
 
-    /// Returns whether no sample near `range` has a flag: a quick check that may return false although none in it has.
+    /// Returns whether no sample near `range` has a flag: a quick check that may return false although no sample in
+    /// `range` has a flag.
     pub(super) fn is_plain(&self, range: Range<u64>) -> bool {
         let ((first, _), (last, _)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
         let flagged = |block: usize| self.blocks.get(block).is_some_and(|block| block.flags().any() != Flags::NONE);
         !(first..=last).any(flagged)
     }
 
-    /// Returns the union of the flags in `range`.
     pub(super) fn flags(&self, range: Range<u64>) -> Flags {
         let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
-        // Usually a single sample, or some of one block.
+        // Usually a single sample, or several samples of one block.
         if first == last && range.start >= self.first && !range.is_empty() {
             return self.blocks.get(first).map_or(Flags::NONE, |block| block.flags().within(from..to + 1));
         }
@@ -110,14 +108,14 @@ impl<T: Number> Series<T> {
         self.parts(range).rev().find_map(|(start, block, range)| Some(start + block.last_good(range)? as u64))
     }
 
-    /// Returns whether the sample `index` is stored and has a value: a quick check, which may miss that it has.
+    /// Returns whether the sample `index` is stored and has a valid value: a quick check that may return false although
+    /// the value is valid.
     fn is_surely_good(&self, index: u64) -> bool {
         let (block, at) = self.place(index);
         let has_it = |block: &&Block<T>| index >= self.first && at < block.len();
         self.blocks.get(block).filter(has_it).is_some_and(|block| block.flags().is_surely_good(at))
     }
 
-    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         let blocks: usize = self.blocks.iter().map(Block::memory).sum();
         blocks + self.blocks.capacity() * size_of::<Block<T>>()
@@ -136,14 +134,14 @@ impl<T: Number> Series<T> {
         self.blocks.push_back(block);
     }
 
-    /// Returns the block of the sample `index`, and its place in it.
+    /// Returns the position of the block that contains the sample `index`, and the sample's index within the block.
     fn place(&self, index: u64) -> (usize, usize) {
         let at = index.saturating_sub(self.first) as usize;
         (at / BLOCK, at % BLOCK)
     }
 
-    /// Returns the blocks that `range` touches, as far as there are samples: index of the block's first sample, block,
-    /// range in it.
+    /// Returns the blocks that overlap `range`, as far as samples are stored: index of the block's first sample, block,
+    /// range within the block.
     fn parts(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &Block<T>, Range<usize>)> {
         let from = range.start.saturating_sub(self.first) as usize;
         let to = range.end.saturating_sub(self.first) as usize;

@@ -1,5 +1,5 @@
-//! Mean and deviation that can be combined from parts, and are accurate for small noise on a large value. Welford's
-//! recurrence in the form for groups: Chan, Golub, LeVeque 1979. Only of raw samples.
+//! Mean and deviation that can be combined from parts and are accurate for small noise on a large value. Welford's
+//! recurrence in the form for groups: Chan, Golub, LeVeque 1979. Computed from raw samples only.
 
 use super::number::Number;
 
@@ -15,7 +15,7 @@ pub(super) struct Spread<T> {
 }
 
 impl<T: Number> Spread<T> {
-    /// Returns the spread of `values`, which must all be numbers; `None` if there are none.
+    /// Returns the spread of `values`, which must all be finite; `None` if `values` is empty.
     pub(super) fn of(values: &[T]) -> Option<Self> {
         let base = *values.first()?;
         let (min, max) = extremes(values)?;
@@ -28,7 +28,7 @@ impl<T: Number> Spread<T> {
         Some(Spread { count: values.len() as u64, base, mean, squares, min, max })
     }
 
-    /// Returns the union of both.
+    /// Returns the spread of both sets of samples together.
     pub(super) fn with(self, other: Self) -> Self {
         let (own, others) = (self.count as f64, other.count as f64);
         let all = own + others;
@@ -51,8 +51,8 @@ pub(super) fn together<T: Number>(one: Option<Spread<T>>, other: Option<Spread<T
     }
 }
 
-/// Returns the minimum and maximum of `values`, which must all be numbers; eight are compared in parallel, as with the
-/// sums.
+/// Returns the minimum and maximum of `values`, which must all be finite. Eight values are compared in parallel, as in
+/// the sums.
 pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
     let (groups, rest) = values.as_chunks::<8>();
     let of_groups = groups.split_first().map(|(first, others)| {
@@ -69,12 +69,11 @@ pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
     Some(rest.iter().fold(start, |(least, most), value| (lesser(least, *value), greater(most, *value))))
 }
 
-/// Returns the least and greatest of eight values, which are all numbers.
 pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
     (of_eight(*values, lesser), of_eight(*values, greater))
 }
 
-/// Adds in pairs, so that no addition waits for the previous one.
+/// Combines values in pairs, so that no operation waits for the previous one.
 fn of_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, T) -> T) -> T {
     choose(choose(choose(a, e), choose(b, f)), choose(choose(c, g), choose(d, h)))
 }
@@ -87,7 +86,7 @@ fn greater<T: Number>(one: T, other: T) -> T {
     if other > one { other } else { one }
 }
 
-/// Returns the eight sums side by side, which a processor does in little more time than one.
+/// Sums the terms in eight parallel sums, which takes a processor little more time than one.
 fn sum<T: Number>(values: &[T], term: impl Fn(T) -> f64) -> f64 {
     let (groups, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];

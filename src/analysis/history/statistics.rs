@@ -1,5 +1,5 @@
-//! Statistics of a range of a column. From the raw samples, each of which counts once: samples reduced for a picture are
-//! not used.
+//! Statistics of a range of a column, computed from the raw samples, each of which counts once. Samples reduced for a
+//! picture are not used.
 
 use std::ops::Range;
 
@@ -7,24 +7,24 @@ use super::number::{Number, Value};
 use super::series::Series;
 use super::{Column, History};
 
-/// Statistics of a range of samples. All but `bad` are of those that have a value.
+/// Statistics of a range of samples. All fields except `bad` refer to samples with a valid value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// Samples with a value, at least 1.
+    /// Number of samples with a valid value, at least 1.
     pub count: u64,
-    /// Samples without a value to believe.
+    /// Number of samples without a valid value.
     pub bad: u64,
     pub mean: f64,
-    /// The least value, as it was appended.
+    /// Minimum, as appended.
     pub min: Value,
-    /// The greatest value, as it was appended.
+    /// Maximum, as appended.
     pub max: Value,
     /// Standard deviation (divided by count − 1), in the column's unit; 0 for a single sample.
     pub deviation: f64,
 }
 
 impl History {
-    /// Returns the statistics of the samples `indices` of a column; `None` if none of them has a value.
+    /// Returns the statistics of the samples `indices` of a column, or `None` if no sample has a valid value.
     pub fn statistics(&self, column: usize, indices: Range<u64>) -> Option<Statistics> {
         let all = self.all();
         let indices = indices.start.max(all.start)..indices.end.min(all.end);

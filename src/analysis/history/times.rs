@@ -1,4 +1,4 @@
-//! The time column: one for all values that were sampled together. Times never go back.
+//! Time column shared by all simultaneously sampled values. Times never go back.
 
 use std::collections::VecDeque;
 
@@ -9,30 +9,28 @@ use crate::analysis::Time;
 #[derive(Debug)]
 pub(super) struct Times {
     blocks: VecDeque<Vec<Time>>,
-    /// First time of each block, side by side for a quick search.
+    /// First time of each block, stored contiguously for a quick search.
     starts: VecDeque<Time>,
-    /// Absolute index of the oldest sample; a multiple of `BLOCK`.
+    /// Absolute index of the oldest sample, a multiple of `BLOCK`.
     first: u64,
 }
 
 impl Times {
-    /// Creates room for `blocks` blocks, which are allocated when they are needed.
+    /// Creates a time column with room for `blocks` blocks, which are allocated on demand.
     pub(super) fn new(blocks: usize) -> Self {
         Times { blocks: VecDeque::with_capacity(blocks), starts: VecDeque::with_capacity(blocks), first: 0 }
     }
 
-    /// Returns the absolute index of the oldest sample stored.
     pub(super) fn first(&self) -> u64 {
         self.first
     }
 
-    /// Returns the absolute index of the next sample.
     pub(super) fn end(&self) -> u64 {
         let last = self.blocks.back().map_or(0, Vec::len);
         self.first + (self.blocks.len().saturating_sub(1) * BLOCK + last) as u64
     }
 
-    /// Returns how many samples fit before a block has to be opened.
+    /// Returns the number of samples that fit before a new block is needed.
     pub(super) fn room(&self) -> usize {
         self.blocks.back().map_or(0, |block| BLOCK - block.len())
     }
@@ -46,7 +44,7 @@ impl Times {
         self.blocks.get(at / BLOCK)?.get(at % BLOCK).copied()
     }
 
-    /// Appends `times`, which fit into the newest block or begin a new one. At most `keep` blocks are kept.
+    /// Appends `times`, which must fit into the newest block or begin a new one. At most `keep` blocks are kept.
     pub(super) fn append(&mut self, times: &[Time], keep: usize) {
         let Some(start) = times.first() else { return };
         if self.room() == 0 {
@@ -68,21 +66,20 @@ impl Times {
         }
     }
 
-    /// Returns the absolute index of the first sample at or after `time`; the end if there is none.
+    /// Returns the absolute index of the first sample at or after `time`, or the end index if no such sample is stored.
     pub(super) fn search(&self, time: Time) -> u64 {
         let Some(number) = self.starts.partition_point(|start| *start < time).checked_sub(1) else { return self.first };
         let inside = self.blocks.get(number).map_or(0, |block| search_in(block, time));
         self.first + (number * BLOCK + inside) as u64
     }
 
-    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         let blocks: usize = self.blocks.iter().map(Vec::capacity).sum();
         (blocks + self.starts.capacity()) * size_of::<Time>() + self.blocks.capacity() * size_of::<Vec<Time>>()
     }
 }
 
-/// Returns the index of the first time at or after `time`. Samples are usually evenly spaced, so the expected place is
+/// Returns the index of the first time at or after `time`. Samples are usually evenly spaced, so the expected index is
 /// tried first.
 fn search_in(times: &[Time], time: Time) -> usize {
     const NEAR: usize = 4;

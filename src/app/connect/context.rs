@@ -69,7 +69,6 @@ impl<'a> FinderContext<'a> {
             Some(Question::other_master(self.studio.services.world.kinds.shown_link(url), Then::Find(self.tab)));
     }
 
-    /// Reports why a request was not carried out.
     pub fn refuse(&mut self, problem: Text) {
         self.problem = Some(problem);
     }

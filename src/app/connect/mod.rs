@@ -25,11 +25,9 @@ use super::{Text, explain};
 use crate::app::action::Done;
 use crate::link::LinkUrl;
 
-/// An action of the dialog.
 pub enum ConnectAction {
     Open,
     Close,
-    /// List the serial ports again.
     ListPorts,
     Device(Tab),
     /// The form of a kind of device has been edited; see [`ConnectAction::edit`].
@@ -62,7 +60,6 @@ pub struct Connect {
     pub typed: Option<String>,
     /// Serial ports of this computer, or `None` while they are being listed.
     pub ports: Option<Result<Vec<Offer>, Text>>,
-    /// The reason why the last request was not carried out.
     pub problem: Option<Text>,
 }
 

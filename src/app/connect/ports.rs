@@ -2,14 +2,12 @@
 
 use crate::link::{LinkUrl, PortInfo, Scheme};
 
-/// A serial port to choose.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Offer {
     /// Path or name, as used in a link.
     pub path: String,
     /// Description of the adapter by the system; may be empty.
     pub description: String,
-    /// Whether the port was used before.
     pub used: bool,
     /// Whether the port exists now: the system lists it, or its path exists, as for a pseudo-terminal, which is never
     /// listed. A port used before may have been unplugged.

@@ -21,7 +21,6 @@ pub(crate) fn filled(entry: &str) -> Option<String> {
     Some(entry.trim().to_owned()).filter(|entry| !entry.is_empty())
 }
 
-/// Messages about missing entries.
 const MISSING: [&str; 6] = [
     "form.port_missing",
     "form.host_missing",
@@ -31,7 +30,6 @@ const MISSING: [&str; 6] = [
     "form.file_missing",
 ];
 
-/// Returns whether a sentence only asks for a missing entry.
 pub fn is_missing(problem: &Text) -> bool {
     MISSING.contains(&problem.id())
 }

@@ -95,7 +95,6 @@ impl AnyDevice {
         !matches!(self.phase(), Phase::Opening)
     }
 
-    /// Returns whether a review of a write is open.
     pub fn is_reviewing(&self) -> bool {
         self.memory().is_some_and(DeviceMemory::is_reviewing)
     }

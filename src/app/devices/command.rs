@@ -7,10 +7,8 @@ use super::AnyDevice;
 use crate::app::action::Action;
 use crate::app::studio::SessionId;
 
-/// A command that every device has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceCommand {
-    /// Open the link again.
     Reconnect,
     /// Read everything again.
     Read,
@@ -20,9 +18,7 @@ pub enum DeviceCommand {
     Poll(Option<Duration>),
     /// Read the position once.
     ReadPosition,
-    /// Undo the last edit.
     Undo,
-    /// Redo the last undone edit.
     Redo,
     RevertAll,
     Restore(PathBuf),
@@ -34,7 +30,6 @@ pub enum DeviceCommand {
 }
 
 impl AnyDevice {
-    /// Returns the action that sends a command to this device.
     pub fn command(&self, command: DeviceCommand) -> Action {
         Action::Command(self.id(), command)
     }

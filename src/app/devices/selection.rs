@@ -7,7 +7,6 @@ use crate::app::kinds::Kinds;
 use crate::app::studio::SessionId;
 use crate::app::tab::Tab;
 
-/// The device that each tab shows.
 #[derive(Debug, Default)]
 pub(crate) struct Selection {
     by_tab: HashMap<Tab, SessionId>,

@@ -38,7 +38,6 @@ pub fn url(error: &UrlError) -> Text {
     }
 }
 
-/// Explains why a virtual device does not accept a setting.
 pub fn setting(error: &ConfigError) -> Text {
     match error {
         ConfigError::Key { device, key, known } => {
@@ -93,7 +92,6 @@ fn syntax_problem(problem: &SyntaxProblem) -> Text {
     }
 }
 
-/// Explains why digits are not valid bytes.
 fn hex(error: &HexError) -> Text {
     match error {
         HexError::Digit(digit) => Text::new("detail.hex_digit").with("digit", format!("{digit:?}")),
@@ -111,7 +109,6 @@ pub fn recording(error: &TraceFileError) -> Text {
     }
 }
 
-/// Explains why the logbook cannot be used.
 pub fn logbook_problem(error: &LogbookError) -> Text {
     let problem = match &error.problem {
         LogbookProblem::Folder(error) => file(error),

@@ -3,7 +3,6 @@
 use crate::app::Text;
 use crate::expected::{Expected, Quantity};
 
-/// Returns the values that would be valid instead.
 pub fn expected(expected: &Expected) -> Text {
     match expected {
         Expected::Words(words) => match &**words {

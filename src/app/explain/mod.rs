@@ -44,7 +44,6 @@ pub fn link(error: &LinkError) -> Text {
     }
 }
 
-/// Explains why a link cannot be opened.
 pub fn open(error: &OpenError) -> Text {
     match error {
         OpenError::Url(why) => Text::new("link.url").with_text("why", url(why)),
@@ -135,7 +134,6 @@ pub fn newer_profile(path: &Path, document: &Document) -> Text {
         .with("entries", document.beyond.join(", "))
 }
 
-/// Returns why a write was not begun.
 pub fn not_begun(why: &NotBegun) -> Text {
     match why {
         NotBegun::OtherPlan => Text::new("write.other_plan"),
@@ -147,7 +145,6 @@ pub fn not_begun(why: &NotBegun) -> Text {
     }
 }
 
-/// Describes what the logbook could not record.
 pub fn logbook(why: &LogbookError) -> Text {
     Text::new("write.logbook").with_text("why", logbook_problem(why))
 }

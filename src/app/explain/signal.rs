@@ -16,7 +16,6 @@ use crate::app::number::decimals;
 use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
 
-/// Explains why a file could not be read as a capture.
 pub fn read(path: &Path, error: &ReadCaptureError) -> Text {
     match error {
         ReadCaptureError::File(error) => file(error),
@@ -82,7 +81,6 @@ fn fit(path: &Path, error: &FitError) -> Text {
     }
 }
 
-/// Explains why there is no spectrum.
 pub fn spectrum(error: &SpectrumError) -> Text {
     match error {
         SpectrumError::TooFew { samples: 0 } => Text::new("spectrum.no_times"),
@@ -106,7 +104,6 @@ pub fn revolution(error: &RevolutionError) -> Text {
     }
 }
 
-/// Describes a finding in a signal.
 pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
     let of = |id, which: Channel| {
         Text::new(id).with_text(
@@ -195,7 +192,6 @@ pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
     }
 }
 
-/// Returns why two captures cannot be compared.
 pub fn untold(untold: NotComparable) -> Text {
     Text::new(match untold {
         NotComparable::NoEllipseBefore => "compare.no_ellipse_before",
@@ -213,7 +209,6 @@ fn changed(id: &'static str, from: f64, to: f64, decimals: usize) -> Text {
     Text::new(id).with_number("from", from, decimals).with_number("to", to, decimals)
 }
 
-/// Describes a signal parameter that is outside its limits.
 pub fn finding(finding: &Parameter) -> Text {
     let percent = |id, share: f64| Text::new(id).with_number("percent", share * 100.0, 1);
     match *finding {
@@ -256,7 +251,6 @@ pub fn quantity(quantity: Quantity) -> Text {
     })
 }
 
-/// Explains why a setting of the virtual source is out of range.
 pub fn setting(error: &SettingError) -> Text {
     let SettingError { quantity: of, value, least, most } = *error;
     let id = if of == Quantity::Periods { "source.not_whole_in_range" } else { "source.out_of_range" };

@@ -7,9 +7,7 @@ use crate::analysis::history::Sample;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Cursor {
-    /// The first.
     A,
-    /// The second.
     B,
 }
 
@@ -34,16 +32,13 @@ pub struct Measured {
     pub between: Option<CursorStatistics>,
 }
 
-/// Values of the samples between two cursors, in the line's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CursorStatistics {
     pub count: u64,
     /// Samples without a value to believe.
     pub bad: u64,
     pub mean: f64,
-    /// The least.
     pub min: f64,
-    /// The greatest.
     pub max: f64,
     pub deviation: f64,
 }

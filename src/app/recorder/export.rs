@@ -71,7 +71,6 @@ struct Column {
     derived: bool,
 }
 
-/// A portion of the samples passed on.
 #[derive(Debug)]
 enum Portion {
     Rows(Rows),
@@ -105,7 +104,6 @@ pub(in crate::app) struct Writing {
 }
 
 impl Export {
-    /// Returns the approximate number of rows written and to be written.
     pub fn progress(&self) -> (u64, u64) {
         (self.written.load(Ordering::Relaxed).min(self.total), self.total)
     }

@@ -7,7 +7,6 @@ use crate::app::Text;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LineId(pub(super) u32);
 
-/// A unit in which a line can be seen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     pub unit: Text,
@@ -24,7 +23,6 @@ impl Scale {
     }
 }
 
-/// A column of samples over time.
 #[derive(Clone, Debug)]
 pub struct Series {
     pub id: LineId,
@@ -36,7 +34,6 @@ pub struct Series {
     pub shown: bool,
     /// Displayed range of values in the unit of the line, or `None` to fit the visible samples.
     pub range: Option<(f64, f64)>,
-    /// Whether the line has ended and only keeps its recorded samples.
     pub ended: bool,
     /// Whether the values are calculated from another line, so that a missing one is not a fault of the device.
     pub derived: bool,
@@ -86,7 +83,6 @@ impl Series {
         &self.scales
     }
 
-    /// Returns the index of the displayed scale.
     pub fn scale_number(&self) -> usize {
         self.scale
     }
@@ -105,7 +101,6 @@ impl Series {
         self.scale = self.scales.iter().position(|scale| Some(&scale.unit) == unit).unwrap_or_default();
     }
 
-    /// Returns the size of the displayed unit in units of the samples.
     pub fn factor(&self) -> f64 {
         self.scale().map_or(1.0, |scale| scale.factor)
     }
@@ -115,7 +110,6 @@ impl Series {
         self.scale().map_or(0, |scale| scale.decimals)
     }
 
-    /// Returns the value of a sample in the shown unit.
     pub fn value(&self, sample: &Sample) -> f64 {
         sample.value.to_f64() * self.factor()
     }

@@ -25,7 +25,6 @@ use crate::analysis::Time;
 use crate::analysis::history::{History, Kind, Part, Refused, Sample};
 use crate::app::Text;
 
-/// Something that is done with a recorder.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecorderAction {
     Show(LineId, bool),
@@ -45,13 +44,9 @@ pub enum RecorderAction {
     Zoom(Time, f64),
     /// A cursor to a point in time, or away.
     SetCursor(Cursor, Option<Time>),
-    /// Put both cursors into the visible range, or remove them.
     ShowCursors(bool),
-    /// Wait for this.
     Arm(Trigger),
-    /// Wait for nothing.
     Disarm,
-    /// Forget the samples.
     Clear,
     CancelExport,
 }
@@ -202,7 +197,6 @@ impl Recorder {
         self.groups.get_mut(&group).into_iter().for_each(Group::break_before_next);
     }
 
-    /// Carries out an action.
     pub fn act(&mut self, action: RecorderAction) {
         match action {
             RecorderAction::Show(id, shown) => self.with_line(id, |line| line.shown = shown),
@@ -266,12 +260,10 @@ impl Recorder {
         self.groups.get(&line.group).map(|group| group.stamp)
     }
 
-    /// Returns whether all lines share one axis.
     pub fn has_one_axis(&self) -> bool {
         self.one_axis
     }
 
-    /// Returns whether there is nothing to show.
     pub fn is_empty(&self) -> bool {
         self.groups.values().all(|group| group.history.all().is_empty())
     }

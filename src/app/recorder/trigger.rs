@@ -4,7 +4,6 @@ use super::{GroupId, LineId, Recorder, TimeWindow};
 use crate::analysis::Time;
 use crate::analysis::history::{Flags, Sample};
 
-/// The condition of a trigger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     Above,
@@ -16,7 +15,6 @@ pub enum When {
 }
 
 impl When {
-    /// All events.
     pub const ALL: [When; 5] = [When::Rising, When::Falling, When::Above, When::Below, When::Error];
 
     pub const fn has_level(self) -> bool {
@@ -51,7 +49,6 @@ pub enum TriggerState {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
     trigger: Trigger,
-    /// The condition and the level, in the unit of the samples.
     when: When,
     level: f64,
     state: TriggerState,
@@ -66,7 +63,6 @@ impl Watch {
         &self.trigger
     }
 
-    /// Waits from the beginning.
     pub(super) fn again(self) -> Self {
         Watch { state: TriggerState::Armed, last: None, ..self }
     }

@@ -8,7 +8,6 @@ const SHORTEST: i64 = 100;
 /// Maximum length of a view in nanoseconds: a hundred days.
 const LONGEST: i64 = 100 * 86_400 * 1_000_000_000;
 
-/// The displayed time range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeWindow {
     /// The newest samples over this many nanoseconds.
@@ -37,7 +36,6 @@ impl Recorder {
         matches!(self.view, TimeWindow::Follow { .. })
     }
 
-    /// Returns the displayed time range. While there are fewer samples, it begins with the first one.
     pub fn window(&self) -> (Time, Time) {
         match self.view {
             TimeWindow::Fixed { from, to } => (from, to),

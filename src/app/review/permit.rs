@@ -2,7 +2,6 @@
 
 use crate::profile::RestoreOptions;
 
-/// A permit that the user may grant for a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Permit {
     OtherDevice,

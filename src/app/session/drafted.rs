@@ -12,7 +12,6 @@ use crate::store::{DeviceKey, FileError};
 
 const NOT_SAVED: &str = "session.not_saved";
 
-/// The persistent edits of a device.
 type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
 /// A session with edits.

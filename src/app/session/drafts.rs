@@ -39,7 +39,6 @@ impl DraftKey {
     }
 }
 
-/// The results of tasks about drafts.
 pub enum DraftDone {
     Looked {
         key: DraftKey,
@@ -54,7 +53,6 @@ pub enum DraftDone {
 }
 
 pub trait DraftEdits: Serialize + DeserializeOwned + Clone + PartialEq + Default + Send + 'static {
-    /// Returns whether there are no edits to store.
     fn is_nothing(&self) -> bool;
 }
 
@@ -64,7 +62,6 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
     }
 }
 
-/// The state of the draft on disk.
 #[derive(Debug)]
 pub(crate) struct Drafting<E> {
     session: SessionId,
@@ -211,7 +208,6 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
-    /// Marks that edits may have changed.
     pub(in crate::app) fn may_have_changed(&mut self) {
         self.due = true;
     }

@@ -2,7 +2,6 @@
 
 use super::{Kind, Session};
 
-/// A device with a session.
 pub trait HasSession {
     type Device: Kind;
 

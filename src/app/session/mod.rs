@@ -42,7 +42,6 @@ use crate::link::{LinkUrl, Scheme};
 use crate::profile::Document;
 use crate::worker::SubmitError;
 
-/// The source of the data.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     Link(LinkUrl),
@@ -70,7 +69,6 @@ impl Source {
     }
 }
 
-/// The state of the connection.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Phase {
     Opening,
@@ -83,7 +81,6 @@ pub enum Phase {
     Offline,
 }
 
-/// A link being opened.
 pub(crate) struct Opening {
     pub(crate) attempt: Option<u32>,
     /// Receiver that disconnects when opening has ended.
@@ -91,7 +88,6 @@ pub(crate) struct Opening {
     pub(crate) is_sole_master: bool,
 }
 
-/// A device or profile: its state, its connection and its draft.
 pub struct Session<D: Kind> {
     state: SessionState,
     pub(crate) line: Option<LiveSession<D>>,
@@ -135,7 +131,6 @@ impl<D: Kind> Session<D> {
         Session { state: SessionState::new(id, source, phase), line: None, drafting: Drafting::new(id), review: None }
     }
 
-    /// Returns the line to the device while it is connected.
     pub fn line(&self) -> Option<&LiveSession<D>> {
         self.line.as_ref()
     }
@@ -171,7 +166,6 @@ impl<D: Kind> Session<D> {
         self.is_savable() || (matches!(self.phase, Phase::Silent(_)) && self.line.is_some() && !self.is_busy())
     }
 
-    /// Returns whether a profile can currently be saved.
     pub fn is_savable(&self) -> bool {
         self.is_ready() || self.phase == Phase::Offline
     }

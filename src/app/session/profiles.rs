@@ -79,7 +79,6 @@ impl SessionState {
         });
     }
 
-    /// Reads a backup of a device, as a task.
     pub(in crate::app) fn read_backup(&self, of: DeviceKey, path: PathBuf, services: &Services) {
         let (session, formats) = (self.id, services.world.kinds.formats);
         services.tasks.run("backup", move || {
@@ -100,9 +99,7 @@ impl SessionState {
     }
 }
 
-/// Backups and writes of a device, as found by a task.
 pub struct DeviceHistory {
-    /// Backups, the newest first.
     pub backups: Result<Vec<Backup>, FileError>,
     /// Writes, newest first, or the reason why the logbook has none.
     pub writes: Result<Vec<Entry>, LogbookError>,
@@ -113,9 +110,7 @@ pub struct DeviceHistory {
 }
 
 impl DeviceHistory {
-    /// Number of status code readings displayed.
     const STATUSES: u32 = 20;
-    /// Number of logbook entries displayed.
     const WRITES: u32 = 200;
 
     pub(in crate::app) fn of(key: &DeviceKey, store: &Store) -> Self {

@@ -20,7 +20,6 @@ pub fn without_edits(count: usize) -> Option<Text> {
     (count > 0).then(|| Text::new("session.saved_without").with("count", count))
 }
 
-/// A device that can be saved and restored.
 pub trait Saved: WithMemory {
     /// Creates the job that reads everything that can be restored.
     fn read_all() -> Job<Self>;
@@ -79,7 +78,6 @@ pub trait Saved: WithMemory {
         }
     }
 
-    /// Reads a backup, as a task.
     fn read_backup(&mut self, path: PathBuf, services: &mut Services) {
         match self.key() {
             Some(of) => self.session().read_backup(of, path, services),

@@ -35,7 +35,6 @@ pub struct Guard {
     pub text: String,
 }
 
-/// Profile being written to a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saving {
     pub session: SessionId,

@@ -18,7 +18,6 @@ pub struct SessionState {
     /// The kinds of devices, which determine the secret link parameters.
     pub(super) kinds: Kinds,
     pub(crate) opening: Option<Opening>,
-    /// The title of the device, once known.
     pub title: Option<String>,
     pub trace: TraceLog,
     /// Backups, or the reason why there are none.
@@ -122,7 +121,6 @@ impl SessionState {
         self.statuses.clear();
     }
 
-    /// Reports that a request is not possible.
     pub(crate) fn refuse(&self, why: Text, services: &mut Services) {
         services.notify(Severity::Error, vec![why], Some(&self.name()));
     }

@@ -37,7 +37,6 @@ impl Follower {
         self.pace.is_some_and(|pace| pace * time.seconds_since(before) < range as f64 / 4.0)
     }
 
-    /// Notes a sample without a position.
     pub(super) fn miss(&mut self) {
         self.has_missed = true;
     }

@@ -9,7 +9,6 @@ pub struct Meaning {
     pub(in crate::app) range: Option<i64>,
     /// The units of position, speed and acceleration, whose samples are in steps.
     pub scales: [Vec<Scale>; 3],
-    /// Whether the encoder is linear.
     pub(in crate::app) is_linear: bool,
     /// Step size in turns or millimetres, if known.
     step: Option<f64>,

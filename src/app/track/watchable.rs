@@ -7,7 +7,6 @@ use crate::app::Text;
 use crate::app::recorder::{GroupId, Series};
 use crate::units::Moment;
 
-/// A value that can be watched.
 pub trait Watchable: Clone + PartialEq {
     /// Returns whether the values are whole numbers.
     fn is_whole(&self) -> bool;

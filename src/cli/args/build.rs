@@ -12,7 +12,6 @@ use crate::cli::commands::{CommandId, Commands, DeviceCommands, OwnCommand};
 /// Display order of options that a kind of device adds, which follow the shared ones.
 const AFTER_SHARED: usize = 200;
 
-/// The arguments of a process.
 pub(in crate::cli) struct Arguments {
     pub(in crate::cli) common: Common,
     pub(in crate::cli) profile: Option<PathBuf>,
@@ -49,7 +48,6 @@ fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Err
     Ok(Arguments { common, profile, command })
 }
 
-/// The whole command line.
 pub(crate) fn command(commands: Commands) -> clap::Command {
     let front = commands.common_options().fold(Front::command(), |front, option| {
         // Several kinds of device may have the same option.

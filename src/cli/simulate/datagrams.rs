@@ -43,7 +43,6 @@ fn both(place: SocketAddrV4) -> std::io::Result<(TcpListener, UdpSocket, SocketA
     Ok((listener, socket, at))
 }
 
-/// The datagrams of a device in real time.
 pub(super) struct Served {
     socket: UdpSocket,
     /// Device, locked from taking packets until they have been sent, so that none overtakes another.

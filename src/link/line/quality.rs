@@ -23,7 +23,6 @@ pub struct LineQuality {
 }
 
 impl LineQuality {
-    /// Number of reply times kept.
     const ANSWERS: usize = 1000;
 
     /// Returns whether a request had to be repeated, or a reply arrived too late.

@@ -29,7 +29,6 @@ pub struct LineState {
     pub(super) troubled_since: Option<Moment>,
     /// Time of the first request that is still unanswered.
     pub(super) outstanding_since: Option<Moment>,
-    /// Time of the last request.
     pub(super) last_sent: Moment,
 }
 

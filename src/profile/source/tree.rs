@@ -20,7 +20,6 @@ pub(super) enum Kind {
     Entries(Vec<Part>),
 }
 
-/// An element of a list or an entry of a structure.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
     /// Range of the key before the colon.
@@ -59,7 +58,6 @@ pub(super) fn read(text: &str) -> Option<Node> {
     reader.rest().is_empty().then_some(node)
 }
 
-/// Returns all comments of a text, without their delimiters.
 pub(super) fn comments(text: &str) -> Vec<&str> {
     let mut reader = Reader { text, at: 0 };
     let mut found = Vec::new();
@@ -199,7 +197,6 @@ impl<'t> Reader<'t> {
         Some(if named || parts.is_empty() { Kind::Entries(parts) } else { Kind::Plain })
     }
 
-    /// Parses the value inside `Some(…)`.
     fn wrapped(&mut self) -> Option<Node> {
         self.takes("(");
         self.skip();

@@ -24,7 +24,6 @@ use crate::cli::runner::{Bar, failed};
 use crate::cli::{Done, Failure, Result};
 use crate::store::read_capture;
 
-/// The `analyse` command, for a recorded signal.
 pub(crate) struct AnalyseCommand;
 
 impl OwnCommand for AnalyseCommand {

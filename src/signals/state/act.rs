@@ -187,7 +187,6 @@ impl Signals {
         Some(compare(&before, &own.diagnosis))
     }
 
-    /// Sets the number of periods per revolution and judges the capture again.
     pub(super) fn set_periods(&mut self, periods: u32, of_source: bool, services: &mut Services) {
         self.periods = Some(periods.clamp(1, MOST_PERIODS));
         self.periods_of_source = of_source;
@@ -266,7 +265,6 @@ impl Signals {
         }
     }
 
-    /// Handles a task that ended without a result.
     fn failed(&mut self, failed: Failed, services: &mut Services) {
         let what = match failed {
             Failed::Read(number) if self.reading.as_ref().is_some_and(|reading| reading.number == number) => {

@@ -29,9 +29,7 @@ pub enum SignalsAction {
     SetPeriods(u32),
     /// Keeps the displayed capture for comparison with later ones.
     Keep,
-    /// Ends the comparison.
     DropComparison,
-    /// An action on the source, either the virtual encoder or an adapter.
     Source(SourceAction),
     Synchronise(synchronise::SynchroniseAction),
 }

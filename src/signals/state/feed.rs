@@ -136,7 +136,6 @@ impl Feed {
         }
     }
 
-    /// Returns the number of samples lost since the start.
     pub(super) fn lost(&self) -> u64 {
         match self {
             Feed::Virtual(stream) => stream.lost(),
@@ -222,7 +221,6 @@ fn failed(error: &BridgeError) -> Text {
     }
 }
 
-/// Returns the message for an invalid link, which the user edits in a separate entry.
 fn refused(error: &OpenError) -> Text {
     match error {
         OpenError::Url(why) => TEXTS.text("adapter.link").with_text("why", explain::url(why)),

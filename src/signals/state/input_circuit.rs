@@ -6,10 +6,8 @@ use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, quantity_within, whole, within};
 use crate::signals::state::TEXTS;
 
-/// The entries, as typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
-    /// Signal periods per revolution.
     pub periods: String,
     /// Speed in revolutions per minute.
     pub speed: String,
@@ -19,19 +17,15 @@ pub struct Form {
     pub capacitance: String,
 }
 
-/// The signals and the filter response at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Speed in revolutions per minute.
     pub speed_rpm: f64,
-    /// Signal frequency in hertz.
     pub frequency_hz: f64,
     pub response: Response,
     /// Lag in mechanical degrees of the shaft.
     pub shaft_deg: f64,
 }
 
-/// The circuit described by the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circuit {
     pub here: Point,
@@ -72,7 +66,6 @@ impl Form {
 }
 
 impl Circuit {
-    /// Returns whether the signals are within the encoder's bandwidth at the entered speed.
     pub fn is_within(&self) -> bool {
         self.here.frequency_hz <= BANDWIDTH_HZ
     }

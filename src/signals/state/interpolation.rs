@@ -14,7 +14,6 @@ pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableError {
     pub intervals: usize,
-    /// Largest error in electrical degrees.
     pub largest_deg: f64,
     /// Fraction of a period that bounds the error, as its reciprocal.
     pub parts: f64,
@@ -31,7 +30,6 @@ pub struct Interpolated {
     pub difference_deg: f64,
 }
 
-/// Returns the errors of the displayed tables.
 pub fn table_errors() -> &'static [TableError] {
     static ERRORS: LazyLock<Vec<TableError>> = LazyLock::new(|| INTERVALS.map(table_error).to_vec());
     &ERRORS

@@ -52,7 +52,6 @@ pub enum SourceKind {
     Adapter,
 }
 
-/// The sample source, running or not.
 pub struct Source {
     /// The last valid settings of the virtual encoder.
     settings: Settings,
@@ -121,7 +120,6 @@ impl Source {
         self.problem.as_ref()
     }
 
-    /// Returns the adapter link, as typed.
     pub fn link(&self) -> &str {
         &self.link
     }
@@ -141,7 +139,6 @@ impl Source {
         self.adapter_problem.as_ref()
     }
 
-    /// Returns the kind of source started last.
     pub fn kind(&self) -> SourceKind {
         self.kind
     }
@@ -156,7 +153,6 @@ impl Source {
         self.live.as_ref().is_some_and(|live| live.feed.is_virtual())
     }
 
-    /// Returns the length of the measured window in milliseconds.
     pub fn window_ms(&self) -> u32 {
         self.window_ms
     }
@@ -234,7 +230,6 @@ impl Source {
         self.link.parse().ok()
     }
 
-    /// Reports why no request to the adapter is possible at present.
     pub(crate) fn refuse(&mut self, why: Text) {
         self.adapter_problem = Some(why);
     }
@@ -282,7 +277,6 @@ impl Source {
 }
 
 impl Live {
-    /// Returns the origin of the samples, or `None` until an adapter has identified itself.
     fn origin(&self) -> Option<Origin> {
         match &self.feed {
             Feed::Virtual(_) => Some(Origin::Virtual),

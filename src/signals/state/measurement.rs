@@ -65,13 +65,11 @@ pub struct Measurement {
     results: Arc<Results>,
 }
 
-/// The results of a capture, which no longer need its samples.
 #[derive(Clone, Debug)]
 pub struct Results {
     pub origin: Origin,
     /// Number of table rows omitted because they contain no value.
     pub rows_left_out: u64,
-    /// The analysis, or why it failed.
     pub analysis: Result<Analysis, AnalysisError>,
     pub diagnosis: Diagnosis,
     pub judge: Judge,
@@ -91,7 +89,6 @@ pub struct Results {
     pub corrected: Option<Density>,
 }
 
-/// Criteria for judging a signal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Judge {
     pub family: Family,
@@ -129,12 +126,10 @@ impl Measurement {
         Measurement { capture, results: Arc::new(results) }
     }
 
-    /// Returns the results without the samples.
     pub fn results(&self) -> &Arc<Results> {
         &self.results
     }
 
-    /// Returns the measurement judged by other criteria.
     #[must_use]
     pub fn judged(&self, judge: Judge) -> Self {
         let results = Results {

@@ -6,7 +6,6 @@ use crate::analysis::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
 use crate::analysis::quality::{Family, Verdict};
 use crate::analysis::signal_analysis::{Analysis, LEAST_OCTANTS};
 
-/// A measured number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
     pub word: &'static str,
@@ -29,12 +28,9 @@ pub enum Unit {
     /// Decibels relative to one volt rms.
     DecibelVolts,
     Percent,
-    /// Degrees, electrical or mechanical.
     Degrees,
-    /// Mechanical arcseconds.
     ArcSeconds,
     Kilohertz,
-    /// Revolutions per minute.
     Rpm,
     Milliseconds,
 }
@@ -42,13 +38,10 @@ pub enum Unit {
 /// A limit in the unit of its quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// Between the given minimum and maximum.
     Between(f64, f64),
     /// Within plus or minus the given value.
     Within(f64),
-    /// No more than the given value.
     AtMost(f64),
-    /// No less than the given value.
     AtLeast(f64),
 }
 

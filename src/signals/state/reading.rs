@@ -79,7 +79,6 @@ impl Reading {
     }
 }
 
-/// Cancels the reading.
 impl Drop for Reading {
     fn drop(&mut self) {
         self.cancel();

@@ -15,7 +15,6 @@ use crate::worker::stream::Batch;
 pub(super) struct Recent {
     chunks: VecDeque<Arc<Channels>>,
     count: usize,
-    /// Time of the newest sample.
     newest: Option<Time>,
     period_ns: i64,
 }
@@ -30,7 +29,6 @@ pub(super) struct Window {
 
 /// Maximum number of samples measured at once.
 pub(super) const MOST: usize = 500_000;
-/// Interval between measurements in nanoseconds.
 const EVERY_NS: i64 = 250_000_000;
 
 impl Recent {
@@ -51,7 +49,6 @@ impl Recent {
         }
     }
 
-    /// Returns the time of the last sample.
     pub(super) fn newest(&self) -> Option<Time> {
         self.newest
     }

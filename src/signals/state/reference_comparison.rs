@@ -13,10 +13,8 @@ use crate::analysis::synchronise::{STEPS, measure_offset};
 use crate::app::Text;
 use crate::signals::state::TEXTS;
 
-/// DNL and INL, raw and corrected.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nonlinearities {
-    /// Raw values, as measured.
     pub raw: Part,
     /// Values with offsets, gain ratio and phase error corrected.
     pub corrected: Part,
@@ -47,10 +45,8 @@ pub struct AbsoluteOffset {
     pub samples: usize,
 }
 
-/// The reason why an absolute offset cannot be determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoOffset {
-    /// No sample contains a signal.
     NoSignal,
     Scattered,
 }

@@ -10,7 +10,6 @@ use crate::app::recorder::{self, GroupId, Recorder, SAMPLE, Scale, Series};
 use crate::signals::state::TEXTS;
 use crate::worker::stream::Batch;
 
-/// A recorder of the signals.
 #[derive(Debug)]
 pub struct Scope {
     pub recorder: Recorder,
@@ -44,7 +43,6 @@ const WIRES: [(&str, &str); 4] =
     [("scope.sin", "SIN"), ("scope.refsin", "REFSIN"), ("scope.cos", "COS"), ("scope.refcos", "REFCOS")];
 
 impl Scope {
-    /// Creates an empty scope for live samples, with or without the four wires.
     pub(super) fn live(with_wires: bool) -> Self {
         Scope::new(with_wires, KEPT, Recorder::new(SPAN))
     }

@@ -3,12 +3,10 @@
 use crate::analysis::position_error::Samples;
 use crate::analysis::spectrum::{SpectralLine, Spectrum, SpectrumError, sample_rate_hz};
 
-/// The spectra of both signals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectra {
     pub sine: ChannelSpectrum,
     pub cosine: ChannelSpectrum,
-    /// Spacing of the spectral lines in hertz.
     pub spacing_hz: f64,
     /// Number of samples used; if there are more than one transform takes, only the last ones.
     pub samples: usize,
@@ -24,9 +22,7 @@ pub struct ChannelSpectrum {
 
 /// Maximum number of samples per transform.
 const MOST: usize = 1 << 20;
-/// Number of lines in a plot.
 const LINES: usize = 1_000;
-/// Number of labelled peaks.
 const PEAKS: usize = 6;
 /// Fraction of the highest peak below which a peak is not labelled.
 const LEAST_PEAK: f64 = 1e-4;

@@ -20,7 +20,6 @@ pub enum SynchroniseAction {
     Forget,
 }
 
-/// The entries, as typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
     /// The absolute position in steps: decimal, or hexadecimal with `0x` or `h`.
@@ -28,11 +27,8 @@ pub struct Form {
     pub phase_input: PhaseInput,
     /// Phase in periods or degrees.
     pub phase: String,
-    /// Sine in volts.
     pub sine_v: String,
-    /// Cosine in volts.
     pub cosine_v: String,
-    /// Signal periods per revolution.
     pub periods: String,
     pub turns: String,
     /// Lead of the absolute position when both positions are correct, in 1/32 period.
@@ -65,7 +61,6 @@ pub struct Synchronise {
     origin: Option<SineCosineOrigin>,
 }
 
-/// The position calculated from the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchronisation {
     pub absolute: u64,
@@ -77,11 +72,9 @@ pub struct Synchronisation {
     pub difference_steps: f64,
     /// The fine position, or why it cannot be determined.
     pub result: Result<Synchronised, Unsynchronisable>,
-    /// Signal periods per revolution.
     pub periods: u32,
 }
 
-/// Minimum number of readings for an offset measurement.
 const LEAST_READINGS: usize = 2;
 const MOST_TURNS: u32 = 65_536;
 

@@ -3,7 +3,6 @@
 use super::TableSource;
 use crate::analysis::capture::{Columns, Delimiter, Layout, TableHints, decode_head};
 
-/// The beginning of a table, with its format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     pub place: TableSource,
@@ -28,7 +27,6 @@ pub enum Column {
     Absolute,
 }
 
-/// Number of lines shown.
 const LINES: usize = 6;
 /// Maximum number of characters shown per line.
 const WIDTH: usize = 160;
@@ -81,7 +79,6 @@ impl Table {
         self.head.iter().map(fields).max().unwrap_or(0).max(named).min(MOST_COLUMNS)
     }
 
-    /// Returns the name of a column in the table's header.
     pub fn name(&self, column: usize) -> Option<&str> {
         let name = self.layout.as_ref()?.names.get(column.checked_sub(1)?)?;
         Some(name.as_str()).filter(|name| !name.is_empty())

@@ -12,7 +12,6 @@ struct Promise {
 }
 
 impl Promise {
-    /// Marks the task as completed.
     fn task_returned(mut self) {
         self.failed = None;
     }

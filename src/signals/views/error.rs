@@ -54,7 +54,6 @@ pub(super) fn page_ui(
     octant::card_ui(ui, theme, &mut view.octant);
 }
 
-/// Returns the message for the basis of the corrected error.
 fn basis(basis: Basis) -> Text {
     match basis {
         Basis::Motion { noise_deg } => TEXTS.text("error.basis_motion").with_number("noise", noise_deg, 3),

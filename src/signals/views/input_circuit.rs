@@ -15,7 +15,6 @@ const ENTRY: f32 = 80.0;
 /// Number of table rows and of curve points.
 const ROWS: u32 = 10;
 const POINTS: u32 = 100;
-/// Height of the curves in points.
 const HEIGHT: f32 = 220.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {

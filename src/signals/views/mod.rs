@@ -21,14 +21,12 @@ use crate::signals::state::{Signals, SignalsKind, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, ToolPages, ToolView, infos, page_at};
 use crate::ui::{Theme, icons, page};
 
-/// A page of the Signals tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
     Scope,
     /// The Lissajous figure and the measured values with their limits.
     #[default]
     Quality,
-    /// The position error within a period.
     Error,
     Synchronise,
     InputCircuit,
@@ -47,7 +45,6 @@ impl TabPage for Page {
 /// An entered string that has not taken effect yet, and the reason if it is invalid.
 type Draft = Option<(String, Option<Text>)>;
 
-/// UI state of the tab between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct SignalsUiState {
     page: Page,
@@ -96,7 +93,6 @@ impl ToolPages for SignalsUiState {
     }
 }
 
-/// Draws the open page. `device` is a readable device shown in its own tab.
 fn page_ui(
     ui: &mut Ui,
     theme: &Theme,

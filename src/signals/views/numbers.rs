@@ -11,7 +11,6 @@ use crate::ui::{Theme, controls};
 const WIDE: f32 = 390.0;
 /// Width from which limits have a column; in narrower windows, they are tooltips of the verdict icons.
 const LEAST: f32 = 350.0;
-/// Width of the limits column.
 const LIMITS: f32 = 110.0;
 
 /// Draws the rows; if a second list is given, also its values and the differences.

@@ -20,7 +20,6 @@ use crate::ui::{Theme, icons};
 
 /// Common numbers of periods per revolution.
 const USUAL_PERIODS: [u32; 11] = [16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 65_536];
-/// Number of points on a fitted ellipse.
 const CURVE: usize = 180;
 
 pub(super) fn page_ui(

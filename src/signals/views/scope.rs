@@ -15,7 +15,6 @@ use crate::ui::{Theme, plot};
 const TRACE: f32 = 300.0;
 const SPECTRUM: f32 = 200.0;
 
-/// UI state of the page between frames.
 #[derive(Default)]
 pub(super) struct ScopeView {
     plot: plot::PlotUiState,
@@ -134,7 +133,6 @@ fn lines(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra>, 
     paragraph(ui, theme.caption(theme.words(&text)));
 }
 
-/// Draws the highest peaks of both channels and their relation to the signal.
 fn peaks(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measurement) {
     let signal_hz = measurement.analysis.as_ref().ok().and_then(|own| own.frequency_hz()).map(f64::abs);
     ui.add_space(theme.space.inside);

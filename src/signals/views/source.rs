@@ -13,7 +13,6 @@ use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name
 use crate::ui::widgets::series;
 use crate::ui::{Theme, icons};
 
-/// UI state of the source between frames.
 #[derive(Default)]
 pub(super) struct SourceUiState {
     table: table::TableUiState,
@@ -80,7 +79,6 @@ fn live(signals: &Signals) -> Option<SourceKind> {
     }
 }
 
-/// Draws the reading in progress with its cancel button.
 fn reading(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(reading) = signals.reading() else { return };
     ui.horizontal(|ui| {
@@ -146,7 +144,6 @@ fn title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     ui.add_space(theme.space.between);
 }
 
-/// Draws the kind of source, whether it is running, and the number of lost samples.
 fn live_title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let palette = theme.palette;
     let source = signals.source();
@@ -193,7 +190,6 @@ fn live_title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     }
 }
 
-/// Draws the buttons that start, hold and stop the source, and the settings button.
 fn source_buttons(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     let source = signals.source();
     let mut ask = |action| actions.push(Action::tool(Signals_::Source(action)));
@@ -220,7 +216,6 @@ fn source_buttons(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut Sour
     toggle(ui, icons::SLIDERS, &say(theme, "virtual.settings"), open);
 }
 
-/// Draws a button that shows or hides something.
 fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
     let button = egui::Button::selectable(*open, format!("{icon}  {word}")).frame_when_inactive(true);
     if name(ui.add(button), true, word).clicked() {
@@ -238,7 +233,6 @@ fn keep_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Acti
     }
 }
 
-/// Draws the capture used for comparison.
 fn compared(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(kept) = signals.comparison() else { return };
     ui.horizontal(|ui| {

@@ -133,7 +133,6 @@ fn measured(ui: &mut Ui, theme: &Theme, state: &Synchronise, actions: &mut Vec<A
     }
 }
 
-/// Draws the offset measured over a capture that has an absolute position.
 fn captured(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("synchronise.captured"), |ui| {
         let measurement = signals.measurement();

@@ -10,7 +10,6 @@ use crate::signals::views::say;
 use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
 use crate::ui::{Theme, icons};
 
-/// UI state of the card between frames.
 #[derive(Default)]
 pub(super) struct TableUiState {
     pub(super) is_open: bool,

@@ -41,7 +41,6 @@ pub struct Source {
 
 #[derive(Clone, Debug)]
 struct Segment {
-    /// Index of the segment's first sample.
     from: u64,
     /// Nanoseconds from the start to the first sample of the segment.
     elapsed: u64,

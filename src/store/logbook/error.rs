@@ -7,7 +7,6 @@ use rusqlite::ErrorCode;
 use super::EntryId;
 use crate::store::FileError;
 
-/// A logbook that could not be opened, read or written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("logbook {}: {problem}", path.display())]
 pub struct LogbookError {
@@ -15,10 +14,8 @@ pub struct LogbookError {
     pub problem: LogbookProblem,
 }
 
-/// The reason why the logbook cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LogbookProblem {
-    /// The folder cannot be created.
     #[error(transparent)]
     Folder(FileError),
     /// The file cannot be opened: a folder has its name, or permission is missing.
@@ -45,7 +42,6 @@ pub enum LogbookProblem {
     /// The entry to conclude does not exist or has already been concluded.
     #[error("entry {entry} is not open")]
     NotOpen { entry: EntryId },
-    /// Any other error reported by the database.
     #[error("{what}")]
     Database {
         /// SQLite's extended result code, or `None` if the value was refused before it reached SQLite.

@@ -47,7 +47,6 @@ impl DeviceKey {
     }
 }
 
-/// Identifier of a logbook entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EntryId(i64);
 
@@ -57,11 +56,9 @@ impl fmt::Display for EntryId {
     }
 }
 
-/// The outcome of a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     Done,
-    /// The write failed for the given reason.
     Failed(String),
     Cancelled,
 }
@@ -73,7 +70,6 @@ pub struct Entry {
     pub id: EntryId,
     /// Time directly before the write.
     pub at: Timestamp,
-    /// Description of the planned write.
     pub description: String,
     pub planned_cycles: u64,
     /// Path of the backup taken before the write; invalid Unicode in the path is replaced.
@@ -82,7 +78,6 @@ pub struct Entry {
     pub conclusion: Option<Conclusion>,
 }
 
-/// The outcome of a write, with its time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Conclusion {
     pub at: Timestamp,

@@ -49,7 +49,6 @@ const STEPS: [&str; 2] = [
 ",
 ];
 
-/// The latest schema that this version knows.
 pub(super) const KNOWN: i64 = STEPS.len() as i64;
 
 pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, LogbookProblem> {
@@ -71,7 +70,6 @@ pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, Logboo
     Ok(database)
 }
 
-/// Parses a time in the format of the tables.
 pub(super) fn parse_time(text: &str) -> rusqlite::Result<Timestamp> {
     text.parse().map_err(|error: jiff::Error| rusqlite::Error::FromSqlConversionFailure(0, Type::Text, Box::new(error)))
 }

@@ -5,7 +5,6 @@ use egui::{ScrollArea, Ui};
 use crate::ui::controls::{at_the_right, button, modal, paragraph, row};
 use crate::ui::{Theme, icons};
 
-/// Licences of the built-in components.
 const FONT_LICENCES: &str = include_str!("../../../assets/fonts/LICENCES.txt");
 const CRATES: &str = include_str!("../../../assets/crates.txt");
 

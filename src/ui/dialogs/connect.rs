@@ -19,7 +19,6 @@ use crate::ui::{TabViews, Theme, icons};
 pub use form::ConnectForm;
 pub use form::TypedConnectForm;
 
-/// UI state of the dialog between frames.
 #[derive(Default)]
 pub(in crate::ui) struct ConnectView {
     forms: HashMap<Tab, Box<dyn ConnectForm>>,

@@ -9,7 +9,6 @@ use crate::store::Folders;
 use crate::ui::controls::{at_the_right, button, modal, primary, text_entry};
 use crate::ui::{Theme, icons};
 
-/// The path that is being typed.
 pub(in crate::ui) struct FileView {
     question: FileQuestion,
     path: String,
@@ -66,7 +65,6 @@ fn has_dialogs() -> bool {
     !cfg!(target_os = "linux") || std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some()
 }
 
-/// Returns the name of the file type for the system's dialog.
 fn kind(question: &FileQuestion) -> Text {
     match question {
         FileQuestion::Open | FileQuestion::Restore(_) | FileQuestion::Compare(_) | FileQuestion::Save { .. } => {

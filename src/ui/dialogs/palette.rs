@@ -10,7 +10,6 @@ use crate::ui::entries::text_entry;
 
 const WIDTH: f32 = 560.0;
 const ROW: f32 = 28.0;
-/// Number of rows visible at a time.
 const ROWS: usize = 11;
 
 /// The text being typed, and the row that Enter selects.
@@ -20,7 +19,6 @@ pub(in crate::ui) struct PaletteUiState {
     selected: usize,
 }
 
-/// Draws the palette. Returns the effect of the selected command.
 pub(in crate::ui) fn palette_ui(
     ctx: &egui::Context,
     theme: &Theme,
@@ -66,7 +64,6 @@ fn matching(typed: &str, commands: Vec<Command>) -> Vec<Command> {
     fitting.into_iter().map(|(_, _, command)| command).collect()
 }
 
-/// Draws the commands. Returns the index of the clicked one.
 fn rows_ui(ui: &mut Ui, theme: &Theme, commands: &[Command], state: &PaletteUiState, scroll: bool) -> Option<usize> {
     if commands.is_empty() {
         paragraph(ui, theme.label(theme.say("palette.none")));

@@ -12,7 +12,6 @@ const ROW: f32 = 22.0;
 const SHOWN: usize = 200;
 const TIME: &str = "%H:%M:%S";
 
-/// Draws the job list, newest first.
 pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let jobs: Vec<_> = studio.services.jobs().rev().collect();
     if jobs.is_empty() {
@@ -61,7 +60,6 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
         });
 }
 
-/// Draws the log, newest first.
 pub(in crate::ui) fn log_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let palette = theme.palette;
     if studio.services.log.notices().len() == 0 {

@@ -12,7 +12,6 @@ use crate::ui::{Theme, Views, icons};
 const ROW: f32 = 18.0;
 const TIME: &str = "%H:%M:%S%.3f";
 
-/// Scroll position of the frame list.
 #[derive(Default)]
 pub(in crate::ui) struct TraceView {
     /// Session of the displayed frames, and the number of frames already dropped when the list was last drawn.

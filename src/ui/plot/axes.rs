@@ -21,7 +21,6 @@ pub(super) fn decimals(step: f64) -> usize {
     (-step.log10() - 1e-9).ceil().clamp(0.0, 12.0) as usize
 }
 
-/// Returns the multiples of `step` from `low` to `high`.
 pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     /// Upper limit, more than any picture can show; a step of zero would otherwise loop forever.
     const MOST: i64 = 200;
@@ -56,7 +55,6 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     ((low / step).floor() * step, (high / step).ceil() * step)
 }
 
-/// Ticks of a time axis.
 #[derive(Debug, PartialEq)]
 pub(super) struct TimeTicks {
     pub(super) ticks: Vec<(Time, String)>,
@@ -66,7 +64,6 @@ pub(super) struct TimeTicks {
 
 const SECOND: i64 = 1_000_000_000;
 
-/// Returns at most `most` ticks between `from` and `to`.
 pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) -> TimeTicks {
     let span = to.nanoseconds_since(from).max(1);
     let step = time_step(span, most.max(1));
@@ -191,7 +188,6 @@ pub(super) fn instant(time: Time, span: i64, language: Language) -> String {
     }
 }
 
-/// Returns the sample number at the given time.
 pub(super) fn sample_number(time: Time) -> String {
     time.nanoseconds().div_euclid(SAMPLE).to_string()
 }

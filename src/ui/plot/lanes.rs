@@ -23,13 +23,11 @@ const CLOSE: f32 = 13.0;
 /// Width of a character of an axis label in points: the font is monospaced.
 const LETTER: f32 = 6.7;
 
-/// Part of the plot with its own value axis.
 pub(super) struct Lane {
     pub(super) rect: Rect,
     pub(super) lines: Vec<LineId>,
     pub(super) range: (f64, f64),
     pub(super) step: f64,
-    /// Whether the lane shows no samples.
     pub(super) empty: bool,
 }
 

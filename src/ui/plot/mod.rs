@@ -21,7 +21,6 @@ use super::controls::empty;
 use crate::app::recorder::{self, Recorder};
 use crate::app::{Action, RecorderOwner};
 
-/// State of a plot between frames.
 #[derive(Default)]
 pub struct PlotUiState {
     owner: Option<RecorderOwner>,
@@ -39,7 +38,6 @@ impl PlotUiState {
         PlotUiState { large: Some(false), ..PlotUiState::default() }
     }
 
-    /// Returns whether the plot fills the page.
     pub(in crate::ui) fn is_large(&self) -> bool {
         self.large == Some(true)
     }

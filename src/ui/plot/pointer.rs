@@ -12,7 +12,6 @@ const NEAR: f32 = 6.0;
 /// Box size in points below which a drag counts as a click.
 const CLICK: f32 = 5.0;
 
-/// Object being dragged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Drag {
     Cursor(Cursor),

@@ -51,7 +51,6 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
 /// Width in points from which the numbers of all lines are stacked.
 const WIDE: f32 = 640.0;
 
-/// Draws a table with one row per line and one column per number.
 fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let right = |ui: &mut Ui, words: RichText| {
@@ -132,7 +131,6 @@ fn name(ui: &mut Ui, theme: &Theme, line: &Series) {
     ui.label(theme.caption(theme.words(&line.name)));
 }
 
-/// Draws a square in the colour of a line.
 fn swatch(ui: &mut Ui, theme: &Theme, line: &Series) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
     ui.painter().rect_filled(rect.shrink(1.0), 2.0, chart::colour(theme, line));
@@ -180,7 +178,6 @@ fn remarks(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measured
     }
 }
 
-/// Returns the last sample of a line.
 fn newest(context: &Context<'_>, line: &Series) -> Option<Sample> {
     let history = context.recorder.history(line)?;
     history.sample(line.column(), history.all().end.checked_sub(1)?)

@@ -106,7 +106,6 @@ fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form
     actions.into_iter().for_each(|action| context.act(action));
 }
 
-/// Draws the menu of lines and units.
 fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let mut actions = Vec::new();

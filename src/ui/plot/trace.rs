@@ -7,14 +7,12 @@ use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use crate::analysis::Time;
 use crate::analysis::history::{Flags, Picture};
 
-/// Line thickness in points.
 const WIDTH: f32 = 1.5;
 /// Maximum number of points for which a line is drawn smoothly.
 const SMOOTH: usize = 1500;
 /// Minimum sample spacing in points at which each sample gets a dot.
 const DOTS: f32 = 8.0;
 
-/// Conversion from time to screen coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TimeAxis {
     pub(super) from: Time,
@@ -41,7 +39,6 @@ impl TimeAxis {
     }
 }
 
-/// Conversion from values to screen coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ValueAxis {
     pub(super) low: f64,
@@ -68,7 +65,6 @@ impl ValueAxis {
     }
 }
 
-/// Appearance of a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pen {
     pub(super) colour: Color32,
@@ -80,7 +76,6 @@ pub(super) struct Pen {
     pub(super) warning: Color32,
 }
 
-/// Draws the shapes of a line in a lane.
 pub(super) fn shapes(
     picture: &Picture,
     lane: Rect,
@@ -180,7 +175,6 @@ fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen
     }
 }
 
-/// Draws a line segment as two triangles.
 fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
     let along = (to - from).normalized() * (WIDTH / 2.0);
     let (across, first) = (along.rot90(), mesh.vertices.len() as u32);

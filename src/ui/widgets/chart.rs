@@ -14,14 +14,12 @@ use egui_plot::{AxisHints, Bar, BarChart, GridMark, HoverPosition, Line, LineSty
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
-/// Chart to be drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Chart<'a> {
     /// Series, the main one first.
     pub traces: &'a [Trace],
     pub label: &'a str,
     pub value: &'a str,
-    /// Height in points.
     pub height: f32,
     pub x_unit: &'a str,
     pub y_unit: &'a str,
@@ -41,7 +39,6 @@ pub struct Chart<'a> {
 pub struct Trace {
     pub name: String,
     pub points: Vec<(f64, f64)>,
-    /// Index of the series' colour.
     pub colour: usize,
     pub dashed: bool,
 }

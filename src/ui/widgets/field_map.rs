@@ -40,7 +40,6 @@ pub struct MapField {
     pub tooltip: String,
 }
 
-/// Map of the whole memory.
 #[derive(Clone, Debug, Default)]
 pub struct FieldMap<'a> {
     /// Fields in memory order.
@@ -55,7 +54,6 @@ pub struct FieldMap<'a> {
     pub resize: Option<RangeInclusive<usize>>,
 }
 
-/// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapEvent {
     Select(u8),
@@ -138,7 +136,6 @@ struct Part {
     state: paint::State,
 }
 
-/// Announces a field or the free space as a single button, even across several lines.
 fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>, tooltip: &str) -> Part {
     let widest = strip::widest(runs);
     let mut part = Part { clicked: false, state: paint::State::default() };
@@ -179,7 +176,6 @@ fn tip(response: Response, tooltip: &str) {
     }
 }
 
-/// Draws the handle at the end of the last field.
 fn handle(
     ui: &Ui,
     theme: &Theme,

@@ -22,10 +22,8 @@ use crate::ui::{Theme, controls};
 
 use place::{Placed, SpaceNeeded, place};
 
-/// Field of a frame.
 #[derive(Clone, Debug, Default)]
 pub struct StripField {
-    /// Field name, shown below the bits.
     pub name: String,
     pub value: String,
     /// Number of bits, at least 1.
@@ -37,7 +35,6 @@ pub struct StripField {
     pub tooltip: String,
 }
 
-/// Complete frame to be drawn.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameStrip<'a> {
     pub label: &'a str,

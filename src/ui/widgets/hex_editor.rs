@@ -31,7 +31,6 @@ pub use addresses::HexAddresses;
 use grid::Grid;
 pub use view::HexView;
 
-/// Bytes to be shown by the editor.
 #[derive(Clone, Copy, Debug)]
 pub struct HexModel<'a> {
     /// Bytes read from the device; bytes beyond the end count as changed.
@@ -46,29 +45,26 @@ pub struct HexModel<'a> {
     pub addresses: HexAddresses,
 }
 
-/// Byte range with a meaning, marked by a bracket and explained in the tooltip.
 #[derive(Clone, Debug)]
 pub struct HexMark<'a> {
     pub range: Range<usize>,
     pub words: &'a str,
 }
 
-/// A request of the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HexEdit {
     /// Writes bytes from an address on; the range always fits.
     Put {
-        /// Address of the first byte.
         address: usize,
         /// New bytes, at least one.
         bytes: Vec<u8>,
     },
-    /// Undoes the last step.
     Undo,
-    /// Redoes the last undone step.
     Redo,
     /// Restores the device's bytes; at least one byte differs from them.
-    Revert { range: Range<usize> },
+    Revert {
+        range: Range<usize>,
+    },
 }
 
 impl<'a> HexModel<'a> {
@@ -77,7 +73,6 @@ impl<'a> HexModel<'a> {
         HexModel { device, wanted, marks: &[], read_only: None, lines: 16, addresses: HexAddresses::Counted }
     }
 
-    /// Returns an address in its displayed form.
     fn address(&self, at: usize) -> String {
         self.addresses.text(at, self.wanted.len())
     }

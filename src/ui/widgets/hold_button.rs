@@ -19,13 +19,11 @@ use crate::app::{HoldEvent, HoldInput, HoldScene, HoldState};
 use crate::ui::keys::press_key;
 use crate::ui::{Theme, stop_debounce};
 
-/// Hold button to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldButton<'a> {
     pub word: &'a str,
     pub caption: &'a str,
     pub label: &'a str,
-    /// Whether the button may be pressed.
     pub enabled: bool,
 }
 
@@ -37,7 +35,6 @@ pub(in crate::ui) struct HoldSurroundings {
     pub(in crate::ui) moving: bool,
 }
 
-/// State of a hold button between frames.
 #[derive(Clone, Copy, Default)]
 struct HoldMemory {
     state: HoldState,
@@ -54,10 +51,8 @@ struct Drawn {
     pointer: Option<u64>,
 }
 
-/// Minimum height in points.
 const LEAST: f32 = 56.0;
 
-/// Sets the context for the hold buttons of the current frame.
 pub(in crate::ui) fn surround_hold_buttons(ctx: &Context, surroundings: HoldSurroundings) {
     ctx.data_mut(|data| data.insert_temp(Id::unique("around hold buttons"), surroundings));
 }

@@ -18,7 +18,6 @@ use crate::app::Text;
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
-/// Lissajous figure to be drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Lissajous<'a> {
     pub figures: &'a [Figure],
@@ -41,7 +40,6 @@ pub struct Figure {
     pub dashed: bool,
 }
 
-/// Number of points used to draw a circle.
 const CIRCLE: usize = 120;
 /// Label steps of an axis in volts; the finest step with few enough labels is used.
 const STEPS: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
@@ -139,7 +137,6 @@ fn grid(painter: &Painter, theme: &Theme, place: &PlotArea) {
     }
 }
 
-/// Draws the axis labels over the rings, each on a background.
 fn labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
     let step = step(place);
     let font = FontId::proportional(theme.sizes.caption);

@@ -34,7 +34,6 @@ use lines::{LineKind, Lines};
 pub use view::RegisterView;
 use view::Selected;
 
-/// Location of a register: its group and its index within the group.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterLocation {
     pub group: usize,
@@ -68,7 +67,6 @@ pub struct RegisterGroup {
     pub rows: usize,
 }
 
-/// Register in its displayed form.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterRow {
     /// Address such as `0x04:0x1F`, or a number.
@@ -76,7 +74,6 @@ pub struct RegisterRow {
     pub name: String,
     /// Value in the form in which it is entered: bytes in hexadecimal digits, or a number; empty if not read.
     pub value: String,
-    /// Byte value as a decimal number.
     pub decimal: String,
     pub meaning: String,
     /// Access: `R`, `W` or `RW`.
@@ -85,7 +82,6 @@ pub struct RegisterRow {
     pub default: String,
     pub range: String,
     pub differs: bool,
-    /// Whether the value has changed since the previous reading.
     pub changed: bool,
     /// Previous value; empty if unknown.
     pub before: String,
@@ -110,7 +106,6 @@ pub struct RegisterBits {
     pub lit: bool,
 }
 
-/// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterEvent {
     Revert(RegisterLocation),
@@ -124,7 +119,6 @@ pub struct RegisterOutput {
     pub hides_columns: bool,
 }
 
-/// Line height in points.
 const LINE: f32 = 16.0;
 /// Margin between the edge of the table and its lines.
 const MARGIN: i8 = 4;

@@ -14,7 +14,6 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Sense, Shape, Stroke, Ui, Vec
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
-/// Ring of steps to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct StepRing<'a> {
     /// Step of the absolute position, 0 to 31.

@@ -20,7 +20,6 @@ use crate::app::Rgb;
 use crate::ui::controls::{enabled_button, fill, paragraph, primary};
 use crate::ui::{Theme, icons};
 
-/// Step of a procedure.
 #[derive(Clone, Debug, Default)]
 pub struct StepRow {
     pub title: String,
@@ -35,10 +34,8 @@ pub struct StepRow {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StepState {
-    /// The step is still to come.
     #[default]
     ToCome,
-    /// The step waits for the operator.
     Waiting,
     Running,
     Done,
@@ -46,7 +43,6 @@ pub enum StepState {
     Failed,
 }
 
-/// Measured value with its allowed range.
 #[derive(Clone, Debug)]
 pub struct Gauge {
     pub name: String,
@@ -64,7 +60,6 @@ pub struct Gauge {
 
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Steps<'a> {
-    /// Steps in order.
     pub steps: &'a [StepRow],
     /// Label of the waiting step's start button, and why the button is disabled, if so.
     pub start: Option<(&'a str, Result<(), &'a str>)>,
@@ -72,7 +67,6 @@ pub struct Steps<'a> {
     pub skip: Option<&'a str>,
 }
 
-/// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepsEvent {
     Start,
@@ -223,7 +217,6 @@ fn buttons(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> 
     event
 }
 
-/// Draws a progress bar for the completed share.
 fn progress(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width().max(0.0), 6.0), Sense::hover());
@@ -237,7 +230,6 @@ fn progress(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
     });
 }
 
-/// Draws the dot of a step with its number or state.
 fn dot(painter: &Painter, theme: &Theme, middle: Pos2, number: usize, step: &StepRow) {
     let palette = theme.palette;
     let (icon, colour) = step.state.mark(theme);

@@ -16,14 +16,12 @@ use crate::ui::{Theme, icons};
 /// Time in seconds for which a copied value stays marked.
 const COPIED: f64 = 1.2;
 
-/// Column widths and line height.
 struct Columns {
     name: f32,
     value: f32,
     row: f32,
 }
 
-/// Draws the typed values at the beginning of `bytes`.
 pub fn typed_view(ui: &mut Ui, theme: &Theme, bytes: &[u8]) {
     let font = FontId::monospace(theme.sizes.body);
     let glyph = ui.fonts_mut(|fonts| fonts.glyph_width(&font, '0'));

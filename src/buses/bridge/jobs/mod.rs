@@ -19,7 +19,6 @@ pub use open::open_adapter;
 
 /// The configuration of a stream, and the interpretation of its packets.
 pub trait Stretch: Send + 'static {
-    /// The samples of a batch.
     type Samples: SampleCount;
 
     fn wanted(&self) -> StreamRequest;
@@ -30,7 +29,6 @@ pub trait Stretch: Send + 'static {
 
 #[derive(Clone, Copy, Debug)]
 pub struct SineCosine {
-    /// Samples per second.
     pub sample_hz: u32,
 }
 

@@ -28,7 +28,6 @@ pub struct Portion {
     pub first: u64,
     /// Time of the first sample, by the local clock.
     pub time: Time,
-    /// Sampling interval in nanoseconds.
     pub period_ns: i64,
     /// Number of samples missing before the first one.
     pub lost: u64,
@@ -47,7 +46,6 @@ pub(crate) struct Flow {
     /// Lower bound for the time of any sample.
     not_before: Time,
     heard_at: Moment,
-    /// Time of the last sample.
     last: Option<Time>,
     drift: Drift,
 }
@@ -124,12 +122,10 @@ impl Flow {
         self.streamed
     }
 
-    /// Returns the time of the last sample received.
     pub(crate) const fn last(&self) -> Option<Time> {
         self.last
     }
 
-    /// Returns the actual sampling interval in nanoseconds.
     pub(crate) const fn period_ns(&self) -> i64 {
         self.period_ns
     }

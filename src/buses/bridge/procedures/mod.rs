@@ -35,7 +35,6 @@ pub(crate) const CLOCK: Whole<u32> = Whole(Quantity::Hertz, 80_000..=10_000_000)
 /// considered missing.
 const ENDLESS: Duration = Duration::from_secs(1);
 
-/// State of an adapter that is kept between jobs.
 #[derive(Clone, Debug, Default)]
 pub struct AdapterState {
     receiver: Receiver,
@@ -46,7 +45,6 @@ pub struct AdapterState {
     power: Power,
 }
 
-/// The reason why an adapter does not give a usable reply.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AdapterError {
     /// No reply to two requests.
@@ -67,7 +65,6 @@ pub enum AdapterError {
     Overvoltage {
         /// Requested voltage in millivolts.
         given: u16,
-        /// Measured voltage in millivolts.
         measured: u16,
         /// Millivolts that the encoder tolerates.
         greatest: u16,
@@ -89,7 +86,6 @@ pub enum AdapterError {
     Other { requested: Operation, got: Operation },
 }
 
-/// A failure of an adapter, or of the connection to it.
 #[derive(Debug)]
 pub(crate) enum Failure {
     Adapter(AdapterError),

@@ -2,7 +2,6 @@
 
 use crate::parameter::Words;
 
-/// State of the supply after a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SupplyAfter {
     /// As found: a supply switched on by this session is switched off.
@@ -16,12 +15,10 @@ pub enum SupplyAfter {
 impl SupplyAfter {
     /// Link parameter with the value that leaves the supply on after the session.
     pub const LEFT_ON: (&str, &str) = ("leave-supply", "on");
-    /// The values of the parameter.
     pub const WORDS: Words<SupplyAfter> =
         Words(&[("as-found", SupplyAfter::AsFound), ("on", SupplyAfter::On), ("off", SupplyAfter::Off)]);
 }
 
-/// The known state of an adapter's supply.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Power {
     pub(super) after: SupplyAfter,

@@ -13,7 +13,6 @@ use crate::units::{Moment, SupplyVoltage};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StreamRequest {
     Biss {
-        /// Clock in hertz.
         clock_hz: u32,
         /// Position, error and warning, without the CRC.
         data_bits: u8,
@@ -22,7 +21,6 @@ pub enum StreamRequest {
         period_us: u32,
     },
     Analog {
-        /// Samples per second.
         sample_hz: u32,
     },
 }
@@ -34,7 +32,6 @@ const POWER_UP: Duration = Duration::from_secs(1);
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Streaming {
     pub hello: Hello,
-    /// Sampling interval in nanoseconds.
     pub period_ns: i64,
     /// Full scale of sine and cosine in microvolts, the voltage of the value 32 767; otherwise 0.
     pub full_scale_microvolt: u32,
@@ -42,7 +39,6 @@ pub struct Streaming {
     pub supplied: Option<(u16, u16)>,
 }
 
-/// The reason why there is no stream, or why it has ended.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TapError {
     #[error("cancelled")]

@@ -94,7 +94,6 @@ impl<'a> Fields<'a> {
         Ok(text.to_owned())
     }
 
-    /// Returns all remaining bytes.
     pub(super) fn tail(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.rest)
     }

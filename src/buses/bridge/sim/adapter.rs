@@ -22,7 +22,6 @@ use crate::sim::sine_cosine::{Checked, Quantity, Settings};
 use crate::sim::{ByteDevice, Faults, Motor};
 use crate::units::{CharacterFormat, Moment};
 
-/// An adapter with its attached devices, as seen from the host.
 #[derive(Clone)]
 pub struct Adapter {
     bus: Bus,
@@ -115,7 +114,6 @@ impl Adapter {
         device.downcast_mut()
     }
 
-    /// Returns the motor of the shaft that all encoders share.
     pub fn motor(&self) -> Motor {
         self.bus.motor()
     }

@@ -21,7 +21,6 @@ pub trait BissDevice: Any + Send {
 
     fn motor(&self) -> Motor;
 
-    /// Sets the speed of the motor from `now` on.
     fn set_rpm(&mut self, now: Moment, rpm: f64);
 
     fn set_faults(&mut self, faults: &Faults);
@@ -62,7 +61,6 @@ pub trait SerialDevice: ByteDevice {
     /// Returns a second device with the same settings.
     fn another(&self) -> Box<dyn SerialDevice>;
 
-    /// Sets the speed of the shaft from `now` on.
     fn turn(&mut self, now: Moment, rpm: f64);
 }
 

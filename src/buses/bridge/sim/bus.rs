@@ -10,7 +10,6 @@ use crate::buses::bridge::protocol::BissStatus;
 use crate::sim::Motor;
 use crate::units::Moment;
 
-/// The wires of a bus with their encoders.
 #[derive(Clone)]
 pub(super) struct Bus {
     pub(super) biss: Option<Box<dyn BissDevice>>,
@@ -24,7 +23,6 @@ pub(super) struct Bus {
 }
 
 impl Bus {
-    /// Creates a bus without devices.
     pub(super) fn new(config: &Config, shared: &Shared, shaft: &config::Shaft) -> Self {
         Bus {
             biss: None,
@@ -37,7 +35,6 @@ impl Bus {
         }
     }
 
-    /// Returns the motor of the shaft that all encoders share.
     pub(super) fn motor(&self) -> Motor {
         self.biss.as_ref().map_or_else(|| self.shaft.motor().clone(), |device| device.motor())
     }

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-/// The fastest clock.
 pub(super) const MAX_CLOCK_HZ: u32 = 10_000_000;
 const MIN_CLOCK_HZ: u32 = 80_000;
 /// Frequency of which available clocks are integer fractions.
@@ -35,7 +34,6 @@ pub(super) struct SsiSetting {
 }
 
 impl SsiSetting {
-    /// Returns the duration of a word's clocks.
     pub(super) fn burst(self) -> Duration {
         let nanoseconds = u64::from(self.clocks) * 1_000_000_000;
         Duration::from_nanos(nanoseconds.div_ceil(self.clock_hz.max(1).into()))

@@ -34,7 +34,6 @@ parameters! {
     }
 }
 
-/// The wires between adapter and encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EncoderWiring {
     Good,

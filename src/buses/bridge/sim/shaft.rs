@@ -21,7 +21,6 @@ impl Clone for Shaft {
 }
 
 impl Shaft {
-    /// Steps of a revolution.
     const PER_TURN: u64 = 1 << 25;
     /// Number of revolutions after which the position wraps.
     const TURNS: f64 = 65_536.0;

@@ -19,7 +19,6 @@ pub(super) enum Kind {
     Biss,
 }
 
-/// The progress of a stream.
 #[derive(Clone, Debug)]
 struct Pace {
     start: Moment,
@@ -129,7 +128,6 @@ impl Clocked {
     }
 }
 
-/// A stream of analogue samples.
 #[derive(Clone, Debug)]
 pub(super) struct Analog {
     pace: Pace,

@@ -5,7 +5,6 @@ use crate::buses::bridge::procedures::AdapterError;
 use crate::buses::bridge::protocol::{BodyError, ErrorCode, Operation};
 use crate::buses::bridge::state::TEXTS;
 
-/// Explains why an adapter does not reply, or not as requested.
 pub fn adapter(error: &AdapterError) -> Text {
     match error {
         AdapterError::Silent => TEXTS.text("adapter.silent"),
@@ -50,7 +49,6 @@ fn reason(code: ErrorCode) -> Text {
     }
 }
 
-/// Returns why the body of a packet cannot be read.
 fn body(error: &BodyError) -> Text {
     let of = |id, op: u8| TEXTS.text(id).with("operation", format!("0x{op:02X}"));
     match *error {

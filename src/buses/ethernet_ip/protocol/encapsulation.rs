@@ -52,7 +52,6 @@ pub enum Body {
     Other(Vec<u8>),
 }
 
-/// The known commands.
 const NAMES: [(Command, &str); 8] = [
     (Command::NOP, "NOP"),
     (Command::LIST_SERVICES, "ListServices"),

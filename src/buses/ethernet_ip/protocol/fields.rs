@@ -132,12 +132,10 @@ impl<'a> Fields<'a> {
         Ok(bytes)
     }
 
-    /// Returns all remaining bytes.
     pub(super) fn tail(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.rest)
     }
 
-    /// Returns whether no bytes remain.
     pub(super) const fn is_empty(&self) -> bool {
         self.rest.is_empty()
     }

@@ -32,7 +32,6 @@ pub struct Reply {
     pub data: Vec<u8>,
 }
 
-/// The services that objects have in common.
 const NAMES: [(Service, &str); 5] = [
     (Service::GET_ALL, "Get_Attributes_All"),
     (Service::SET_ALL, "Set_Attributes_All"),

@@ -82,7 +82,6 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Returns the inverted sum of all bytes.
 fn checksum(bytes: &[u8]) -> u8 {
     !bytes.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
 }

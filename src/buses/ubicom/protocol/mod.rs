@@ -21,7 +21,6 @@ pub use receiver::Receiver;
 
 use crate::units::{Baud, CharacterFormat, Parity};
 
-/// 115200 bit/s.
 const BAUD: Baud = Baud::B115200;
 
 /// Character format of the line: 115200 8N1.

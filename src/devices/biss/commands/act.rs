@@ -86,7 +86,6 @@ fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {
     }
 }
 
-/// Runs a guided procedure at the motor, or only the measurement.
 fn guided(common: &Common, output: &Output, act: &Do, run: MountingRun) -> Result {
     require_consent(&act.consent)?;
     let motor = if run.needs_motor() { motor(output, act)? } else { MotorSource::Other };

@@ -15,7 +15,6 @@ use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
 
-/// The kind of an argument.
 enum Captured {
     /// The bits of a position frame as written.
     Bits(String, u64),

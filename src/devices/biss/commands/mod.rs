@@ -30,10 +30,8 @@ use crate::kinds::at_adapter;
 use crate::sim::ConfigError;
 use crate::units::{CharacterFormat, Moment};
 
-/// Time to wait for a motor, or a shaft at rest, without a user.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// The commands for BiSS encoders.
 pub(crate) struct BissCommands;
 
 impl DeviceCommands for BissCommands {

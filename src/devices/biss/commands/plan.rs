@@ -25,7 +25,6 @@ use crate::result_of;
 pub(super) const CALIBRATION: &str =
     "counterclockwise, then clockwise; if the clockwise run fails, the calibration table is lost";
 
-/// Prepares the plan of a change without writing.
 pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
     Ok(result_of!(runner.run(BissJob::Prepare(change))?, BissOutput::Prepared(prepared) => *prepared))
 }
@@ -118,7 +117,6 @@ fn fired(parts: PresetParts, value: PresetValue) -> String {
     }
 }
 
-/// Returns the results of the operations as JSON.
 pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
     let rpm = |motion: &Option<Motion>| motion.map(|motion| motion.rpm);
     let one = |outcome: &Outcome| match outcome {

@@ -39,7 +39,6 @@ impl Runs for Biss {
         }
     }
 
-    /// Describes each step of an operation, and each task of the operator.
     fn announce(doing: &JobStep) -> Option<String> {
         match doing {
             JobStep::Operation { item, progress: news } => {

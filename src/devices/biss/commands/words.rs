@@ -29,7 +29,6 @@ pub(super) fn of_run(register: &Register, range: RegisterRange, bytes: &[u8]) ->
     own.then(|| words(register, bytes)).flatten()
 }
 
-/// Returns the value of a register as a quantity.
 pub(super) fn quantity(register: &Register, bytes: &[u8]) -> Option<f64> {
     match register.decode(bytes)? {
         Decoded::Scaled(value) => Some(value),

@@ -24,7 +24,6 @@ pub const WEAR_LIMIT: u64 = 1000;
 /// Number of persistent writes from which the user is warned.
 pub const WEAR_WARNING: u64 = 800;
 
-/// A job of a session with a BiSS encoder.
 #[derive(Debug)]
 pub enum BissJob {
     /// Read everything that is displayed after connecting.
@@ -34,7 +33,6 @@ pub enum BissJob {
     Status,
     /// Check the encoder against its description, its data sheet and the line, with a verdict for each item.
     Check,
-    /// The position, once.
     Position,
     /// Read consecutive registers; those of a data area only at standstill.
     Read(RegisterRange),
@@ -49,13 +47,11 @@ pub enum BissJob {
     SaveToCompare,
     /// Prepare a plan without writing.
     Prepare(Change),
-    /// Carries a plan out.
     Commit(Box<Commit>),
     /// Return the encoder to operation and clear the password, whoever changed the mode.
     LeadBack,
 }
 
-/// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
     Restore {
@@ -77,7 +73,6 @@ pub enum Change {
     },
 }
 
-/// Kind of change, which determines how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
@@ -135,7 +130,6 @@ impl Prepared {
     }
 }
 
-/// Plan with the user's consent.
 #[derive(Clone, Debug)]
 pub struct Commit {
     pub agreed: ApprovedPlan<Prepared>,
@@ -167,10 +161,8 @@ impl Operator for OperatorPresence {
 
 pub type Committed = crate::worker::Committed<Written>;
 
-/// Registers as last read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadRegisters {
-    /// The first.
     pub start: RegisterAddress,
     /// Values in address order.
     pub bytes: Vec<u8>,
@@ -178,7 +170,6 @@ pub struct ReadRegisters {
     pub unsaved: Option<DeviceMode>,
 }
 
-/// A message of a BiSS encoder during a job, or of the program about the encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     /// Frames with a wrong checksum that belong to no reading.
@@ -187,17 +178,11 @@ pub enum DeviceMessage {
     Descriptions(Vec<StoreError>),
 }
 
-/// A step of a running BiSS job. It displays as on the command line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JobStep {
     Register(RegisterAddress),
     Bank(u8),
-    /// An operation of a plan is carried out.
-    Operation {
-        item: String,
-        /// The present step.
-        progress: Box<ProcedureProgress>,
-    },
+    Operation { item: String, progress: Box<ProcedureProgress> },
 }
 
 impl fmt::Display for JobStep {
@@ -210,7 +195,6 @@ impl fmt::Display for JobStep {
     }
 }
 
-/// The result of a BiSS job.
 #[derive(Debug)]
 pub enum BissOutput {
     Surveyed(Box<Survey>),
@@ -231,7 +215,6 @@ pub enum BissOutput {
     LedBack(DeviceMode),
 }
 
-/// Why a job ended early.
 pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
 
 impl From<PlanError> for JobError {

@@ -33,7 +33,6 @@ use crate::store::{Store, StoreError};
 use crate::worker::commit::cycles_seen;
 use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
-/// A BiSS encoder with its connection.
 pub struct Biss {
     wire: Box<dyn ByteLink>,
     station: Station,
@@ -89,7 +88,6 @@ impl Session<Biss> {
         )
     }
 
-    /// Returns the state of the line and the encoder.
     pub fn station(&self) -> &Station {
         &self.device.station
     }

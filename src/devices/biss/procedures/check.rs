@@ -29,7 +29,6 @@ pub enum CheckStep {
     Wear,
 }
 
-/// A finding of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
     Name(String),
@@ -44,13 +43,9 @@ pub enum CheckFinding {
     Mode(DeviceMode),
     Open,
     Position(PositionReading),
-    /// The error bit of the position is set.
     ErrorBit,
-    /// The warning bit of the position is set.
     WarningBit,
-    /// No readable position.
     NoPosition,
-    /// Both sums of the data sheet fit.
     SumsFit,
     /// A bank of the data sheet, or both together, cannot be relied upon.
     Sheet(EdsError),

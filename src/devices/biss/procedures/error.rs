@@ -9,7 +9,6 @@ use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
 
-/// A request to an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequestedItem {
     Read(RegisterAddress),
@@ -27,7 +26,6 @@ impl fmt::Display for RequestedItem {
     }
 }
 
-/// A procedure that ended early.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]
@@ -46,17 +44,14 @@ pub enum Error {
     NeverSilent,
     #[error(transparent)]
     Adapter(#[from] AdapterError),
-    /// No encoder acknowledges on the bus.
     #[error("no encoder acknowledges on the bus (attempts: {tries})")]
     NoAcknowledge {
         tries: u32,
         /// Whether the adapter could supply the encoder, but was not told to.
         supply_off: bool,
     },
-    /// The data line stays low.
     #[error("the data line stays low (attempts: {tries})")]
     StuckLow { tries: u32 },
-    /// The data line stays high.
     #[error("the data line stays high (attempts: {tries})")]
     StuckHigh { tries: u32 },
     /// No frame ever had a correct checksum: the widths do not match the encoder.
@@ -71,13 +66,11 @@ pub enum Error {
     /// The widths of the frame are not known, and no length fits.
     #[error("no length of the frames fits their CRC")]
     WidthsUnknown { moving: bool },
-    /// The encoder does not have the register: it replies, but not for this address.
     #[error("the encoder has no register {address}")]
     NoSuchRegister { address: RegisterAddress },
     /// Registers of a data area cannot be watched, because they are only read at standstill.
     #[error("register {address} is data, which is not read while the shaft may turn")]
     NotWatched { address: RegisterAddress },
-    /// The encoder has not accepted a value.
     #[error("the encoder refuses 0x{value:02X} for register {address}")]
     Refused {
         address: RegisterAddress,
@@ -103,25 +96,17 @@ pub enum Error {
     TooWide {
         /// As received.
         word: u64,
-        /// Bits of the revolutions.
         multiturn: u8,
-        /// Bits within a revolution.
         singleturn: u8,
     },
     /// The registers extend beyond the last address.
     #[error("{count} registers from {start} on are more than there can be")]
-    OutOfRange {
-        /// The first.
-        start: RegisterAddress,
-        count: usize,
-    },
+    OutOfRange { start: RegisterAddress, count: usize },
     /// There is neither a description for this encoder nor a general one.
     #[error("no description fits the encoder, which says {0}")]
     NoDescription(Identity),
-    /// The encoder has not been identified yet.
     #[error("the encoder was not identified")]
     NotIdentified,
-    /// The shaft is turning but must be at rest.
     #[error("the shaft moves")]
     Moving {
         /// Speed in revolutions per minute, positive clockwise, or `None` if the encoder counts too few turns to
@@ -141,17 +126,11 @@ pub enum Error {
         /// The status byte.
         status: u8,
     },
-    /// A layout of the frame that no encoder can have.
     #[error(transparent)]
     Layout(#[from] LayoutError),
     /// Fewer registers were read than requested.
     #[error("{got} registers were read from {start} on, not {expected}")]
-    TooFew {
-        /// The first register.
-        start: RegisterAddress,
-        expected: usize,
-        got: usize,
-    },
+    TooFew { start: RegisterAddress, expected: usize, got: usize },
     /// The encoder does not return to operation, or its password remains set.
     #[error("the encoder stays in device mode {mode}, or its password stays set")]
     StaysUnlocked { mode: DeviceMode },
@@ -177,15 +156,10 @@ pub(super) fn exactly<const N: usize>(start: RegisterAddress, bytes: Vec<u8>) ->
     bytes.try_into().map_err(|bytes: Vec<u8>| Error::TooFew { start, expected: N, got: bytes.len() })
 }
 
-/// The damage of a reply.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    /// The bytes are not a frame.
     #[error("bytes without a complete frame: {bytes}")]
-    NoFrame {
-        /// Number of bytes.
-        bytes: usize,
-    },
+    NoFrame { bytes: usize },
     /// The frame is not a reply to the request.
     #[error(transparent)]
     Reply(#[from] ReplyError),

@@ -11,7 +11,6 @@ use crate::units::Moment;
 /// Why a frame of a stream has no reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoReading {
-    /// No encoder acknowledged.
     #[error("no encoder acknowledges on the bus")]
     NoAcknowledge,
     /// The bits are not a frame: the checksum is wrong, or the line does not change.
@@ -22,7 +21,6 @@ pub enum NoReading {
     Status(BissStatus),
 }
 
-/// A frame of a stream.
 pub type Frame = Result<PositionData, NoReading>;
 
 /// Consecutive frames of a stream at equal intervals.
@@ -30,19 +28,15 @@ pub type Frame = Result<PositionData, NoReading>;
 pub struct FrameRun {
     /// Number of the first frame, counted from the start of the stream, including missing ones.
     pub first: u64,
-    /// Time of the first frame.
     pub at: Moment,
-    /// Sampling interval in nanoseconds.
     pub period_ns: i64,
     /// Number of frames missing before the first one.
     pub lost: u64,
     /// Frames; at least one.
     pub frames: Vec<Frame>,
-    /// Layout of the frames.
     pub layout: Arc<Layout>,
     /// Whether the number of turn bits is known.
     pub is_split_known: bool,
-    /// The clock of the bus in hertz.
     pub clock_hz: u32,
     /// The frames cannot have the requested interval.
     pub is_limited: bool,
@@ -74,7 +68,6 @@ impl FrameRun {
         (0..).zip(&self.frames).map(move |(number, frame)| (self.at + period * number, frame))
     }
 
-    /// Returns the number of frames with a wrong checksum.
     pub fn crc_errors(&self) -> usize {
         let is_wrong = |frame: &&Frame| matches!(frame, Err(NoReading::Frame(FrameError::Crc { .. })));
         self.frames.iter().filter(is_wrong).count()

@@ -38,7 +38,6 @@ pub struct Identity {
     pub order: Option<ByteOrder>,
 }
 
-/// Source of the frame of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameSource {
     DataSheet,

@@ -37,7 +37,6 @@ pub struct Master<'a> {
 enum ExchangeError {
     /// No reply, except possibly the echo.
     Silence {
-        /// The sent bytes came back.
         echo_heard: bool,
     },
     Damage(Damage),
@@ -48,7 +47,6 @@ enum ExchangeError {
 /// Result of an exchange. The outer error is final; the inner one may be retried.
 type Attempt<T> = Result<Result<T, ExchangeError>, Error>;
 
-/// An encoder's reaction to a value.
 enum WriteReaction {
     Yes,
     /// The encoder refused; with the value that the register returns, if the connection reveals it.
@@ -64,7 +62,6 @@ impl<'a> Master<'a> {
         Master { line: SerialLine::new(ctx), station }
     }
 
-    /// Returns the state of the line and the encoder.
     pub fn station(&mut self) -> &mut Station {
         self.station
     }

@@ -31,7 +31,6 @@ pub enum Unsaved {
     Refused,
 }
 
-/// The stage of reading a memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadStage {
     Register(RegisterAddress),

@@ -102,7 +102,6 @@ pub enum Sample {
     Watched(WatchedReading),
 }
 
-/// Watched registers as last read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
     pub at: Moment,

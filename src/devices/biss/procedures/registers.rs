@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use super::{Error, Master};
 use crate::devices::biss::protocol::{Decoded, Description, Firmware, Register, RegisterAddress, Role};
 
-/// Values of registers, by address.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Registers(BTreeMap<RegisterAddress, u8>);
 

@@ -86,7 +86,6 @@ impl Transport {
     }
 }
 
-/// The state of a line and its encoder.
 #[derive(Clone, Debug)]
 pub struct Station {
     pub transport: Transport,
@@ -136,7 +135,6 @@ pub struct Station {
     pub unfinished: bool,
 }
 
-/// The encoder supply provided by an adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Supply {
     /// Requested voltage in millivolts.
@@ -239,7 +237,6 @@ impl Station {
         std::mem::take(&mut self.crc_errors)
     }
 
-    /// Returns whether the multiturn width is known.
     pub(super) fn is_split_known(&self) -> bool {
         self.source.is_none_or(FrameSource::is_known)
     }

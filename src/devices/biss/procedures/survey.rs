@@ -37,7 +37,6 @@ pub struct Bits {
     pub set: Vec<(u8, Option<Name>)>,
 }
 
-/// The state in which an encoder was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub identity: Identity,

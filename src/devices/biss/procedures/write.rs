@@ -12,14 +12,12 @@ use crate::profile::{Confirmed, Write, WriteRecord};
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Written {
-    /// Number of operations performed.
     pub ops: usize,
     pub written: u64,
     /// Number of registers read back with the correct value.
     pub verified: u64,
     /// Number of persistent writes that were, or may have been, spent.
     pub write_cycles: u64,
-    /// Outcome of each operation that was performed or skipped.
     pub outcomes: Vec<Outcome>,
 }
 
@@ -33,10 +31,8 @@ impl WriteRecord for Written {
     }
 }
 
-/// A write that ended early.
 pub type Interrupted = crate::profile::Interrupted<Op, Failure, Written, EndState>;
 
-/// The state in which an encoder was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EndState {
     /// The step reached in the running operation.
@@ -58,7 +54,6 @@ impl Interrupted {
     }
 }
 
-/// An encoder to which a plan is written.
 pub struct EncoderWrite<'w, 'm> {
     guide: Guide<'w, 'm>,
     identity: &'w Identity,

@@ -9,7 +9,6 @@ use std::time::Duration;
 use crate::devices::biss::protocol::{CalibrationCommand, CalibrationStatus, Filter};
 use crate::units::Moment;
 
-/// Conditions under which a calibration run takes place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conditions {
     /// Shaft speed in revolutions per minute; above 0 means clockwise.
@@ -40,7 +39,6 @@ struct Run {
 /// Effect of a finished run on the calibration table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
-    /// The calibration table is unchanged.
     No,
     /// The second run is complete and the table has been saved.
     Saved,

@@ -51,7 +51,6 @@ impl Config {
         setting::read(VirtualDevice::Encoder, pairs)
     }
 
-    /// Returns the simulated line and flash faults.
     pub const fn faults(&self) -> &Faults {
         &self.faults
     }

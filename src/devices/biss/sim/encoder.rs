@@ -107,7 +107,6 @@ impl Encoder {
         encoder
     }
 
-    /// Returns the non-volatile memory.
     pub const fn flash(&self) -> &Flash {
         &self.flash
     }
@@ -124,7 +123,6 @@ impl Encoder {
         self.drive.motor().clone()
     }
 
-    /// Changes the shaft speed from `now` on.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
         self.drive.motor().set_rpm(rpm);
         self.settle(now);
@@ -145,7 +143,6 @@ impl Encoder {
         self.errors = errors;
     }
 
-    /// Cycles the power at `now`.
     pub fn power_cycle(&mut self, now: Moment) {
         self.settle(now);
         self.disconnect();
@@ -157,7 +154,6 @@ impl Encoder {
         self.power = Power::Off;
     }
 
-    /// Restores the power after it was cut.
     pub fn connect(&mut self, now: Moment) {
         if self.power == Power::Off {
             self.start(now);

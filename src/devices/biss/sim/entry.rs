@@ -5,7 +5,6 @@ use crate::devices::biss::protocol::{
     DataCommand, DataStatus, Filter, FilterCommand, FilterStatus, Layout, PresetCommand, PresetStatus, PresetValue,
 };
 
-/// A plain data area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Area {
     Motor,
@@ -24,11 +23,9 @@ impl Area {
     }
 }
 
-/// The effect of a command on the encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Then {
     Refused,
-    /// The command has no further effect.
     Nothing,
     /// A data area is opened; its content must be passed to [`DataEntry::open`].
     Open(Area),
@@ -44,7 +41,6 @@ pub(super) enum Then {
     },
 }
 
-/// Write access to motor or OEM data.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DataEntry {
     pub(super) command: u8,
@@ -90,7 +86,6 @@ impl DataEntry {
     }
 }
 
-/// Selection of a filter.
 #[derive(Clone, Debug)]
 pub(super) struct FilterEntry {
     pub(super) command: u8,
@@ -123,7 +118,6 @@ impl FilterEntry {
     }
 }
 
-/// Entry of a preset value.
 #[derive(Clone, Debug)]
 pub(super) struct PresetEntry {
     pub(super) command: u8,

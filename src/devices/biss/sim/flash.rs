@@ -2,7 +2,6 @@
 
 use crate::devices::biss::protocol::{Filter, PresetValue};
 
-/// Flash memory of a virtual encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flash {
     pub(super) motor_data: Vec<u8>,
@@ -32,12 +31,10 @@ impl Flash {
         }
     }
 
-    /// Returns the motor data, banks 04h to 23h.
     pub fn motor_data(&self) -> &[u8] {
         &self.motor_data
     }
 
-    /// Returns the OEM data, banks 24h to 43h.
     pub fn oem_data(&self) -> &[u8] {
         &self.oem_data
     }

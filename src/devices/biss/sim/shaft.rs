@@ -66,7 +66,6 @@ impl Shaft {
         self.offset = (self.layout.steps(&wanted) % range + range - self.whole_steps(at)) % range;
     }
 
-    /// Returns the number of steps per revolution.
     fn steps(&self) -> u64 {
         1 << self.layout.singleturn_bits()
     }

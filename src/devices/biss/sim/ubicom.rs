@@ -54,7 +54,6 @@ pub(crate) enum Event {
 impl Port {
     const PROCESSING: Duration = Duration::from_millis(1);
 
-    /// Creates the virtual line from `config`.
     pub fn new(config: &Config) -> Self {
         Port {
             encoder: Encoder::new(config),

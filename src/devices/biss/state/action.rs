@@ -9,7 +9,6 @@ use crate::devices::biss::procedures::procedure::{Answer, Task};
 use crate::devices::biss::profile::{MotorSource, MountingRun};
 use crate::devices::biss::protocol::{Register, RegisterAddress};
 
-/// A user action in the BiSS tab.
 pub enum BissAction {
     /// Read errors, warnings, temperature and device mode.
     ReadStatus,
@@ -24,12 +23,10 @@ pub enum BissAction {
     ReadArea(u8),
     /// Edit bytes of plain data.
     Put {
-        /// Address of the first byte.
         start: RegisterAddress,
         bytes: Vec<u8>,
     },
     Revert {
-        /// Address of the first byte.
         start: RegisterAddress,
         count: usize,
     },

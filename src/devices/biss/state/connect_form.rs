@@ -18,7 +18,6 @@ use crate::link::{LinkUrl, Scheme};
 use crate::parameter::{Entry, Parameters as _, Values, chosen};
 use crate::units::Parity;
 
-/// Kind of connection to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BissLinkKind {
     #[default]

@@ -19,7 +19,6 @@ use crate::devices::biss::protocol::{Description, DeviceMode, Eds, EdsBank, EdsE
 use crate::devices::biss::state::explain as words;
 use crate::sim::Motor;
 
-/// A BiSS encoder or an encoder profile.
 pub struct Encoder {
     pub session: Session<Biss>,
     pub survey: Option<Survey>,
@@ -29,7 +28,6 @@ pub struct Encoder {
     pub check: Option<Vec<CheckLine>>,
     pub description: Option<Arc<Description>>,
     pub memory: Memory,
-    /// The encoder's registers as a table.
     pub table: Table,
     pub record: Record,
     /// The running procedure, or the last one with its result.
@@ -125,7 +123,6 @@ impl Encoder {
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
     }
 
-    /// Returns whether there are unwritten edits.
     pub fn is_dirty(&self) -> bool {
         self.memory.is_dirty()
     }

@@ -57,7 +57,6 @@ fn lost(error: &Error) -> Option<&LinkError> {
     }
 }
 
-/// Returns the message for a failed exchange with a BiSS encoder.
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
@@ -119,7 +118,6 @@ pub fn encoder(error: &Error) -> Text {
     }
 }
 
-/// Returns the reason why a frame layout is impossible.
 fn layout(error: &LayoutError) -> Text {
     let hex = |number: u64| format!("{number:#X}");
     match *error {
@@ -163,7 +161,6 @@ fn in_mode(id: &'static str, mode: DeviceMode) -> Text {
     TEXTS.text(id).with_text("mode", self::mode(mode))
 }
 
-/// Returns the message for a shaft that must stand still but is moving.
 fn moving(rpm: Option<f64>) -> Text {
     let Some(rpm) = rpm.filter(|rpm| rpm.abs() >= 0.05) else { return TEXTS.text("biss.moving") };
     let id = if rpm > 0.0 { "biss.moving_cw" } else { "biss.moving_ccw" };

@@ -5,7 +5,6 @@ use crate::app::number::{whole, within};
 use crate::devices::biss::protocol::{Layout, PresetValue};
 use crate::devices::biss::state::TEXTS;
 
-/// Form fields for a preset position.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PresetForm {
     /// Angle within the revolution, in degrees.

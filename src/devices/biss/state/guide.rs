@@ -19,7 +19,6 @@ pub struct Guide {
     pub end: Option<End>,
 }
 
-/// How a procedure ended.
 #[derive(Clone, Debug)]
 pub enum End {
     /// The procedure ran to completion, with the result of each operation.
@@ -36,11 +35,9 @@ pub enum End {
     },
 }
 
-/// Progress of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reached {
     Done,
-    /// The step is waiting for the operator.
     Waits,
     Runs,
     Skipped,
@@ -51,11 +48,9 @@ pub enum Reached {
     Ahead,
 }
 
-/// A step with its operation and progress.
 #[derive(Clone, Debug)]
 pub struct GuideStep<'a> {
     pub op: &'a Op,
-    /// Whether the step is the first one in its operation.
     pub is_first: bool,
     pub step: ProcedureStep,
     pub reached: Reached,
@@ -99,7 +94,6 @@ impl Guide {
         }
     }
 
-    /// Returns the steps of all operations in order.
     pub fn steps(&self) -> Vec<GuideStep<'_>> {
         let at = self.progress.as_ref().map(|news| (news.op, self.cut.unwrap_or(news.step)));
         let mut steps = Vec::new();

@@ -34,7 +34,6 @@ impl Encoder {
         services.note(Severity::Note, vec![text], Some(&self.session.name()));
     }
 
-    /// Logs the results of the operations before the end of the write is logged.
     pub(super) fn log_outcomes(&self, outcomes: &[Outcome], services: &mut Services) {
         for outcome in outcomes {
             services.note(Severity::Note, words::outcome(outcome), Some(&self.session.name()));
@@ -63,7 +62,6 @@ fn transport_text(identity: &Identity) -> Text {
     }
 }
 
-/// Returns the log text for the reported identity.
 fn identity_text(identity: &Identity) -> Text {
     let firmware = identity.firmware.map_or_else(|| Text::new("encoder_card.not_told"), explain::plain);
     TEXTS

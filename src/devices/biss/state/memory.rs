@@ -9,7 +9,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::app::{EditBase, Edits};
 use crate::devices::biss::protocol::{Area, Description, Register, RegisterAddress};
 
-/// Register values as last read.
 #[derive(Clone, Debug, Default)]
 pub struct Registers {
     read: BTreeMap<RegisterAddress, u8>,
@@ -26,10 +25,8 @@ impl EditBase for Registers {
     }
 }
 
-/// Registers with the user's edits.
 pub type Memory = Edits<Registers>;
 
-/// Reason why an edit was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MemoryError {
     /// The register has not been read, so the value to be replaced is unknown.
@@ -106,12 +103,10 @@ impl Memory {
         best.map(|(first, last)| Area { first, last, ..area.clone() })
     }
 
-    /// Returns whether a register's value differs from the previous reading.
     pub fn has_changed(&self, at: RegisterAddress) -> bool {
         self.base().changed.contains(&at)
     }
 
-    /// Returns whether a register's edited value differs from the encoder's value.
     pub fn is_edited(&self, at: RegisterAddress) -> bool {
         self.get(at).is_some()
     }

@@ -51,7 +51,6 @@ pub struct Record {
 pub struct Streamed {
     next: u64,
     period_ns: i64,
-    /// Bus clock frequency in hertz.
     pub clock_hz: u32,
     /// Whether the requested frame rate exceeds what the clock allows.
     pub is_limited: bool,

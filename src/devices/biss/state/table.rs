@@ -8,7 +8,6 @@ use crate::devices::biss::protocol::{Access, Decoding, Description, EdsBank, Nam
 /// Last bank if the description names none, taken from the kit encoder.
 const LAST_BANK: u8 = 0x43;
 
-/// Register table, grouped by bank.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     groups: Vec<Group>,
@@ -82,7 +81,6 @@ impl Group {
         &self.rows
     }
 
-    /// Returns the address of the group's first register.
     pub fn start(&self) -> Option<RegisterAddress> {
         addresses(self.bank).next()
     }
@@ -115,7 +113,6 @@ impl RegisterEntry<'_> {
         !default.is_empty() && self.bytes.as_ref().is_some_and(|own| own != default)
     }
 
-    /// Returns the register's bytes as a number.
     pub fn number(&self) -> Option<u64> {
         self.row.register.number(self.bytes.as_ref()?)
     }

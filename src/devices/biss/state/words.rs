@@ -36,7 +36,6 @@ pub(super) fn not_edited(error: MemoryError) -> Text {
     }
 }
 
-/// Returns the label for a position filter.
 pub fn filter(filter: Filter) -> Text {
     match filter {
         Filter::Balanced => TEXTS.text("biss_status.balanced"),
@@ -56,7 +55,6 @@ pub fn sheet(error: &EdsError) -> Text {
     }
 }
 
-/// Returns the formatted value of a data sheet field.
 pub fn eds(value: EdsValue) -> Text {
     let text = |id| TEXTS.text(id);
     match value {

@@ -14,7 +14,6 @@ use crate::ui::dialogs::connect::entries::{
     echo, field, leave_supply, network, parity, recording, segments, serial, typed, typed_in_a_row, unfolded,
 };
 
-/// Connection form for BiSS encoders.
 pub(crate) struct BissConnectForm;
 
 impl TypedConnectForm for BissConnectForm {

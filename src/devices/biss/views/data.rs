@@ -11,7 +11,6 @@ use crate::ui::controls::{empty, enabled_button, name, paragraph};
 use crate::ui::widgets::{HexAddresses, HexEdit, HexModel, HexView, hex_editor, hex_lines, typed_view};
 use crate::ui::{Theme, edit_bar, icons};
 
-/// UI state of the page, kept between frames.
 #[derive(Default)]
 pub(super) struct DataUiState {
     area: usize,

@@ -20,7 +20,6 @@ use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{NamedAction, Theme, backups, icons, page, status_line};
 
-/// A page of the BiSS tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
     #[default]
@@ -50,7 +49,6 @@ impl Page {
     }
 }
 
-/// UI state of the tab for one session, kept between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct BissUiState {
     registers: registers::RegistersUiState,
@@ -97,7 +95,6 @@ fn lead_back_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec
     }
 }
 
-/// The tab for BiSS encoders.
 pub(crate) struct BissView;
 
 impl TypedDeviceView for BissView {

@@ -18,7 +18,6 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// UI state of the page, kept between frames.
 #[derive(Default)]
 pub(super) struct ProceduresUiState {
     motor: Option<MotorSource>,
@@ -80,7 +79,6 @@ pub(super) fn page_ui(
     );
 }
 
-/// Selections for a mounting run.
 struct Mounting<'v> {
     motor: &'v mut Option<MotorSource>,
     calibrate: &'v mut bool,

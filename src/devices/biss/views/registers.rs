@@ -14,7 +14,6 @@ use crate::ui::widgets::{
 };
 use crate::ui::{Theme, icons};
 
-/// UI state of the page, kept between frames.
 #[derive(Default)]
 pub(super) struct RegistersUiState {
     table: RegisterView,
@@ -235,7 +234,6 @@ fn row_of(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere
     }
 }
 
-/// Returns the named bits of a register.
 fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
     let Decoding::Bits(names) = &shown.row.register.decoding else { return Vec::new() };
     let number = shown.number();

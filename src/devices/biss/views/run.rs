@@ -135,7 +135,6 @@ fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     gauges
 }
 
-/// Returns the gauge for the speed in the requested direction.
 fn speed(theme: &Theme, run: Run, demand: &Demand) -> Gauge {
     let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
     let (allowed, accepted, best) = (run.allowed(), run.allowed().measured(), run.recommended());

@@ -53,5 +53,4 @@ fn sheet_ui(ui: &mut Ui, theme: &Theme, bank: EdsBank, sheet: &Result<Eds, EdsEr
     });
 }
 
-/// Width of the offset column.
 const OFFSET: f32 = 40.0;

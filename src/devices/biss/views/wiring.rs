@@ -8,7 +8,6 @@ use crate::ui::Theme;
 use crate::ui::controls::{folding_card, paragraph, two_columns};
 use crate::ui::wiring::wires_ui;
 
-/// Width of the pin column.
 const PIN: f32 = 84.0;
 
 /// Pins of the JST BM08B-GHS connector and their signals (manual 2).

@@ -23,7 +23,6 @@ pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
     show(output, &explained)
 }
 
-/// A captured argument.
 enum Captured {
     /// A word, given as four hexadecimal digits.
     Word(u16),
@@ -63,7 +62,6 @@ fn explain(captured: &Captured, known: &BytesContext) -> Explained {
     Explained { shown, compact, meaning, more }
 }
 
-/// Formats the meanings as lines and as JSON for scripts.
 fn lines(readings: &[WordMeaning]) -> DecodedBytes {
     let list = readings.iter().map(WordMeaning::json).collect();
     let more = Map::from_iter([("readings".to_owned(), list)]);

@@ -74,7 +74,6 @@ fn identity_text(identity: &Identity) -> String {
     lines.text()
 }
 
-/// Prints the errors and states of all drives, or of a single drive with `--drive`.
 pub(super) fn status(common: &Common, output: &Output, status: &StatusArguments) -> Result {
     let only = status.own.read::<OfDrive>()?.drive.and_then(DriveNumber::new);
     let mut runner = Runner::open(common)?;
@@ -119,7 +118,6 @@ pub(super) fn status(common: &Common, output: &Output, status: &StatusArguments)
     Ok(Done::Well)
 }
 
-/// Severity of a reported fact.
 #[derive(Clone, Copy, PartialEq)]
 enum FactSeverity {
     Error,
@@ -128,7 +126,6 @@ enum FactSeverity {
     Earlier,
 }
 
-/// An error or warning reported by a drive.
 struct DriveFact {
     drive: u8,
     code: u16,

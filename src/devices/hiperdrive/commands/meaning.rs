@@ -13,13 +13,11 @@ use crate::devices::hiperdrive::protocol::{
     Travel, Value, Variant,
 };
 
-/// Context in which bytes are decoded, such as their direction.
 pub(super) struct BytesContext {
     pub(super) direction: Option<Direction>,
     pub(super) order: ByteOrder,
 }
 
-/// A possible meaning of some bytes.
 pub(super) struct WordMeaning {
     pub(super) direction: &'static str,
     pub(super) lines: Vec<String>,
@@ -135,7 +133,6 @@ pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option
     Some((parameter_name(number.get()), value))
 }
 
-/// Formats a parameter number with the name and the drive.
 pub(super) fn parameter_name(own: u16) -> String {
     let Some(number) = ParameterNumber::new(own) else {
         return format!("parameter {own}, which there is not");
@@ -145,7 +142,6 @@ pub(super) fn parameter_name(own: u16) -> String {
     format!("parameter {own} ({name}{drive})")
 }
 
-/// Formats a value according to its parameter's definition.
 pub(super) fn number_words(row: &ParameterRow, number: i64) -> String {
     let word = u16::try_from(number).ok();
     match (row.number, word) {

@@ -110,7 +110,6 @@ impl DeviceCommands for HiperdriveCommands {
     }
 }
 
-/// The `move` command, which moves a drive to a position.
 struct MoveCommand;
 
 impl OwnCommand for MoveCommand {

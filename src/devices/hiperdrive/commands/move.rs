@@ -34,9 +34,7 @@ const REFRESH: Duration = Duration::from_millis(20);
 /// Maximum time for the stop ladder and for switching off.
 const END: Duration = Duration::from_secs(3);
 
-/// How a motion ended.
 enum MotionOutcome {
-    /// The motion ended with the given result.
     Ended(Ended),
     Interrupted,
     Late,

@@ -26,7 +26,6 @@ const STOPPED: Duration = Duration::from_millis(500);
 const RELEASED: Duration = Duration::from_secs(1);
 const LOOKS: Duration = Duration::from_millis(1);
 
-/// Runs a session with an adapter or a hub on its own thread.
 pub(super) type Runner = runner::Runner<Hiperdrive>;
 
 impl Runs for Hiperdrive {

@@ -90,7 +90,6 @@ impl Control {
         }
     }
 
-    /// Discards a drive's motion permit.
     pub(super) fn forget(&mut self, drive: DriveNumber) {
         self.motion.with_limits(drive, DriveLimits::forget);
     }

@@ -19,22 +19,17 @@ pub const WEAR_WARNING: u64 = 50_000;
 /// and [`Give`](Self::Give), through the session's `Motion`.
 #[derive(Debug)]
 pub enum HiperdriveJob {
-    /// Identifies the device after connecting, for display in a window.
     Hello,
     Survey,
     Identify,
-    /// Reads the errors and states of all drives.
     Status,
     /// Checks the device and its drives, with one verdict per line.
     Check,
-    /// Reads the position of a drive once.
     Position(DriveNumber),
     Read(ParameterNumber),
     Network,
     Save,
-    /// Prepares a plan without writing anything.
     Prepare(Change),
-    /// Carries out a plan.
     Commit(Box<Commit>),
     /// Opens the cyclic connection. No drive moves.
     Take,
@@ -42,7 +37,6 @@ pub enum HiperdriveJob {
     Watch(DriveNumber),
 }
 
-/// A change requested by the user.
 #[derive(Clone, Debug)]
 pub enum Change {
     Restore {
@@ -64,7 +58,6 @@ pub enum Change {
     Network(NetworkSettings),
 }
 
-/// Kind of change, which determines how an interrupted change can be completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
@@ -122,14 +115,12 @@ pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 pub type Committed = crate::worker::Committed<Written>;
 
-/// A message sent while a job is running.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeviceMessage {
     /// The cyclic connection was lost and the drives stop; the session's `Motion` has the cause.
     ControlLost,
     /// The limits of a drive under control cannot be read, and are requested again repeatedly.
     RulesUnread(Box<Error>),
-    /// The limits could be read again.
     RulesRead,
 }
 
@@ -155,7 +146,6 @@ impl fmt::Display for JobStep {
     }
 }
 
-/// The result of a job.
 #[derive(Debug)]
 pub enum HiperdriveOutput {
     Hello(Box<Identity>),
@@ -174,7 +164,6 @@ pub enum HiperdriveOutput {
     Watched(DriveNumber),
 }
 
-/// Why a job ended early.
 pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
 
 impl From<PlanError> for JobError {

@@ -54,7 +54,6 @@ impl fmt::Debug for Hiperdrive {
 /// Interval of checking drives under control: a fraction of the time allowed between two requests.
 const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 
-/// Receives the reports of a job.
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
@@ -63,7 +62,6 @@ impl Hiperdrive {
     }
 }
 
-/// The start of a session with an adapter or a hub.
 pub struct DeviceConnection {
     pub wire: Box<dyn ByteLink>,
     /// Port for cyclic data, or `None` for a link without one.

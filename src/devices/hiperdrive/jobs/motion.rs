@@ -42,7 +42,6 @@ struct Cell {
     connected: bool,
 }
 
-/// A snapshot of the drives: state and limits.
 #[derive(Clone, Debug)]
 pub struct DrivesSnapshot {
     pub at: Moment,
@@ -50,7 +49,6 @@ pub struct DrivesSnapshot {
     pub limits: BTreeMap<DriveNumber, DriveLimits>,
 }
 
-/// State of the drives, and quality of their connection.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotionSnapshot {
     pub open: bool,
@@ -65,15 +63,12 @@ pub struct MotionSnapshot {
     pub lost: Option<CyclicLost>,
 }
 
-/// The state of a drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveView {
     pub number: DriveNumber,
-    /// Data received last.
     pub actual: Actual,
     /// Time of the data in `actual`, or `None` before the first.
     pub received_at: Option<Moment>,
-    /// Setpoint sent last.
     pub sent: Setpoint,
     pub phase: Phase,
     /// Number of the running act, or else of the last one; 0 for none.
@@ -128,7 +123,6 @@ impl Motion {
         self.intend(drive, MotionRequest::Stop);
     }
 
-    /// Returns whether the act with this number is the latest.
     pub fn is_latest(&self, number: u64) -> bool {
         self.lock().intent.number == number
     }
@@ -141,7 +135,6 @@ impl Motion {
         self.lock().view.open
     }
 
-    /// Returns the state and the limits of the drives at one moment.
     pub fn glance(&self) -> DrivesSnapshot {
         let at = self.0.clock.now();
         let cell = self.lock();
@@ -211,7 +204,6 @@ impl Motion {
         cell.watched.keys().copied().collect()
     }
 
-    /// Returns the present permit of a drive, with everything considered.
     pub fn permitted(&self, drive: DriveNumber) -> Permit {
         let now = self.0.clock.now();
         self.lock().permitted(drive, now)
@@ -303,7 +295,6 @@ impl Motion {
         self.lock().connected = connected;
     }
 
-    /// Returns whether the session has ended, so that nothing else holds a handle to its drives.
     pub fn is_left_over(&self) -> bool {
         Arc::strong_count(&self.0) == 1
     }

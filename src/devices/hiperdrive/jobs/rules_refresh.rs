@@ -18,10 +18,8 @@ const TURN_IN_MOTION: Duration = REQUEST;
 /// Pause after a failed reading.
 const REST: Duration = Duration::from_millis(500);
 
-/// State of reading the limits of the drives.
 #[derive(Debug, Default)]
 pub(super) struct RulesRefresh {
-    /// End of the pause after a failed reading.
     rests: Option<Moment>,
 }
 

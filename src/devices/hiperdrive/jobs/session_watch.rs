@@ -29,7 +29,6 @@ const LOOK: Duration = Duration::from_millis(10);
 /// Maximum time allowed to a device, however slow it was before.
 const MOST_PATIENCE: Duration = Duration::from_secs(1);
 
-/// Requests and replies over one connection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct SessionWatch {
     /// When the oldest unanswered request was sent.
@@ -62,7 +61,6 @@ impl SessionWatch {
         self.looked = now;
     }
 
-    /// Records bytes that are not a frame.
     pub(super) const fn break_off(&mut self) {
         self.broken = true;
     }
@@ -76,7 +74,6 @@ impl SessionWatch {
     }
 }
 
-/// A wire on which requests and answers are watched.
 pub(super) struct WatchedWire {
     wire: Box<dyn ByteLink>,
     clock: Arc<dyn Clock>,

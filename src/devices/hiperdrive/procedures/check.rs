@@ -62,7 +62,6 @@ impl fmt::Display for CheckStep {
     }
 }
 
-/// A finding of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
     /// Number of readings of a value, and the longest reply time.
@@ -93,7 +92,6 @@ pub enum CheckFinding {
         variant: Variant,
         serial_number: String,
     },
-    /// No drive is connected.
     NoDrives,
     /// Parameter 152 is 1.
     Requested,

@@ -35,7 +35,6 @@ use watch::Watch;
 use crate::devices::hiperdrive::protocol::{Actual, ControlWord, DriveNumber, Percent, RunEnd, Setpoint, StatusBit};
 use crate::units::Moment;
 
-/// A drive's dead-man, from the opening of a cyclic connection to its end.
 #[derive(Clone, Debug)]
 pub struct DeadMan {
     drive: DriveNumber,
@@ -142,7 +141,6 @@ impl DeadMan {
         self.received.map(|(at, _)| at)
     }
 
-    /// Returns the last setpoint that was sent.
     pub const fn sent(&self) -> Setpoint {
         self.sent
     }

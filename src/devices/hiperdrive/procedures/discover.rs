@@ -24,7 +24,6 @@ impl DiscoveredDevice {
 
 /// Time for collecting replies. A device may delay its reply up to a requested limit, but none is requested.
 const GATHER: Duration = Duration::from_secs(1);
-/// Interval of checking for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
 
 /// Broadcasts a request and collects replies for a second; each device once, in the order of addresses.

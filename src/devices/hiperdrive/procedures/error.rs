@@ -11,7 +11,6 @@ use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
 
-/// A request to a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequestedItem {
     Session,
@@ -42,12 +41,10 @@ impl fmt::Display for RequestedItem {
     }
 }
 
-/// A reply that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
     #[error(transparent)]
     Packet(#[from] PacketError),
-    /// The value does not match its parameter.
     #[error(transparent)]
     Value(#[from] ValueError),
     /// The frame contains no message.
@@ -56,13 +53,9 @@ pub enum Damage {
     #[error("a reply to service {got:02X}h where one to {requested:02X}h was expected")]
     Service { requested: u8, got: u8 },
     #[error("a frame that was cut off after {bytes} bytes")]
-    Cut {
-        /// Number of bytes received.
-        bytes: usize,
-    },
+    Cut { bytes: usize },
 }
 
-/// Replies that arrived after their time limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Late {
     pub took: Duration,
@@ -70,12 +63,10 @@ pub struct Late {
     pub waited: Duration,
 }
 
-/// Why a device refused a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
     pub service: Service,
     pub status: GeneralStatus,
-    /// Extended status words.
     pub extended: Vec<u16>,
 }
 
@@ -108,13 +99,10 @@ impl fmt::Display for Refusal {
 pub struct WrongLength {
     pub number: ParameterNumber,
     pub name: &'static str,
-    /// Bytes of the type.
     pub expected: usize,
-    /// Bytes received.
     pub got: usize,
 }
 
-/// Why an exchange or a check failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]
@@ -161,10 +149,8 @@ pub enum Error {
     /// A number that no parameter has.
     #[error("{0} is not a parameter number")]
     NoNumber(u16),
-    /// The port does not exist.
     #[error("there is no drive {}: {} has {}", drive.get(), topology.category(), topology.drives())]
     NoPlace { drive: DriveNumber, topology: Topology },
-    /// No drive is connected to this port.
     #[error("no drive is connected to port {}", drive.get())]
     NoDrive { drive: DriveNumber },
     /// Parameter 152 is 0.
@@ -191,7 +177,6 @@ pub enum Error {
     /// The parameter moves the drive, which is allowed over the cyclic connection only; nothing was sent.
     #[error("parameter {number} ({name}) is not written: drives move over the cyclic connection alone")]
     Motion { number: ParameterNumber, name: &'static str },
-    /// The drive is moving but must be at rest.
     #[error("drive {} moves", drive.get())]
     Moving { drive: DriveNumber },
     /// The identity is not that of a HIPERDRIVE.
@@ -208,11 +193,7 @@ pub enum Error {
     NetworkNotTaken { attribute: u16 },
     /// Parameter 47 does not become 0.
     #[error("parameter 47 is still {reads} after {milliseconds} ms")]
-    Busy {
-        reads: i64,
-        /// Time waited, in milliseconds.
-        milliseconds: u64,
-    },
+    Busy { reads: i64, milliseconds: u64 },
     #[error("{item} has changed since the plan was made")]
     Changed { item: String },
 }

@@ -12,7 +12,6 @@ use crate::devices::hiperdrive::protocol::{
 };
 use crate::units::Moment;
 
-/// Identity of an adapter or a hub and its drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     pub topology: Topology,
@@ -48,7 +47,6 @@ pub struct DriveIdentity {
     pub requested: bool,
 }
 
-/// Everything that can be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
     pub identity: Identity,
@@ -88,7 +86,6 @@ pub struct DriveStatus {
 /// Receives the next item, and how many of how many have been read.
 pub(super) type IdentifyProgress<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumber);
 
-/// Progress through the items that are read one after another.
 struct Steps<'t> {
     done: u64,
     total: u64,
@@ -102,13 +99,11 @@ impl Steps<'_> {
         number
     }
 
-    /// Skips items that are not read.
     fn skip(&mut self, count: u64) {
         self.done += count;
     }
 }
 
-/// The position and speed of a drive at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DriveReading {
     pub at: Moment,
@@ -299,7 +294,6 @@ fn is_requested(master: &mut Master<'_>, drive: DriveNumber) -> Result<bool, Err
     Ok(master.read_number(of(REQUESTED, drive)?)? != 0)
 }
 
-/// Returns a number of 16 bits, as bits.
 fn word(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<u16, Error> {
     Ok(master.read_number(of(base, drive)?)? as u16)
 }

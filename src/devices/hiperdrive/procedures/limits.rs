@@ -63,7 +63,6 @@ impl DriveLimits {
         self.doubted = self.doubted.filter(|since| times.into_iter().any(|at| at < *since));
     }
 
-    /// Returns the parameters as last read.
     pub const fn rules(&self) -> Rules {
         self.rules
     }

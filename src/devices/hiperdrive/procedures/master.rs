@@ -28,7 +28,6 @@ use crate::units::Moment;
 
 /// Pause after bytes that are not a frame; the next bytes start a new frame.
 const QUIET: Duration = Duration::from_millis(50);
-/// Interval of checking for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
 /// Margin beyond the time that the manual states for a long operation.
 const SPARE: Duration = Duration::from_millis(500);
@@ -39,7 +38,6 @@ pub struct Master<'a> {
     station: &'a mut Station,
 }
 
-/// An exchange that gave nothing.
 enum ExchangeError {
     Silence,
     Damage(Damage),
@@ -66,7 +64,6 @@ enum Repeats {
 const ONCE: Repeats = Repeats::Never { takes: None };
 
 impl<'a> Master<'a> {
-    /// Creates a master over the connection of a station, for one job.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }
@@ -319,7 +316,6 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Passes bytes that are not a frame to the trace.
     fn show_rest(&mut self) {
         let (now, rest) = (self.line.now(), self.station.receiver.take_rest());
         self.line.show(now, MaskedBytes::clear(&rest));

@@ -16,7 +16,6 @@ use crate::parameters;
 use crate::units::Moment;
 
 parameters! {
-    /// Connection to an adapter or a hub, as given by a link.
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
         pub interval: Duration = Duration::from_millis(10), "rpi" => Milliseconds(5..=100), "connect.interval";
@@ -32,7 +31,6 @@ parameters! {
 /// The longest time-out in milliseconds.
 const LONGEST_TIMEOUT: u64 = 2000;
 
-/// The state of an adapter or a hub.
 #[derive(Clone, Debug)]
 pub struct Station {
     pub link: LinkParameters,
@@ -58,14 +56,12 @@ pub struct Station {
     pub(super) known: KnownState,
 }
 
-/// The known state of the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct KnownState {
     pub(super) topology: Option<Topology>,
 }
 
 impl Station {
-    /// Upper limit of the time allowed for a reply.
     pub const LONGEST_TIMEOUT: Duration = Duration::from_millis(LONGEST_TIMEOUT);
     /// Number of unanswered requests whose late replies are recognised, which is more than are sent before the
     /// connection is abandoned.
@@ -112,7 +108,6 @@ impl Station {
         self.late
     }
 
-    /// Returns the reply times, also while a job runs.
     pub fn replies(&self) -> Replies {
         self.replies.clone()
     }

@@ -5,7 +5,6 @@ use super::{DriveReading, Error, Master};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 use crate::units::Moment;
 
-/// A temperature that can be watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Temperature {
     /// Parameter 11.
@@ -14,7 +13,6 @@ pub enum Temperature {
     Drive(DriveNumber),
 }
 
-/// A temperature at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TemperatureReading {
     pub at: Moment,
@@ -23,7 +21,6 @@ pub struct TemperatureReading {
     pub celsius: Option<i64>,
 }
 
-/// A sample of a polled device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sample {
     Position(DriveReading),

@@ -34,7 +34,6 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Wait before the first read after an operation with a reset, which may not have started yet.
 const BEGINS: Duration = Duration::from_millis(100);
 
-/// A device into which a plan is written.
 pub struct DeviceWrite<'w, 'm> {
     pub master: Master<'m>,
     pub identity: &'w Identity,

@@ -104,7 +104,6 @@ pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
 /// Parameters that belong together: position scale and limits.
 const PLACE: [u16; 4] = [NUMERATOR, DENOMINATOR, LOWER, UPPER];
 
-/// A parameter with another number.
 #[derive(Clone, Copy)]
 struct Write {
     number: ParameterNumber,
@@ -112,7 +111,6 @@ struct Write {
     new: i64,
 }
 
-/// Order of writing the limits.
 #[derive(Clone, Copy, PartialEq)]
 enum Order {
     LowerFirst,

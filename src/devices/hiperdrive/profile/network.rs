@@ -39,7 +39,6 @@ pub fn plan_network(
     Ok(HiperdrivePlan { base, ops: vec![Op::Network { from: now.clone(), to }] })
 }
 
-/// The address switch.
 pub(super) const SWITCH: u16 = 12;
 
 #[cfg(test)]

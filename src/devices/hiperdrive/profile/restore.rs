@@ -109,7 +109,6 @@ fn check_allowed(
     Ok(())
 }
 
-/// Returns whether a differing item is left unchanged.
 fn stays(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item, options: RestoreOptions) -> bool {
     item.0.base() == REFERENCE || !options.with_mounting && is_of_another_mounting(profile, device, item)
 }

@@ -15,7 +15,6 @@ use super::parameter::{Access, Factory, ParameterRow, Range, SlowSet};
 use super::travel::Reach;
 use super::value::Kind;
 
-/// Builds a read-only row.
 const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -> ParameterRow {
     ParameterRow {
         number,

@@ -32,7 +32,6 @@ impl Default for SpindleLoad {
     }
 }
 
-/// The position and the speed of the spindle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Axis {
     place: f64,
@@ -40,13 +39,14 @@ pub(super) struct Axis {
     speed: f64,
 }
 
-/// The demand on the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AxisDemand {
-    /// Not moving.
     Rest,
     /// Moves to a position at a maximum speed.
-    Place { at: f64, speed: f64 },
+    Place {
+        at: f64,
+        speed: f64,
+    },
     /// Turns at a signed speed.
     Speed(f64),
 }
@@ -63,7 +63,6 @@ impl AxisDemand {
     }
 }
 
-/// The outcome of a millisecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TickOutcome {
     OnTheWay,
@@ -103,7 +102,6 @@ impl Axis {
         self.speed = 0.0;
     }
 
-    /// Simulates a millisecond.
     pub(super) fn tick(&mut self, wanted: AxisDemand, load: &SpindleLoad) -> TickOutcome {
         let gain = ACCELERATION * TICK_S;
         let aim = match wanted {

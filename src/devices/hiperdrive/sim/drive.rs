@@ -193,7 +193,6 @@ impl Drive {
         ((self.axis.place() + self.offset) / TURN * self.scale().steps_per_turn()).floor() as i32
     }
 
-    /// Returns the travel in scaled steps.
     pub(super) fn travel(&self) -> Travel {
         Travel { family: self.variant.row().map(|row| row.family), scale: Some(self.scale()) }
     }
@@ -323,7 +322,6 @@ impl Drive {
         }
     }
 
-    /// Carries out the effects of entering a state.
     fn enter(&mut self, state: State) {
         if self.state == State::Fault && state == State::Locked {
             self.forgive();

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use crate::devices::hiperdrive::protocol::drive_parameter::{REFERENCE, RS485_COMPLETE};
 use crate::devices::hiperdrive::protocol::{Family, PARAMETERS, ParameterRow, Topology};
 
-/// By the number of drive 1, or of the device.
 #[derive(Clone, Debug)]
 pub(super) struct Memory {
     factory: BTreeMap<u16, i64>,
@@ -32,7 +31,6 @@ impl Memory {
         self.now.get(&number).copied()
     }
 
-    /// Sets a value, ignoring parameters that are not stored here.
     pub(super) fn set(&mut self, number: u16, value: i64) {
         if let Some(held) = self.now.get_mut(&number) {
             *held = value;

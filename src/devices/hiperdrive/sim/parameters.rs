@@ -13,12 +13,9 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 use crate::devices::hiperdrive::protocol::{ErrorCode, PkwError, Value, nearest_reference};
 use crate::units::Moment;
 
-/// Why a parameter was not read or written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refused {
-    /// The parameter or drive does not exist.
     Unknown,
-    /// Read-only parameter.
     ReadOnly,
     Value,
     State,

@@ -20,7 +20,6 @@ use crate::devices::hiperdrive::protocol::{
 };
 use crate::units::Moment;
 
-/// The parts of a station.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     pub topology: Topology,
@@ -33,7 +32,6 @@ pub struct Setup {
 #[derive(Clone, Debug)]
 pub struct Station {
     setup: Setup,
-    /// Drives by port.
     drives: Vec<Option<Drive>>,
     memory: Memory,
     master: Option<Master>,
@@ -132,7 +130,6 @@ impl Station {
         station
     }
 
-    /// Returns the topology, which determines the layout of process data and parameters.
     pub const fn topology(&self) -> Topology {
         self.setup.topology
     }
@@ -158,7 +155,6 @@ impl Station {
         self.hindered = ActiveWriteFault::by(what);
     }
 
-    /// Returns whether none of the replies get through.
     pub(super) const fn is_cut_off(&self) -> bool {
         self.hindered.is_cut_off()
     }
@@ -206,7 +202,6 @@ impl Station {
         }
     }
 
-    /// Returns the process data sent at a moment.
     pub fn image(&mut self, now: Moment) -> InImage {
         self.advance(now);
         if let Some((_, answer)) = self.answers.take_if(|(at, _)| *at <= now) {

@@ -11,7 +11,6 @@ pub enum WriteFault {
     CutOff,
 }
 
-/// The present fault, and whether it has interrupted the line.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ActiveWriteFault {
     fault: Option<(ParameterNumber, WriteFault)>,

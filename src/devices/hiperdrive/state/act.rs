@@ -20,7 +20,6 @@ use crate::profile::Body;
 const WATCHED_EVERY: Duration = Duration::from_secs(2);
 
 impl Unit {
-    /// Carries out an action.
     pub(crate) fn act(&mut self, action: HiperdriveAction, services: &mut Services) {
         match action {
             HiperdriveAction::ReadStatus => {
@@ -60,7 +59,6 @@ impl Unit {
         }
     }
 
-    /// Starts or stops recording a temperature with the position.
     fn watch_temperature(&mut self, what: Temperature, on: bool) {
         match what {
             Temperature::Device => self.watches_device = on,
@@ -69,7 +67,6 @@ impl Unit {
         self.wish_temperatures();
     }
 
-    /// Returns the temperatures recorded with the position of the selected drive.
     pub fn watched_temperatures(&self) -> Vec<Temperature> {
         let device = self.watches_device.then_some(Temperature::Device);
         device.into_iter().chain(self.watches_drive.then_some(Temperature::Drive(self.drive()))).collect()

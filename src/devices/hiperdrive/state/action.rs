@@ -11,18 +11,14 @@ use crate::devices::hiperdrive::procedures::Temperature;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Goal};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Length, RunEnd};
 
-/// Something in the HIPERDRIVE tab.
 pub enum HiperdriveAction {
-    /// Read states and errors.
     ReadStatus,
     Check,
     SelectDrive(DriveNumber),
-    /// Start or stop recording a temperature with the position.
     Watch(Temperature, bool),
     SetMeasure(Measure),
     /// Set the pitch of a drive's spindle, if it has one.
     SetPitch(DriveNumber, Option<Length>),
-    /// Change a value that has not been written yet.
     Edit(Box<Edit>),
     Plan(Box<Change>),
     /// Open the cyclic connection, which does not move anything.
@@ -73,7 +69,6 @@ pub enum Motor {
     Pause,
     Resume,
     Stop,
-    /// Set the effort for jogging.
     JogEffort(Effort),
     /// Set the effort for moves, steps and runs.
     MoveEffort(Effort),

@@ -38,7 +38,6 @@ use step_outcomes::{Origin, Preconditions, StepOutcomes};
 use super::ruler::Ruler;
 use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};
 
-/// A step of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum AxisStep {
     /// The drive is requested: parameter 152.
@@ -61,22 +60,16 @@ pub enum AxisStep {
     PowerCycle,
 }
 
-/// The progress of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reached {
-    /// The step is done.
     Done,
-    /// The present step.
     Now,
-    /// The step was skipped.
     Skipped,
-    /// The step has failed.
     Failed,
     /// A later step.
     Ahead,
 }
 
-/// The end of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     Done,
@@ -91,7 +84,6 @@ pub enum AxisChange {
     Position(i32),
 }
 
-/// End of a run: how, when, and the facts known then.
 #[derive(Clone, Debug)]
 pub struct RunSummary {
     pub end: End,
@@ -100,7 +92,6 @@ pub struct RunSummary {
     seen: Box<DriveFacts>,
 }
 
-/// Limits confirmed by the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Confirmed {
     scale: Option<PositionScale>,
@@ -115,7 +106,6 @@ struct Confirmed {
 #[derive(Clone, Debug)]
 pub struct Axis {
     drive: DriveNumber,
-    /// The step that is shown.
     step: AxisStep,
     entries: Entries,
     chain: StepOutcomes,
@@ -143,7 +133,6 @@ pub struct Axis {
 }
 
 impl AxisStep {
-    /// All steps in order.
     pub const ALL: [AxisStep; 10] = [
         AxisStep::Request,
         AxisStep::Scale,
@@ -171,7 +160,6 @@ impl AxisStep {
         matches!(self, AxisStep::Reference | AxisStep::PowerCycle)
     }
 
-    /// Returns the index, from 0.
     pub const fn index(self) -> usize {
         // In the order of `ALL`.
         self as usize
@@ -213,7 +201,6 @@ impl Axis {
         self.drive
     }
 
-    /// Returns the step that is shown.
     pub const fn step(&self) -> AxisStep {
         self.step
     }
@@ -236,7 +223,6 @@ impl Axis {
         self.over.as_ref().map_or(now, |over| &over.seen)
     }
 
-    /// Returns the changes, the first one first.
     pub fn changes(&self) -> &[AxisChange] {
         &self.changes
     }
@@ -280,7 +266,6 @@ impl Axis {
         self.chain.end().filter(|step| *step < self.step)
     }
 
-    /// Returns the progress of each step.
     pub fn reached(&self, step: AxisStep) -> Reached {
         let is_shown = step == self.step && self.over.is_none();
         match step {

@@ -11,7 +11,6 @@ use crate::devices::hiperdrive::sim::Config;
 use crate::link::{LinkUrl, Scheme};
 use crate::parameter::{Entry, Parameters as _};
 
-/// Kind of connection to the drives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HiperdriveLinkKind {
     #[default]
@@ -20,7 +19,6 @@ pub enum HiperdriveLinkKind {
     Replay,
 }
 
-/// The topology of the virtual device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VirtualHub {
     #[default]
@@ -41,7 +39,6 @@ pub struct HiperdriveForm {
     pub file: String,
     /// Process data have the high byte first.
     pub big_endian: bool,
-    /// Typed values of other parameters.
     pub typed: Typed,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
@@ -49,7 +46,6 @@ pub struct HiperdriveForm {
 
 /// Name and non-default value of the byte order parameter.
 const BIG_ENDIAN: (&str, &str) = ("order", "big");
-/// The port of explicit messages.
 const PORT: &str = "44818";
 
 impl VirtualHub {

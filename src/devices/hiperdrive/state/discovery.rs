@@ -16,7 +16,6 @@ use crate::devices::hiperdrive::procedures::{DiscoveredDevice, Error, discover};
 use crate::devices::hiperdrive::state::explain as words;
 use crate::link::{Cancel, Clock, RealClock, UdpBroadcast};
 
-/// A discovery request with its replies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Discovery {
     /// Number of the discovery; replies to earlier ones are dropped.
@@ -88,7 +87,6 @@ fn ask_all() -> Result<Vec<DiscoveredDevice>, Error> {
     discover(&mut shout, &*clock, &Cancel::default())
 }
 
-/// The search for devices on this network.
 #[derive(Default)]
 pub struct DiscoveryFinder {
     pub discovery: Option<Discovery>,
@@ -100,7 +98,6 @@ pub enum DiscoveryAction {
     Choose(usize),
 }
 
-/// The devices found, or why the request failed.
 pub struct Answers {
     number: u32,
     found: Result<Vec<FoundDevice>, Text>,

@@ -4,7 +4,6 @@ use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, LedSubject, PortLight, Topology};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// The LEDs as entered by the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Leds {
     /// Set for a hub, clear for a bus adapter.
@@ -52,7 +51,6 @@ impl Default for Leds {
 }
 
 impl Led {
-    /// All LEDs in drawing order.
     pub const ALL: [Led; 4] = [Led::Drives, Led::Bus(BusLamp::Module), Led::Bus(BusLamp::Network), Led::Port];
 
     pub const fn name(self) -> &'static str {
@@ -65,12 +63,10 @@ impl Led {
 }
 
 impl Leds {
-    /// Creates the LEDs of a device with the given topology, without errors.
     pub fn of(topology: Topology) -> Self {
         Leds { hub: topology != Topology::Adapter, ..Leds::default() }
     }
 
-    /// Returns the subject of the RS485 LED.
     pub const fn subject(&self) -> LedSubject {
         match (self.hub, self.s3) {
             (false, _) => LedSubject::Adapter,

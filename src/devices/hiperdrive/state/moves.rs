@@ -19,7 +19,6 @@ use crate::units::Moment;
 pub struct Moves {
     /// While the session is open.
     motion: Option<Motion>,
-    /// State of the drives at the last update.
     view: MotionSnapshot,
     act: Option<Act>,
     /// Effort of jogs and moves, if it differs from the default.
@@ -101,7 +100,6 @@ impl Moves {
         (self.view, self.act) = (MotionSnapshot::default(), None);
     }
 
-    /// Forgets the limits of the previous device.
     pub(super) fn forget(&mut self) {
         self.stop();
         self.limits.clear();
@@ -181,7 +179,6 @@ impl Moves {
         }
     }
 
-    /// The jog is still held.
     pub(super) fn hold(&self) {
         if let (Some(motion), Some(act)) = (&self.motion, self.act)
             && act.kind == Kind::Held
@@ -254,7 +251,6 @@ impl Moves {
         counts
     }
 
-    /// Returns the drives whose limits must be confirmed.
     pub fn unconfirmed(&self) -> BTreeSet<DriveNumber> {
         self.limits.iter().filter(|(_, own)| own.is_unconfirmed()).map(|(drive, _)| *drive).collect()
     }
@@ -283,12 +279,10 @@ impl Moves {
         self.motion.as_ref()
     }
 
-    /// Returns whether the cyclic connection is open, so that drives can be moved.
     pub fn is_open(&self) -> bool {
         self.view.open
     }
 
-    /// Returns the state of the drives at the last update, and the quality of their connection.
     pub fn view(&self) -> &MotionSnapshot {
         &self.view
     }
@@ -342,7 +336,6 @@ impl Moves {
         }
     }
 
-    /// Returns why a drive may not move.
     pub fn locks(&self, drive: DriveNumber) -> Vec<Lock> {
         let mut locks = self.permit(drive).map(|permit| permit.locks).unwrap_or_default();
         // Without control nothing moves: the limits are read when it is taken, and a slow reply ends nothing.
@@ -372,7 +365,6 @@ impl Moves {
         self.view.open && link.interval.saturating_mul(packets) >= ARRIVAL_TIME
     }
 
-    /// Returns whether a drive is moving, about to move, or being prepared for it.
     pub fn is_moving(&self) -> bool {
         self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_under_way()
     }
@@ -428,7 +420,6 @@ impl Moves {
         Some(Effort { speed: own.sent.speed, torque: own.sent.torque })
     }
 
-    /// Returns whether the user has allowed an endless run of a drive.
     pub fn is_expert(&self, drive: DriveNumber) -> bool {
         self.experts.contains(&drive)
     }

@@ -9,7 +9,6 @@ use crate::devices::hiperdrive::profile::NetworkSettings;
 use crate::devices::hiperdrive::protocol::AddressSwitch;
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// The edited values, as entered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
     /// Attribute 3.
@@ -35,7 +34,6 @@ pub enum PowerUp {
     Unknown(u8),
 }
 
-/// A row in the table of switch positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Position {
     /// Digits of the switches, such as `0` or `1…96`.

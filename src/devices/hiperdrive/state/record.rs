@@ -11,18 +11,15 @@ use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
 use crate::devices::hiperdrive::procedures::{DriveReading, Temperature, TemperatureReading};
 use crate::devices::hiperdrive::protocol::SpeedScale;
 
-/// A value recorded with the position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum RecordedValue {
     /// The drive's own speed, in rpm.
     Speed,
     /// Target in steps of this ruler.
     Target(Ruler),
-    /// A temperature, in degrees Celsius.
     Temperature(Temperature),
 }
 
-/// Recorder of a drive, and the latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     pub(super) track: Track<RecordedValue>,
@@ -92,7 +89,6 @@ impl Record {
         self.track.gap();
     }
 
-    /// Forgets the recording of the previous device.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         self.last = None;

@@ -14,7 +14,6 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, Percent, RunEnd, State, 
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// The state of a request to a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequestState {
     pub words: Text,
@@ -148,7 +147,6 @@ impl Unit {
         (self.drives().len() > 1).then(|| TEXTS.text("hd_bar.named").with("drive", drive.get()))
     }
 
-    /// Returns the drives known to move, or about to.
     pub fn moving_drives(&self) -> Vec<DriveNumber> {
         let moves =
             |drive: &DriveNumber| self.moves.is_drive_moving(*drive) || self.state_now(*drive) == Some(State::Moving);

@@ -17,7 +17,6 @@ use crate::devices::hiperdrive::protocol::{
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 
-/// A parameter as a row of the table.
 #[derive(Clone, Debug)]
 pub struct Row {
     pub number: ParameterNumber,

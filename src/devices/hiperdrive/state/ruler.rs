@@ -3,7 +3,6 @@
 pub use crate::app::Measure;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
-/// The size of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ruler {
     /// Parameters 154 and 156.

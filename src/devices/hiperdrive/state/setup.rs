@@ -51,7 +51,6 @@ impl Unit {
         self.session.why_not_ready().map_or(Ok(()), Err)
     }
 
-    /// Returns the facts about a drive for its set-up.
     pub fn seen(&self, drive: DriveNumber) -> DriveFacts {
         let view = self.moves.drive(drive);
         let actual = self.actual(drive);
@@ -102,7 +101,6 @@ impl Unit {
         host.parse().ok()
     }
 
-    /// Carries out an action in the set-up of the drive shown.
     pub(super) fn act_axis(&mut self, action: AxisAction, services: &mut Services) {
         let drive = self.drive();
         let seen = self.seen(drive);
@@ -161,7 +159,6 @@ impl Unit {
         self.axes.insert(drive, Axis::new(drive, Some(self.ruler(drive))));
     }
 
-    /// Returns the report of a finished set-up of the selected drive.
     pub fn axis_report(&self, language: Language) -> Option<String> {
         let axis = self.axis()?;
         let own = self.drive_identity(axis.drive());

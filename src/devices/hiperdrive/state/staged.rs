@@ -47,7 +47,6 @@ pub struct Staged {
     families: Families,
 }
 
-/// The families of drives, which determine their turns.
 pub(super) type Families = BTreeMap<DriveNumber, Family>;
 
 /// Stored edit: the parameter's own number, and the edited value.
@@ -238,7 +237,6 @@ impl Stepped for Staged {
     }
 }
 
-/// Returns the travel of the drive of a parameter, in the steps of an image.
 fn travel(number: ParameterNumber, image: &Image, families: &Families) -> Travel {
     let Some(drive) = number.drive() else { return Travel::UNKNOWN };
     Travel { family: families.get(&drive).copied(), scale: image.scale(drive) }

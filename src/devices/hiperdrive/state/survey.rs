@@ -166,7 +166,6 @@ impl Unit {
         self.session.log_answer(vec![fact], services);
     }
 
-    /// Forgets positions after a lost connection.
     pub(super) fn forget_readings(&mut self) {
         self.readings.clear();
         (self.looks_at_errors, self.looks_at_all) = (false, false);

@@ -30,23 +30,18 @@ use crate::devices::hiperdrive::protocol::{
 use crate::devices::hiperdrive::sim::Target;
 use crate::units::Moment;
 
-/// An adapter or hub with its drives, or a profile of one.
 pub struct Unit {
     pub session: Session<Hiperdrive>,
     pub survey: Option<Survey>,
-    /// States and errors as last read.
     pub status: Option<Status>,
-    /// Results of the last device check.
     pub check: Option<Vec<CheckLine>>,
     pub staged: Staged,
     pub record: Record,
     pub(super) records: BTreeMap<DriveNumber, Record>,
     /// Start of the session, to which the times of recordings refer.
     pub(super) began: Option<Zoned>,
-    /// Motion of the drives.
     pub moves: Moves,
     pub measure: Measure,
-    /// Reason why the last edit was refused.
     pub refusal: Option<Text>,
     pub target: Option<Target>,
     /// Whether the temperature of the device is recorded with the position.
@@ -57,7 +52,6 @@ pub struct Unit {
     pub(super) axes: BTreeMap<DriveNumber, Axis>,
     /// Whether the supply of the virtual device was switched since it was read.
     pub(super) switched: bool,
-    /// Values written and not saved, as far as known.
     pub(super) unsaved: Unsaved,
     /// Values exchanged with the settings, or `None` before the first exchange.
     pub(super) exchanged: Option<Exchanged>,
@@ -138,7 +132,6 @@ impl Unit {
         self.survey.as_ref().map(|survey| &survey.network)
     }
 
-    /// Returns the connected drives, or those of the profile.
     pub fn drives(&self) -> Vec<DriveNumber> {
         match self.identity() {
             Some(own) => own.drives.iter().map(|drive| drive.number).collect(),
@@ -188,7 +181,6 @@ impl Unit {
         }
     }
 
-    /// Returns state and errors of a drive as last read.
     pub fn drive_status(&self, drive: DriveNumber) -> Option<&DriveStatus> {
         self.status.as_ref()?.drives.iter().find(|own| own.number == drive)
     }
@@ -235,12 +227,10 @@ impl Unit {
         self.moves.actual(drive).or(read).map(|own| own.status.state())
     }
 
-    /// Returns the ruler of a drive for its present scale.
     pub fn ruler(&self, drive: DriveNumber) -> Ruler {
         Ruler { scale: self.scale(drive).unwrap_or(PositionScale::FACTORY), pitch: self.pitch(drive) }
     }
 
-    /// Returns the ruler of a drive for its edited scale.
     pub fn wanted_ruler(&self, drive: DriveNumber) -> Ruler {
         let scale = self.staged.wanted().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
         Ruler { scale, pitch: self.pitch(drive) }
@@ -288,7 +278,6 @@ impl Unit {
         self.staged.marks(|drive| self.actual(drive).map(|own| i64::from(own.position)))
     }
 
-    /// Returns whether edits have not been written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
     }

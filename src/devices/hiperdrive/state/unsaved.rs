@@ -8,7 +8,6 @@ use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, written};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 
-/// Unsaved values of an adapter or hub with its drives.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Unsaved {
     /// The saved values of parameters written since, by number.
@@ -37,7 +36,6 @@ impl Unsaved {
         self.sets = writes.values.keys().filter_map(reference).collect();
     }
 
-    /// Notes that a plan was carried out.
     pub(super) fn done(&mut self, plan: &HiperdrivePlan) {
         self.ended(true);
         let saves = |op: &Op| matches!(op, Op::Service(Service::Save | Service::FactoryAll));

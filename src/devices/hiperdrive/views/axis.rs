@@ -23,7 +23,6 @@ use crate::ui::controls::{
 use crate::ui::widgets::{StepRow as Line, StepState, Steps, steps};
 use crate::ui::{Theme, icons};
 
-/// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct AxisUiState {
     /// The drawn step, and since when, on the window's clock.
@@ -39,7 +38,6 @@ impl AxisUiState {
     }
 }
 
-/// State of the run for drawing.
 pub(crate) struct AxisPicture<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
@@ -53,7 +51,6 @@ impl AxisPicture<'_> {
         actions.push(Action::device(self.unit.session.id, Hiperdrive::Axis(action)));
     }
 
-    /// Draws a button of the run with the reason why it cannot be pressed.
     fn button(&self, ui: &mut Ui, theme: &Theme, own: Button, (icon, word): (&str, &str), actions: &mut Vec<Action>) {
         let allowed = self.axis.ask(own, self.seen).map(|_| ());
         if allowed_button(ui, theme, &allowed, icon, word).clicked() {
@@ -62,9 +59,7 @@ impl AxisPicture<'_> {
     }
 }
 
-/// Room for the number of a step, two digits at most.
 const NUMBERS: f32 = 15.0;
-/// Room for the button that leads on.
 const PRIMARY: f32 = 112.0;
 /// Width below which the list of steps is above the step rather than next to it.
 const BESIDE: f32 = 640.0;
@@ -139,7 +134,6 @@ fn intro(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-/// Draws all steps with the findings of completed ones.
 fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     let line = |step: AxisStep| {
         let reached = shown.axis.reached(step);
@@ -167,7 +161,6 @@ fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     steps(ui, theme, &Steps { steps: &lines, ..Steps::default() });
 }
 
-/// Draws the current step.
 fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
@@ -229,7 +222,6 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entri
     }
 }
 
-/// Draws the position of the axis and the state of its drive in constant height.
 fn live(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     theme.sunken().show(ui, |ui| {
         crate::ui::controls::fill(ui);
@@ -276,7 +268,6 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut
     });
 }
 
-/// Draws the button that skips a step.
 fn skip(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if step.may_be_skipped() {

@@ -58,7 +58,6 @@ fn control(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     two_lines(ui, theme, words, ink.into());
 }
 
-/// Draws STOP for all drives, even while none is known to move.
 fn stop(ui: &mut Ui, theme: &Theme, (open, moves): (bool, bool), actions: &mut Vec<Action>) {
     let palette = theme.palette;
     let word = theme.say("hd_bar.stop");
@@ -95,7 +94,6 @@ fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-/// Draws a drive with its state as an icon and as a label.
 fn drive_button(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
     let palette = theme.palette;
     let state = if moves { Some(State::Moving) } else { unit.state_now(drive) };

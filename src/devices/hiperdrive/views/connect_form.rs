@@ -13,7 +13,6 @@ use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{place, recording, segments, typed, unfolded};
 use crate::ui::{Theme, icons};
 
-/// The connection form of HIPERDRIVE drives.
 pub(crate) struct HiperdriveConnectForm;
 
 impl TypedConnectForm for HiperdriveConnectForm {

@@ -112,7 +112,6 @@ fn check(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-/// Draws the services for all stored values of the device.
 fn services(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("hd_services.title"), |ui| {
         for (service, note) in SERVICES {

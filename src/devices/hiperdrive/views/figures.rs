@@ -11,7 +11,6 @@ use crate::ui::Theme;
 use crate::ui::controls::{card, empty, folding_card, paragraph, row};
 use crate::ui::widgets::series;
 
-/// Draws status and control word with the names of their bits.
 pub(super) fn words_card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: DriveNumber) {
     folding_card(ui, theme, TEXTS.text("hd_words.title"), |ui| {
         let Some(actual) = unit.actual(drive) else {
@@ -30,7 +29,6 @@ pub(super) fn words_card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: Driv
     });
 }
 
-/// Height of the histogram.
 const BARS: f32 = 96.0;
 const WORDS: f32 = 16.0;
 

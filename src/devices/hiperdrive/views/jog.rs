@@ -13,7 +13,6 @@ use crate::ui::Theme;
 use crate::ui::controls::{allowed_button, card, paragraph, problem_below};
 use crate::ui::widgets::{HoldButton, hold_button};
 
-/// Height of the jog buttons.
 const PAD: f32 = 56.0;
 
 /// Speeds that a button sets, in percent.
@@ -35,7 +34,6 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     });
 }
 
-/// Draws the controls for steps of an entered length, which run to their end.
 pub(super) fn step_card_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -12,7 +12,6 @@ use crate::ui::controls::{entry, folding_card, name, options, paragraph, severit
 #[derive(Default)]
 pub(super) struct LedsUiState(Leds);
 
-/// Size of an LED's button.
 const BUTTON: egui::Vec2 = vec2(248.0, 44.0);
 const RADIUS: f32 = 9.0;
 

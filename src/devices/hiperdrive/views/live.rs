@@ -95,7 +95,6 @@ pub(super) fn watch_menu(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut 
     });
 }
 
-/// Returns whether a string fits into the rest of the line.
 fn fits(ui: &Ui, text: &RichText) -> bool {
     let text = WidgetText::from(text.clone());
     let galley = text.into_galley(ui, Some(TextWrapMode::Extend), f32::INFINITY, TextStyle::Body);

@@ -29,14 +29,12 @@ use crate::devices::hiperdrive::state::{HiperdriveAction, Unit};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 
-/// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
     #[default]
     Motion,
     Parameters,
     Axis,
-    /// Errors, LEDs, the cyclic connection.
     Diagnosis,
     Device,
     Backups,
@@ -60,7 +58,6 @@ impl Page {
     }
 }
 
-/// State of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct HiperdriveUiState {
     drives: BTreeMap<DriveNumber, DriveEntries>,
@@ -69,14 +66,12 @@ pub(crate) struct HiperdriveUiState {
     network: network::NetworkUiState,
 }
 
-/// Typed values for one drive.
 #[derive(Default)]
 struct DriveEntries {
     motion: motion::MotionUiState,
     axis: axis::AxisUiState,
 }
 
-/// The view of HIPERDRIVE drives.
 pub(crate) struct HiperdriveView;
 
 impl TypedDeviceView for HiperdriveView {

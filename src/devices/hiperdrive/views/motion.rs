@@ -31,14 +31,12 @@ pub(super) struct MotionUiState {
     target_problem: Option<Text>,
 }
 
-/// Width of a position entry.
 const NUMBER: f32 = 88.0;
 const PERCENT: f32 = 56.0;
 const MEASURE: f32 = 64.0;
 /// Width from which speed and torque stand in one row, and that of the note between them.
 const ONE_ROW: f32 = 660.0;
 const NOTE: f32 = 112.0;
-/// Height of the status message.
 const SAID: f32 = 32.0;
 const BESIDE: f32 = 560.0;
 /// Height of a window below which the pads come before the state diagram.
@@ -88,7 +86,6 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     figures::words_card_ui(ui, theme, unit, unit.drive());
 }
 
-/// Draws why motion is locked and what to do.
 fn locks(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     for lock in unit.moves.locks(drive) {
@@ -376,7 +373,6 @@ fn note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Pe
     }
 }
 
-/// Draws an entry for a length or position, and its unit.
 pub(super) fn length_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -24,7 +24,6 @@ pub(super) struct NetworkUiState {
     form: Option<Form>,
 }
 
-/// Width of an address.
 const ADDRESS: f32 = 148.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, actions: &mut Vec<Action>) {

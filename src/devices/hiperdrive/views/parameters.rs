@@ -18,7 +18,6 @@ use crate::ui::widgets::{
 };
 use crate::ui::{Theme, icons};
 
-/// Filter and typed values.
 #[derive(Default)]
 pub(super) struct DriveParametersUiState {
     sought: String,
@@ -44,7 +43,6 @@ pub(crate) enum ParameterFilter {
     Scale,
 }
 
-/// Width of the search entry.
 const SOUGHT: f32 = 160.0;
 
 pub(super) fn page_ui(
@@ -201,7 +199,6 @@ fn hidden_columns(theme: &Theme, row: &Row) -> String {
     format!("{} {}{columns}", row.number, theme.words(&row.name))
 }
 
-/// A value as an entry.
 fn own_text(row: &Row) -> String {
     row.staged.map_or_else(|| row.shown.clone(), |staged| staged.to_string())
 }

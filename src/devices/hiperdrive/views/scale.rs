@@ -20,7 +20,6 @@ pub(super) struct ScaleUiState {
     refused: Option<Text>,
 }
 
-/// Width of an entry.
 const NUMBER: f32 = 88.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleUiState, actions: &mut Vec<Action>) {

@@ -14,20 +14,17 @@ use crate::devices::hiperdrive::protocol::State;
 use crate::ui::Theme;
 use crate::ui::widgets::focus_ring;
 
-/// A state machine to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StateMachine<'a> {
     /// Present state of the drive, if known.
     pub(crate) present: Option<State>,
     /// States that can be reached from the present one.
     pub(crate) reachable: &'a [State],
-    /// Names of the states, in the order of [`State::ALL`].
     pub(crate) names: &'a [String; 7],
     /// Effects of going to a state, if any.
     pub(crate) hints: &'a [Option<String>; 7],
 }
 
-/// Sizes in points.
 const BOX: f32 = 28.0;
 const GAP: f32 = 28.0;
 const BETWEEN: f32 = 16.0;
@@ -47,7 +44,6 @@ const fn place(state: State) -> (f32, f32) {
     }
 }
 
-/// The boxes of a picture.
 struct Plan {
     origin: Pos2,
     width: f32,
@@ -101,7 +97,6 @@ pub(crate) fn state_machine(ui: &mut Ui, theme: &Theme, machine: &StateMachine<'
     wanted
 }
 
-/// The appearance of a box.
 struct BoxStyle {
     fill: Color32,
     edge: Stroke,

@@ -61,7 +61,6 @@ impl Scale {
     }
 }
 
-/// The displayed values.
 struct Shown {
     limits: Option<(i32, i32)>,
     position: Option<i32>,
@@ -188,7 +187,6 @@ fn bar_ui(painter: &Painter, theme: &Theme, bar: Rect, shown: &Shown) {
     painter.rect_stroke(bar, theme.radius, Stroke::new(1.0, edge), StrokeKind::Inside);
 }
 
-/// Draws the limits below the bar, each as close to its location as both have room.
 fn limits_ui(painter: &Painter, theme: &Theme, below: Rect, [low, high]: [f32; 2], names: [String; 2]) {
     let ink = Color32::from(theme.palette.muted);
     let galley = |name| painter.layout_no_wrap(name, FontId::monospace(theme.sizes.caption), ink);

@@ -26,7 +26,6 @@ use crate::devices::hiperface::protocol::{KIND, LineSettings};
 use crate::devices::hiperface::sim::{Bus, Config};
 use crate::units::{CharacterFormat, Moment};
 
-/// The commands for HIPERFACE encoders.
 pub(crate) struct HiperfaceCommands;
 
 impl DeviceCommands for HiperfaceCommands {

@@ -15,7 +15,6 @@ impl Table {
         Table { linear: matches!(geometry, Some(Geometry::Linear { .. })) }
     }
 
-    /// Returns the first line.
     pub(super) fn header(&self) -> &'static str {
         match self.linear {
             true => "t_s,raw,turns,steps,millimetres,valid,codes\n",
@@ -43,7 +42,6 @@ impl Table {
         )
     }
 
-    /// Returns the line of a reading that gave no position.
     pub(super) fn row_without_position(&self, codes: &[StatusCode]) -> String {
         format!(",,,,,false,{}\n", words(codes))
     }

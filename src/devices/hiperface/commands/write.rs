@@ -132,7 +132,6 @@ pub(super) fn plan_text(prepared: &Prepared) -> String {
     plan::text(plan, lines, prepared.cycles_seen, None)
 }
 
-/// Returns the operations with old and new values, a line each.
 fn change_lines(plan: &HiperfacePlan) -> Lines {
     let mut lines = Lines::default();
     for op in &plan.ops {

@@ -21,7 +21,6 @@ pub(super) fn commit(
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| tell(at.map(|op| JobStep::Operation(op.clone()))))
 }
 
-/// Returns the key of an encoder for backups and the logbook.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     let device_type = format!("{:02X}h", identity.label.encoder_type);
     DeviceKey::of(KIND, &device_type, &identity.serial.serial_number, is_virtual)

@@ -17,7 +17,6 @@ use crate::devices::hiperface::protocol::{
 /// is in the same EEPROM, can be incremented about a million times.
 pub const WEAR_LIMIT: u64 = 1_000_000;
 
-/// A job of a session with a HIPERFACE encoder.
 #[derive(Debug)]
 pub enum HiperfaceJob {
     /// Read everything that is displayed after connecting.
@@ -47,13 +46,10 @@ pub enum HiperfaceJob {
         /// Access code, which is never displayed.
         code: AccessCode,
     },
-    /// Prepare a plan without writing.
     Prepare(Change),
-    /// Carries a plan out.
     Commit(Box<Commit>),
 }
 
-/// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
     Restore {
@@ -66,7 +62,6 @@ pub enum Change {
         number: u8,
         status: DataFieldStatus,
     },
-    /// Change the status of a field: protection, access code or, for the last one, size.
     Redefine {
         number: u8,
         status: DataFieldStatus,
@@ -75,16 +70,13 @@ pub enum Change {
         number: u8,
         lock: bool,
     },
-    /// Change the size of the last field.
     ResizeField {
         number: u8,
         size: FieldSize,
     },
-    /// Delete the last field.
     DeleteField {
         number: u8,
     },
-    /// Change an access code, whose present value the session knows.
     ChangeCode {
         number: CodeNumber,
         new: AccessCode,
@@ -102,15 +94,11 @@ pub enum Change {
     /// Add steps to the position, modulo the measuring range, at standstill. This undoes setting a position, wherever
     /// the shaft is now.
     ShiftPosition {
-        /// Number of steps.
         steps: i64,
     },
     SetAddress(DeviceAddress),
-    /// Store other interface settings.
     Configure(LineSettings),
-    /// Counter to 0.
     ClearCounter,
-    /// Counter + 1.
     IncrementCounter,
 }
 
@@ -182,7 +170,6 @@ pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 pub type Committed = crate::worker::Committed<Written>;
 
-/// A value that was read.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     Number(i64),
@@ -194,7 +181,6 @@ pub enum Value {
     Bytes(Vec<u8>),
 }
 
-/// A profile as read.
 #[derive(Clone, Debug)]
 pub struct SavedProfile {
     pub profile: HiperfaceProfile,
@@ -202,7 +188,6 @@ pub struct SavedProfile {
     pub locked: Vec<(u8, CodeNumber)>,
 }
 
-/// A message of a HIPERFACE encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     Codes(Vec<StatusCode>),
@@ -215,11 +200,9 @@ pub enum DeviceMessage {
     Line(LineQuality),
 }
 
-/// A step of a running HIPERFACE job. It displays as on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
     Field(u64),
-    /// An operation of a plan is carried out.
     Operation(Op),
     Attempt(Attempt),
 }
@@ -234,7 +217,6 @@ impl fmt::Display for JobStep {
     }
 }
 
-/// The result of a HIPERFACE job.
 #[derive(Debug)]
 pub enum HiperfaceOutput {
     Surveyed(Box<Survey>),
@@ -253,7 +235,6 @@ pub enum HiperfaceOutput {
     Committed(Committed),
 }
 
-/// Why a job ended early.
 pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
 
 impl From<PlanError> for JobError {

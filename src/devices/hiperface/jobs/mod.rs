@@ -55,7 +55,6 @@ impl Hiperface {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 
-    /// Notes the identity of the encoder that has replied.
     fn identified(&mut self, context: &SessionContext, identity: &Identity) {
         self.geometry = identity.geometry;
         self.identified = Some(device_key(identity, context.is_virtual));

@@ -11,7 +11,6 @@ use crate::store::{FileError, FileProblem, Store, StoreError, read_text};
 #[error("{}, {cause}", path.display())]
 pub struct BrokenTypes {
     pub path: PathBuf,
-    /// The cause, with line and column or with the row's type byte.
     pub cause: TypeTableError,
 }
 

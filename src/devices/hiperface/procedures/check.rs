@@ -29,7 +29,6 @@ pub enum CheckStep {
     Line,
 }
 
-/// A finding of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
     Code(StatusCode),
@@ -56,12 +55,10 @@ pub enum CheckFinding {
         number: u8,
         codes: Vec<StatusCode>,
     },
-    /// A data field that cannot be read.
     FieldUnreadable {
         number: u8,
         why: Error,
     },
-    /// Another item that cannot be read.
     Unreadable(Error),
     Line(LineQuality),
 }

@@ -6,7 +6,6 @@ use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
 
-/// A procedure that ended early.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]
@@ -48,18 +47,11 @@ pub enum Error {
     AddressTaken { address: u8 },
     /// The requested position exceeds the measuring range.
     #[error("position {wanted} is outside 0…{last}")]
-    PositionRange {
-        wanted: u64,
-        /// The greatest position.
-        last: u64,
-    },
-    /// Bytes beyond the end of a data field.
+    PositionRange { wanted: u64, last: u64 },
     #[error("data field {field} has bytes 0…{}, not {address}…{}", size.saturating_sub(1), (address + count).saturating_sub(1))]
     OutOfField {
         field: u8,
-        /// Index of the first requested byte.
         address: usize,
-        /// Number of requested bytes.
         count: usize,
         /// Number of existing bytes.
         size: usize,
@@ -89,16 +81,13 @@ pub enum Error {
 }
 
 impl Error {
-    /// Returns the error for a reply that belongs to another kind of request.
     pub(super) fn other_reply(command: Command, reply: &Reply) -> Self {
         Error::OtherReply { command, reply: format!("{reply:?}") }
     }
 }
 
-/// The value read back after a write.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReadBack {
-    /// A number, or bytes.
     #[error("{0}")]
     Value(String),
     /// A data field does not behave according to the status that was written.
@@ -106,7 +95,6 @@ pub enum ReadBack {
     AnotherStatus,
 }
 
-/// The damage of a reply.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Damage {
     #[error(transparent)]
@@ -117,7 +105,6 @@ pub enum Damage {
     /// More bytes than a reply has.
     #[error("extra bytes after the reply")]
     Trailing,
-    /// The reply began too late.
     #[error("the reply came too late")]
     Late,
     #[error("the echo differs from what was sent")]

@@ -54,7 +54,6 @@ pub fn read_all_fields(
     Ok(fields)
 }
 
-/// A data field that could not be read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnreadableField {
     pub number: u8,

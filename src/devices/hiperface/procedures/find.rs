@@ -32,7 +32,6 @@ pub struct FoundEncoder {
     pub label: TypeLabel,
 }
 
-/// An attempt, for progress reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Attempt {
     Listening,
@@ -50,7 +49,6 @@ impl fmt::Display for Attempt {
     }
 }
 
-/// A report of a running search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SearchProgress<'a> {
     Trying {
@@ -62,7 +60,6 @@ pub enum SearchProgress<'a> {
     Found(&'a FoundEncoder),
 }
 
-/// The end of a search.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Findings {
     /// Another device is sending on this line, so nothing was sent.

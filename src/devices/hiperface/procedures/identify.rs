@@ -7,7 +7,6 @@ use crate::devices::hiperface::protocol::{
     Request, SerialLabel, StatusCode, TypeLabel,
 };
 
-/// Identity of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
     pub address: u8,

@@ -17,7 +17,6 @@ use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
 pub(super) use exchange::{ExchangeFailure, ReceivedAnswer};
 
-/// The host's side of a HIPERFACE line.
 pub struct Master<'a> {
     line: SerialLine<'a>,
     station: &'a mut Station,

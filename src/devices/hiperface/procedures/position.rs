@@ -13,7 +13,6 @@ use crate::units::Moment;
 pub struct PositionReading {
     /// Time at which the encoder sampled the position: falling edge of the start bit of the reply's address.
     pub at: Moment,
-    /// Position word as received.
     pub raw: u32,
     /// Position, or `None` if periods and turns are unknown.
     pub position: Option<Position>,
@@ -45,7 +44,6 @@ pub enum Sample {
     /// The encoder is present but has no position to return at the moment.
     NoPosition {
         at: Moment,
-        /// The status codes, the reason first.
         codes: Vec<StatusCode>,
     },
     /// A value watched in addition to the position.
@@ -68,7 +66,6 @@ impl Watch {
     pub const TEMPERATURE: Watch = Watch::Analogue(0x48);
 }
 
-/// A watched value as read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
     /// Time at which the encoder sampled an analogue value: falling edge of the start bit of the reply's address. For a

@@ -4,7 +4,6 @@
 use super::{Error, Master, ensure_standstill, read_analogue, read_position};
 use crate::devices::hiperface::protocol::Geometry;
 
-/// Reading of a shaft at standstill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
     pub raw: u32,
@@ -17,9 +16,7 @@ pub struct Rest {
 /// Sine and cosine, each relative to its reference wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signals {
-    /// Sine in volts.
     pub sine_v: f64,
-    /// Cosine in volts.
     pub cosine_v: f64,
 }
 

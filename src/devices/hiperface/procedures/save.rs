@@ -44,7 +44,6 @@ fn save_once(
     Ok(profile_of(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
 }
 
-/// Creates the profile of an encoder with the given fields.
 pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Recorded) -> HiperfaceProfile {
     let mut profile = HiperfaceProfile {
         identity: ProfileIdentity {

@@ -73,7 +73,6 @@ impl FromIterator<(CodeNumber, AccessCode)> for AccessCodes {
     }
 }
 
-/// State of a line and its encoder.
 #[derive(Clone, Debug)]
 pub struct Station {
     /// Address of requests: 40h…5Fh or broadcast.
@@ -139,7 +138,6 @@ impl Station {
         self.thorough || self.line.damaged > 0
     }
 
-    /// Stores status codes that were read from the encoder.
     pub(super) fn meet_codes(&mut self, codes: impl IntoIterator<Item = StatusCode>) {
         let codes: Vec<StatusCode> = codes.into_iter().filter(|code| *code != StatusCode::OK).collect();
         self.codes_read.extend(&codes);
@@ -168,7 +166,6 @@ impl fmt::Display for Station {
     }
 }
 
-/// The speeds that an encoder has.
 struct Bauds;
 
 impl Values for Bauds {

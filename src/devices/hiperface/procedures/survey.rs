@@ -8,7 +8,6 @@ use super::{
 use crate::devices::hiperface::profile::FieldImage;
 use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 
-/// Everything read from an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub identity: Identity,

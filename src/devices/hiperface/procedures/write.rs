@@ -21,14 +21,12 @@ type Confirmed<'p> = crate::profile::Confirmed<'p, Base, Op>;
 /// A write that ended early.
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
 
-/// State in which an encoder was left.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EndState {
     /// Fields that should be write protected and are not, because the encoder could no longer be reached.
     pub unlocked: Vec<u8>,
 }
 
-/// An encoder into which a plan is written.
 pub struct EncoderWrite<'w, 'm> {
     master: Master<'m>,
     identity: &'w Identity,

@@ -5,7 +5,6 @@ use crate::bits::hex_compact;
 use crate::profile::difference::runs;
 use crate::profile::{Comparison, Difference};
 
-/// Compares data fields by number. Address, interface settings, counter and position are excluded.
 pub(super) fn compare(left: &[FieldImage], right: &[FieldImage]) -> Comparison {
     let mut comparison = Comparison::default();
     let mut numbers: Vec<u8> = left.iter().chain(right).map(|field| field.number).collect();

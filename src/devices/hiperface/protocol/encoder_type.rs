@@ -63,7 +63,6 @@ pub enum ShapeEntry {
     PeriodLength,
 }
 
-/// The table as written in the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {

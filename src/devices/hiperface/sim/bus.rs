@@ -26,7 +26,6 @@ pub struct Bus {
     talks: Vec<Talk>,
 }
 
-/// The device that drives the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Talker {
     Host,
@@ -73,7 +72,6 @@ impl Bus {
         }
     }
 
-    /// Returns the encoders in the order of their initial addresses.
     pub fn encoders(&self) -> &[Encoder] {
         &self.encoders
     }
@@ -87,7 +85,6 @@ impl Bus {
         self.encoders.get_mut(index)
     }
 
-    /// Replaces the faults, for a cable that is repaired or breaks later.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.wires.faults = faults.clone();
         for encoder in &mut self.encoders {
@@ -95,7 +92,6 @@ impl Bus {
         }
     }
 
-    /// Switches the power of all encoders off and on at `now`.
     pub fn power_cycle(&mut self, now: Moment) {
         self.advance(now);
         for encoder in &mut self.encoders {

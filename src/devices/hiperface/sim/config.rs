@@ -97,7 +97,6 @@ const fn usual_model() -> Model {
     usual
 }
 
-/// The models of virtual encoders, by name.
 struct Models;
 
 impl Values for Models {

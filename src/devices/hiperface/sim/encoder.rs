@@ -21,7 +21,6 @@ use crate::devices::hiperface::protocol::{
 use crate::sim::Faults;
 use crate::units::Moment;
 
-/// The processing time of commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pace {
     /// Typical times as observed: 3.7 ms for the position, 20 ms plus 1.5 ms per byte for a store, half of the maximum
@@ -156,7 +155,6 @@ impl Encoder {
         &self.electronics.wear
     }
 
-    /// Returns the 24-bit counter.
     pub fn counter(&self) -> u32 {
         self.electronics.counter
     }
@@ -221,7 +219,6 @@ impl Encoder {
         self.faults = faults;
     }
 
-    /// Switches the power off and on at `now`.
     pub(super) fn power_cycle(&mut self, now: Moment) {
         self.power_off();
         self.power_on(now);
@@ -321,7 +318,6 @@ impl Encoder {
         self.activity = Activity::Executing { until, settings, verdict };
     }
 
-    /// Parses a request. Support for the command is checked before its length and arguments.
     fn understand(&self, frame: &Frame<'_>) -> Result<Request, StatusCode> {
         if Command::from_byte(frame.command).is_some_and(|command| !self.electronics.has(command)) {
             return Err(StatusCode::UNKNOWN_COMMAND);

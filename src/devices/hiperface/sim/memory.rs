@@ -11,7 +11,6 @@ use crate::devices::hiperface::protocol::{
     AccessCode, CodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, StatusCode,
 };
 
-/// Data fields and access codes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Memory {
     bytes: Vec<u8>,
@@ -43,7 +42,6 @@ impl Memory {
         self
     }
 
-    /// Replaces the access codes.
     #[must_use]
     pub(super) fn with_codes(mut self, codes: [AccessCode; 4]) -> Self {
         self.codes = codes;

@@ -21,7 +21,6 @@ pub struct Model {
     pub eeprom_units: u8,
     /// Blocks of 16 bytes for data fields.
     pub user_blocks: u8,
-    /// Options byte of 52h.
     pub options: u8,
     /// Position at the start, in steps.
     pub position: u32,

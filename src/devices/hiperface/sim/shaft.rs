@@ -42,7 +42,6 @@ impl Shaft {
         self.rpm.abs() > Self::MAX_RPM
     }
 
-    /// Returns whether the position word can have this value.
     pub(super) fn reaches(&self, position: u32) -> bool {
         u64::from(position) < self.range()
     }
@@ -53,7 +52,6 @@ impl Shaft {
         u32::try_from(word).unwrap_or(u32::MAX)
     }
 
-    /// Sets the position at the present shaft angle, from `at` on.
     pub(super) fn set_position(&mut self, at: Moment, position: u32) {
         let range = self.range();
         self.offset = (u64::from(position) % range + range - self.whole_steps(at)) % range;

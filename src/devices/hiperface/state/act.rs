@@ -18,7 +18,6 @@ use crate::devices::hiperface::state::explain as words;
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
-    /// Carries out an action.
     pub(crate) fn act(&mut self, action: HiperfaceAction, services: &mut Services) {
         match action {
             HiperfaceAction::ReadStatus => self.submit(HiperfaceJob::Status, services),

@@ -10,9 +10,7 @@ use crate::devices::hiperface::profile::{FieldRange, RestoreOptions};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, LineSettings};
 use crate::profile::PlanId;
 
-/// Something in the HIPERFACE tab.
 pub enum HiperfaceAction {
-    /// Read the error queue.
     ReadStatus,
     /// Start or stop reading a value while the position is polled.
     Watch(Watch, bool),
@@ -32,7 +30,6 @@ pub enum HiperfaceAction {
         number: CodeNumber,
         code: AccessCode,
     },
-    /// Put bytes into a field.
     Put {
         field: u8,
         /// First byte.
@@ -45,7 +42,6 @@ pub enum HiperfaceAction {
     PlanAgain(RestoreOptions),
     /// Write even though the encoder has reached its limit of write cycles.
     ForceWear(bool),
-    /// Execute the plan with this id, which the user has seen.
     Write(PlanId),
     CloseReview,
     Save(PathBuf),

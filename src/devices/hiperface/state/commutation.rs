@@ -22,12 +22,10 @@ pub use offset_location::OffsetLocation;
 pub use outcome::{Offset, Setting, Stored, may_read, stored};
 pub use report::kind_words;
 
-/// An action of the assistant.
 pub enum CommutationAction {
     Edit(Box<Form>),
     Read(Slot),
     Use(Slot),
-    /// Discard all readings.
     Clear,
     /// Method 1: enter the offset in the memory, as an edit.
     Store,

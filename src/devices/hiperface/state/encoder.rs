@@ -17,7 +17,6 @@ use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, LineSettings, 
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
-/// An encoder or a profile of one.
 pub struct Encoder {
     pub session: Session<Hiperface>,
     pub identity: Option<Identity>,
@@ -98,7 +97,6 @@ impl Encoder {
         self.staged.is_dirty()
     }
 
-    /// Returns a data field as in the encoder.
     pub fn field(&self, number: u8) -> Option<&FieldImage> {
         self.staged.device().iter().find(|field| field.number == number)
     }
@@ -142,7 +140,6 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// Reports which data fields could not be read, and why.
     fn take_unreadable(&mut self, fields: &[UnreadableField], services: &mut Services) {
         let why = |own: &UnreadableField| {
             let text = Text::new("session.field_unreadable").with("field", own.number);

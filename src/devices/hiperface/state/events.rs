@@ -159,7 +159,6 @@ impl Encoder {
         self.session.write_read(Body::new(saved.profile), edits, remarks, services);
     }
 
-    /// Adopts the operations that were carried out by a write that ended early.
     fn follow_what_was_done(&mut self, error: &JobError, services: &mut Services) {
         let JobError::Interrupted { interrupted, .. } = error else { return };
         let Some(prepared) = self.review().and_then(Review::writing) else { return };

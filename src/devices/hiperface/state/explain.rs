@@ -100,7 +100,6 @@ pub fn verified(written: &Written) -> Text {
     }
 }
 
-/// Returns the text for an exchange with a HIPERFACE encoder that failed.
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
@@ -200,7 +199,6 @@ fn type_name(code: u8) -> String {
     }
 }
 
-/// Returns the text for a plan that cannot be made.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {

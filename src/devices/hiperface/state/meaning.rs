@@ -52,7 +52,6 @@ impl Meaning {
     }
 }
 
-/// Returns whether a reply reports an error or a warning.
 fn reports(answer: &Answer) -> bool {
     match answer {
         Answer::Rejected { .. } => true,

@@ -71,7 +71,6 @@ impl Record {
         self.track.positions()
     }
 
-    /// Forgets the recording of the previous encoder.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         (self.last, self.refused) = (None, false);

@@ -19,7 +19,6 @@ pub fn create(memory: FreeMemory, size: FieldSize, code: CodeNumber, code_requir
     allowed(plan_create(memory, memory.fields, DataFieldStatus::new(size, code, code_required)))
 }
 
-/// Checks whether the field can be resized.
 pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &Staged) -> Allowed {
     status(field)?;
     edits_stay(staged, field.number, size.bytes())?;
@@ -32,7 +31,6 @@ pub fn resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
     allowed(plan_delete(memory, field))
 }
 
-/// The field may be deleted.
 pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &Staged) -> Allowed {
     resizable(memory, field)?;
     edits_stay(staged, field.number, 0)
@@ -86,7 +84,6 @@ fn edits_stay(staged: &Staged, field: u8, bytes: usize) -> Allowed {
     }
 }
 
-/// The field's bytes may be edited.
 pub fn edit(field: &FieldImage) -> Allowed {
     if field.bytes.is_none() {
         let error = PlanError::CodeUnknown { field: field.number, code: field.status.code() };

@@ -126,7 +126,6 @@ pub enum SearchAction {
     Choose(usize),
 }
 
-/// A link was opened for a search.
 pub struct OpenedForSearch {
     number: u32,
     result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>,

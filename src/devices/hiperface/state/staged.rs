@@ -26,7 +26,6 @@ impl EditBase for Vec<FieldImage> {
     }
 }
 
-/// Why an edit is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StagedError {
     #[error("data field {field} does not exist")]
@@ -54,7 +53,6 @@ impl Staged {
         self.base()
     }
 
-    /// Returns the fields as edited.
     pub fn wanted(&self) -> Vec<FieldImage> {
         let mut fields = self.base().clone();
         for ((number, address), byte) in self.iter() {
@@ -118,7 +116,6 @@ impl Staged {
         Ok(())
     }
 
-    /// Discards the edits of a range.
     pub fn revert_range(&mut self, range: FieldRange) {
         self.take_back(|(field, address)| range.contains(field, address));
     }

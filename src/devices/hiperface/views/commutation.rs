@@ -17,11 +17,9 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// Width of an entry for a number.
 const NUMBER: f32 = 96.0;
 /// Width of the column of read buttons.
 const READ: f32 = 176.0;
-/// Width of an entry for a position.
 const POSITION: f32 = 80.0;
 /// The least width for two columns.
 const COLUMNS: f32 = 700.0;

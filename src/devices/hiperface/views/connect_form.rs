@@ -18,7 +18,6 @@ use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{echo, network, parity, recording, segments, serial, typed, unfolded};
 use crate::ui::{Theme, icons};
 
-/// The state of the search options between frames.
 #[derive(Default)]
 pub(crate) struct SearchView {
     one_encoder: bool,
@@ -28,7 +27,6 @@ pub(crate) struct SearchView {
 /// How long to wait for the encoder's supply to be switched off and on.
 const POWER_CYCLE: Duration = Duration::from_secs(30);
 
-/// The connection form of HIPERFACE encoders.
 pub(crate) struct HiperfaceConnectForm;
 
 impl TypedConnectForm for HiperfaceConnectForm {

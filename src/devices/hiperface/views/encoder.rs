@@ -156,5 +156,4 @@ fn extended_label(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     });
 }
 
-/// Width of the address column.
 const ADDRESSES: f32 = 72.0;

@@ -16,7 +16,6 @@ use crate::devices::hiperface::state::{Encoder, HiperfaceAction, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{NamedAction, Theme, backups, icons, page};
 
-/// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
     #[default]
@@ -50,7 +49,6 @@ pub(crate) struct HiperfaceUiState {
     channel: String,
 }
 
-/// The view of HIPERFACE encoders.
 pub(crate) struct HiperfaceView;
 
 impl TypedDeviceView for HiperfaceView {

@@ -89,7 +89,6 @@ pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
         .collect()
 }
 
-/// Returns the modes in which a command is legal.
 fn elsewhere(command: Command) -> String {
     let modes: Vec<&str> = Mode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).map(Mode::name).collect();
     format!("\"{}\" is for {} mode", command_words(command).0, modes.join(" or "))

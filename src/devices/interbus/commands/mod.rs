@@ -28,7 +28,6 @@ use crate::devices::interbus::protocol::KIND;
 use crate::devices::interbus::state::TEXTS;
 use crate::link::Scheme;
 
-/// The commands for INTERBUS encoders.
 pub(crate) struct InterbusCommands;
 
 /// Warning about the effect of reading cam programs on a machine.

@@ -40,7 +40,6 @@ pub enum InterbusJob {
     /// Reads the given cam programs and the window shift.
     Programs(Vec<ProgramNumber>),
     Identify,
-    /// Reads the encoder's mode, error and temperature.
     Status,
     /// Checks gateway and encoder, with a verdict a line.
     Check,
@@ -56,13 +55,11 @@ pub enum InterbusJob {
     },
     /// Plans a change without writing anything.
     Prepare(Change),
-    /// Carries a plan out.
     Commit(Box<Commit>),
     /// Ends an earlier parameterisation, error or read-out. Values set and not stored are stored by that, and counted.
     LeadBack,
 }
 
-/// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
     Restore {
@@ -71,7 +68,6 @@ pub enum Change {
     },
     /// Writes the values in the image; items not in the image are left unchanged and are not read.
     Write(Box<Image>),
-    /// Sets one item and leaves the others unchanged.
     Item(Item, ItemValue),
     /// Stores the preset and sets the current shaft position to it; only at standstill.
     Preset {
@@ -156,24 +152,19 @@ impl Prepared {
     }
 }
 
-/// Plan with the user's consent.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 pub type Committed = crate::worker::Committed<Written>;
 
-/// A message during a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
-    /// A step of the handshake.
     Handshake(Handshake),
 }
 
-/// Step of a running job, displayed as on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
     ReadOut(ReadOut),
     Program(ProgramNumber),
-    /// An operation of a plan, with the item it changes.
     Operation(String),
 }
 
@@ -190,7 +181,6 @@ impl fmt::Display for JobStep {
     }
 }
 
-/// The result of a job.
 #[derive(Debug)]
 pub enum InterbusOutput {
     Hello(WordReading),
@@ -209,7 +199,6 @@ pub enum InterbusOutput {
     LedBack(StartupMode),
 }
 
-/// Why a job ended early.
 pub type JobError = crate::worker::JobError<Error, PlanError, Interrupted, ChangeKind>;
 
 impl From<PlanError> for JobError {

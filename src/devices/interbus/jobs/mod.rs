@@ -41,7 +41,6 @@ impl fmt::Debug for Interbus {
     }
 }
 
-/// Receives the reports of a job.
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Interbus {

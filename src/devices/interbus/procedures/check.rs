@@ -28,7 +28,6 @@ pub enum CheckStep {
     Wear,
 }
 
-/// A single finding of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
     /// Number of IN word readings, and the longest reply time.
@@ -52,7 +51,6 @@ pub enum CheckFinding {
     Occupied(u32),
     SerialNumber(String),
     SoftwareVersion(u32),
-    /// Steps and turns.
     Gear {
         /// Steps over all turns.
         steps: u32,
@@ -71,7 +69,6 @@ pub enum CheckFinding {
         /// Milliseconds for each.
         each_ms: u64,
     },
-    /// The error that ended the read-outs.
     Failed(Error),
     /// Tenths of a degree Celsius.
     Temperature(i32),
@@ -157,7 +154,6 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Erro
     Ok((lines, fits && free))
 }
 
-/// Returns the identity result, with the worst verdict among its findings.
 fn identity(survey: &Survey) -> InterbusStepResult {
     let identity = &survey.identity;
     let mut findings = vec![

@@ -8,25 +8,14 @@ use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
 
-/// A request to a gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequestedItem {
     /// Read the IN word: two input registers, function 4.
-    Input {
-        /// First of the two registers.
-        register: u16,
-    },
+    Input { register: u16 },
     /// Read the OUT word stored in the gateway: two holding registers, function 3.
-    Output {
-        /// First of the two registers.
-        register: u16,
-    },
+    Output { register: u16 },
     /// Write an OUT word: two holding registers, function 16.
-    Write {
-        /// First of the two registers.
-        register: u16,
-        word: u32,
-    },
+    Write { register: u16, word: u32 },
 }
 
 impl RequestedItem {
@@ -38,7 +27,6 @@ impl RequestedItem {
         }
     }
 
-    /// Returns the first register.
     pub const fn register(self) -> u16 {
         match self {
             RequestedItem::Input { register }
@@ -111,15 +99,11 @@ impl Exception {
     }
 }
 
-/// The damage of a gateway's reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
     /// The received bytes are not a Modbus/TCP frame.
     #[error("{bytes} bytes that are not a Modbus/TCP frame")]
-    NoFrame {
-        /// Number of bytes.
-        bytes: usize,
-    },
+    NoFrame { bytes: usize },
     #[error("a reply from unit {got} instead of {requested}")]
     Unit { requested: u8, got: u8 },
     #[error("a reply to function {got} instead of {requested}")]
@@ -129,7 +113,6 @@ pub enum Damage {
     Registers,
 }
 
-/// The event that did not occur within the time of the handshake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Awaited {
     Echo,
@@ -151,10 +134,8 @@ impl fmt::Display for Awaited {
     }
 }
 
-/// Why the data of an encoder are implausible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Implausible {
-    /// Steps and turns.
     #[error(transparent)]
     Gear(#[from] GearError),
     #[error("{0} is not a direction")]
@@ -164,12 +145,10 @@ pub enum Implausible {
     Value { read: u32, value: u32 },
 }
 
-/// A procedure that ended early.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// The gateway does not answer.
     #[error("the gateway does not answer {requested} (attempts: {tries})")]
     NoReply { requested: RequestedItem, tries: u32 },
     #[error("damaged reply to {requested} (attempts: {tries}): {cause}")]
@@ -192,7 +171,6 @@ pub enum Error {
     /// The encoder refused the command with an error word.
     #[error("the encoder refuses {:08X} ({}): {:08X}, {}; {}", sent.emit(), sent.name(), word(*error), error.meaning(), error.remedy())]
     Refused { sent: Command, error: ErrorWord },
-    /// The encoder has no value for the read-out.
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]
     UnknownReadOut { command: Command },
     /// The encoder did not react to a word within the handshake time.
@@ -222,7 +200,6 @@ pub enum Error {
     /// The encoder does not enter the requested mode.
     #[error("the encoder stays in mode {} instead of changing to {}", is.emit(), wanted.emit())]
     NoMode { wanted: StartupMode, is: StartupMode },
-    /// A mode that cannot be selected.
     #[error("mode {} cannot be selected", mode.emit())]
     NotSelectable { mode: StartupMode },
     /// The encoder is in a mode that the manual does not define: the effect of any word other than a read-out is
@@ -231,11 +208,7 @@ pub enum Error {
     UnknownMode { mode: StartupMode },
     /// The shaft is turning but must stand still.
     #[error("the shaft is moving: from position {from} to {to}")]
-    Moving {
-        /// The first position.
-        from: u32,
-        to: u32,
-    },
+    Moving { from: u32, to: u32 },
     /// A written value does not read back.
     #[error("{item} is {reads} after {wanted} was written")]
     NotTaken { item: String, wanted: u32, reads: u32 },
@@ -251,7 +224,6 @@ pub enum Error {
     },
 }
 
-/// Returns the error as received.
 fn word(error: ErrorWord) -> u32 {
     Reply::Error(error).emit()
 }

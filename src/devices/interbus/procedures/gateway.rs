@@ -22,7 +22,6 @@ use crate::units::Moment;
 
 /// Number of unanswered attempts before a gateway counts as lost; each may take its full time.
 const SILENCES: u32 = 3;
-/// Number of attempts with invalid replies.
 const TRIES: u32 = 5;
 /// Pause before a request to a busy gateway is repeated.
 const BUSY_PAUSE: Duration = Duration::from_millis(200);
@@ -55,7 +54,6 @@ struct State<'a> {
     silent: &'a mut bool,
 }
 
-/// An exchange that gave nothing.
 enum ExchangeError {
     Silence,
     Damage(Damage),
@@ -206,7 +204,6 @@ fn request(requested: RequestedItem, unit: u8, number: u16, order: WordOrder) ->
     made.ok().map(|()| (request, bytes))
 }
 
-/// The fault of a received frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The frame is not a reply to the request.

@@ -12,11 +12,9 @@ pub struct Handshake {
     pub out: u32,
     pub command: Command,
     pub input: u32,
-    /// Meaning of IN as the answer.
     pub reply: WordReply,
 }
 
-/// Meaning of an IN word as the reply to an OUT word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WordReply {
     /// A running word: a position, a speed or cam outputs.
@@ -39,7 +37,6 @@ pub(super) fn is_echo(command: Command, input: u32) -> bool {
 }
 
 impl WordReply {
-    /// Returns the meaning of `input` as an answer to `command`.
     pub fn of(command: Command, input: u32) -> Self {
         if is_echo(command, input) && !matches!(command, Command::Normal | Command::Run) {
             return WordReply::Echoed;

@@ -33,7 +33,6 @@ impl Identity {
     }
 }
 
-/// The encoder's data and state as found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
     pub identity: Identity,
@@ -54,7 +53,6 @@ impl Survey {
     }
 }
 
-/// The status of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     pub reading: WordReading,
@@ -284,7 +282,6 @@ pub(super) fn read_program(master: &mut Master<'_>) -> Result<Program, Error> {
     Ok(program)
 }
 
-/// Reads a cam of the selected program.
 pub(super) fn read_cam(master: &mut Master<'_>, cam: CamNumber) -> Result<Cam, Error> {
     let start = master.ask(Command::ReadCamStart(cam))?;
     Ok(Cam { start, stop: master.ask(Command::ReadCamStop(cam))? })

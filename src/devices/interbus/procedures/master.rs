@@ -20,7 +20,6 @@ use crate::devices::interbus::protocol::{Command, Gear, Mode, ReadOut, Reply, St
 use crate::link::Ctx;
 use crate::units::Moment;
 
-/// Receives each step.
 type StepListener<'a> = Box<dyn FnMut(Handshake) + 'a>;
 
 /// Host side of the process data of one encoder, for one job.

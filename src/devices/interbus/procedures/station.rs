@@ -18,7 +18,6 @@ parameters! {
         pub input: u16 = 0, "input" => INPUT, "connect.input";
         /// First of the two holding registers with the OUT word.
         pub output: u16 = 0, "output" => OUTPUT, "connect.output";
-        /// Order of a word's halves.
         pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
         /// Time limit for an echo, a value or a position (reference 4, `U`).
         pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
@@ -29,7 +28,6 @@ parameters! {
     }
 }
 
-/// State of a gateway and the encoder behind it.
 #[derive(Clone, Debug)]
 pub struct Station {
     pub link: LinkParameters,
@@ -44,7 +42,6 @@ pub struct Station {
     pub(super) known: KnownState,
 }
 
-/// The known state of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct KnownState {
     /// Operating mode as last reported.

@@ -17,7 +17,6 @@ use crate::devices::interbus::protocol::{
 };
 use crate::profile::{Confirmed, Write};
 
-/// A write that ended early.
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
 
 /// State in which an encoder was left.
@@ -34,7 +33,6 @@ const WATCHED: Duration = Duration::from_millis(300);
 /// Interval of reading the position meanwhile.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// An encoder into which a plan is written.
 pub struct EncoderWrite<'w, 'm> {
     pub master: Master<'m>,
     pub identity: &'w Identity,

@@ -103,7 +103,6 @@ fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<Par
     Ok(changes)
 }
 
-/// Returns the edges that differ, by cam and the start first.
 fn cam_changes(number: ProgramNumber, from: &Program, to: &Program, steps: u32) -> Result<Vec<CamChange>, PlanError> {
     let mut changes = Vec::new();
     for cam in CamNumber::all() {

@@ -17,7 +17,6 @@ pub enum Unit {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     unit: Unit,
-    /// Number of steps per unit.
     steps: f64,
     /// The encoder's position at the machine's 0.
     zero: u32,

@@ -36,7 +36,6 @@ pub struct ParameterRow {
     limit: Limit,
 }
 
-/// The limits of a number.
 #[derive(Clone, Copy, Debug)]
 enum Limit {
     /// Constant limits.

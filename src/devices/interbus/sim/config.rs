@@ -63,7 +63,6 @@ parameters! {
     }
 }
 
-/// Range of numbers that fit into a word.
 const VALUE: Whole<u32> = Whole(Quantity::Number, 0..=Value::MAX.get());
 
 impl Config {

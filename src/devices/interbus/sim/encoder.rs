@@ -70,7 +70,6 @@ enum Activity {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum InWordContent {
-    /// Live position, speed or cam outputs.
     Live,
     Word(u32),
 }
@@ -159,7 +158,6 @@ impl Encoder {
         self.shaft.put(now, place);
     }
 
-    /// Returns the settings, stored or not.
     pub const fn memory(&self) -> &Memory {
         &self.memory
     }

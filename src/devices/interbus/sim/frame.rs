@@ -16,7 +16,6 @@ pub(super) enum Exception {
     NoAnswer = 0x0B,
 }
 
-/// Registers that can be read and written.
 pub(super) trait Registers {
     fn inputs(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception>;
     fn holdings(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception>;

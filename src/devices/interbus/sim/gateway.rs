@@ -25,7 +25,6 @@ pub struct Gateway {
     to_host: Queue<Vec<u8>>,
 }
 
-/// State shared by all clients.
 struct Shared {
     unit: u8,
     map: Map,
@@ -40,7 +39,6 @@ struct Shared {
 impl Gateway {
     const REPLY: Duration = Duration::from_millis(2);
 
-    /// Creates the virtual gateway and its encoders from `config`.
     pub fn new(config: &Config) -> Self {
         let shared = Shared {
             unit: config.unit,
@@ -60,7 +58,6 @@ impl Gateway {
         Gateway { shared: self.shared.clone(), received: Vec::new(), to_host: Queue::default() }
     }
 
-    /// Returns the motor of the first encoder.
     pub fn shaft(&self) -> Motor {
         self.with_encoder(|encoder| encoder.motor())
     }
@@ -83,7 +80,6 @@ impl Gateway {
     }
 }
 
-/// Gateway registers at a given moment.
 struct GatewayRegisters<'a>(&'a mut Shared);
 
 impl Registers for GatewayRegisters<'_> {

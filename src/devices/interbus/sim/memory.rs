@@ -31,7 +31,6 @@ impl Memory {
         }
     }
 
-    /// Returns steps and turns.
     pub const fn gear(&self) -> Gear {
         self.gear
     }
@@ -50,12 +49,10 @@ impl Memory {
         self.armed
     }
 
-    /// Returns the zero point shifting.
     pub const fn zero_shift(&self) -> u32 {
         self.zero_shift
     }
 
-    /// Returns the shift of the position window.
     pub const fn shift(&self) -> WindowShift {
         self.shift
     }
@@ -127,7 +124,6 @@ pub(super) enum Stored {
     Program(ProgramNumber),
 }
 
-/// The end of a store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
     Kept,

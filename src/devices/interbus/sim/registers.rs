@@ -8,7 +8,6 @@ use super::frame::Exception;
 use crate::devices::interbus::protocol::WordOrder;
 use crate::units::Moment;
 
-/// The registers of the encoders.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Map {
     input: u16,

@@ -13,7 +13,6 @@ use crate::devices::interbus::state::TEXTS;
 use crate::profile::Body;
 
 impl Encoder {
-    /// Carries out an action.
     pub(crate) fn act(&mut self, action: InterbusAction, services: &mut Services) {
         match action {
             InterbusAction::Stopped(stopped) => self.say_stopped(stopped),

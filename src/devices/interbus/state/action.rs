@@ -8,7 +8,6 @@ use crate::devices::interbus::jobs::Change;
 use crate::devices::interbus::profile::Scale;
 use crate::devices::interbus::protocol::{ProgramNumber, ReadOut, StartupMode};
 
-/// Something in the INTERBUS tab.
 pub enum InterbusAction {
     /// Sets whether the user has confirmed that the machine stands still.
     Stopped(bool),
@@ -34,7 +33,6 @@ pub enum InterbusAction {
     AskSaveTable {
         decimal_comma: bool,
     },
-    /// Write the cams as a table.
     SaveTable {
         path: PathBuf,
         decimal_comma: bool,

@@ -20,11 +20,9 @@ use super::staged::{EditedValues, Mark, Staged};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 
-/// A program as a chart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chart {
     pub program: ProgramNumber,
-    /// Steps of the measuring range.
     pub range: u32,
     /// Its cams, the first at 0.
     pub lanes: [Lane; Program::CAMS],
@@ -50,14 +48,12 @@ pub struct Stretch {
     pub last: u32,
 }
 
-/// The part of the measuring range that is to be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibleRange {
     first: f64,
     span: f64,
 }
 
-/// An output at a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutputState {
     /// Output by the edited program; `None`: the position or the program is not known.
@@ -113,7 +109,6 @@ impl Chart {
         self.lanes.iter().find(|lane| !lane.on).map(|lane| lane.cam)
     }
 
-    /// Returns the last position.
     pub const fn last(&self) -> u32 {
         self.range.saturating_sub(1)
     }
@@ -160,7 +155,6 @@ impl OutputState {
 }
 
 impl VisibleRange {
-    /// Creates the whole measuring range.
     pub fn whole(range: u32) -> Self {
         VisibleRange { first: 0.0, span: f64::from(range.max(1)) }
     }

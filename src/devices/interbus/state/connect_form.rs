@@ -10,7 +10,6 @@ use crate::devices::interbus::sim::Config;
 use crate::link::{LinkUrl, Scheme};
 use crate::parameter::{Entry, Parameters as _};
 
-/// Kind of connection to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InterbusLinkKind {
     /// Virtual encoder within the program, behind a virtual gateway.
@@ -39,7 +38,6 @@ pub struct InterbusForm {
 
 /// Link parameter for the word order, with the value for the unusual order.
 const LOW_FIRST: (&str, &str) = ("order", "low-first");
-/// The port of Modbus/TCP.
 const PORT: &str = "502";
 
 impl FormModel for InterbusForm {

@@ -24,12 +24,9 @@ use super::word_meaning::WordContext;
 /// Maximum number of handshake steps shown.
 const STEPS: usize = 200;
 
-/// State of an INTERBUS encoder, or of a profile of one.
 pub struct Encoder {
     pub session: Session<Interbus>,
-    /// The identity and the parameters, as read.
     pub survey: Option<Survey>,
-    /// Results of the last device check.
     pub check: Option<Vec<CheckLine>>,
     pub staged: Staged,
     pub read_outs: BTreeMap<u16, Value>,
@@ -111,7 +108,6 @@ impl Encoder {
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
     }
 
-    /// Returns the mode that was last read.
     pub fn mode(&self) -> Option<StartupMode> {
         let read = || self.identity().map(|own| own.mode);
         self.record.last().and_then(|reading| reading.mode).or_else(read)
@@ -136,7 +132,6 @@ impl Encoder {
         self.record.last().and_then(WordReading::position)
     }
 
-    /// Returns the word order of a register pair.
     pub(super) fn order(&self) -> WordOrder {
         let Source::Link(url) = &self.session.source else { return WordOrder::default() };
         url.query.read("order", &WordOrder::WORDS).ok().flatten().unwrap_or_default()
@@ -188,7 +183,6 @@ impl Encoder {
         self.staged.differences().iter().any(|own| !matches!(own.place, ValueId::Parameter(_)))
     }
 
-    /// Returns whether any edits have not been written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
     }
@@ -236,7 +230,6 @@ impl Encoder {
     }
 }
 
-/// Returns the name by which the log and the jobs call an encoder.
 fn title(identity: &Identity) -> String {
     format!("K3 · {}", identity.serial_number)
 }

@@ -52,7 +52,6 @@ fn lost(error: &Error) -> Option<&LinkError> {
     }
 }
 
-/// Returns the text of an error of an encoder behind its gateway.
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),

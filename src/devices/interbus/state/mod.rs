@@ -44,6 +44,5 @@ pub use table::Import;
 pub enum Done {
     /// A table of cams was read, or not.
     Read(PathBuf, Result<String, FileError>),
-    /// A table of cams was written, or not.
     Written(PathBuf, Result<(), FileError>),
 }

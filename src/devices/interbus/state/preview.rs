@@ -15,7 +15,6 @@ pub struct Preview {
     pub last: Option<Differing>,
 }
 
-/// Reported outputs that differ from the program's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differing {
     pub position: u32,

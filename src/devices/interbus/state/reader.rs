@@ -43,7 +43,6 @@ impl WordSource {
     }
 }
 
-/// Context for interpreting typed words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     pub source: WordSource,

@@ -19,7 +19,6 @@ pub(super) enum RecordedValue {
     Cam(CamNumber),
 }
 
-/// Recorder for an encoder's values, with the latest word.
 #[derive(Debug, Default)]
 pub struct Record {
     pub(super) track: Track<RecordedValue>,

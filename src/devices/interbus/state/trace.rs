@@ -25,7 +25,6 @@ impl Meaning {
         Meaning { order, shift: None, mode: Mode::Position, read_out: None, requested: Vec::new() }
     }
 
-    /// Updates the encoder's known mode.
     pub(super) fn found(&mut self, mode: Mode) {
         self.mode = mode;
     }

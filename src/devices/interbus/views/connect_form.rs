@@ -11,7 +11,6 @@ use crate::ui::controls::{choice, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{place, recording, segments, typed, unfolded};
 
-/// The connection form of INTERBUS encoders.
 pub(crate) struct InterbusConnectForm;
 
 impl TypedConnectForm for InterbusConnectForm {

@@ -9,7 +9,6 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{folding_card, name, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
 
-/// The LEDs as entered by the user.
 pub(super) struct LedsUiState {
     leds: Leds,
 }

@@ -19,7 +19,6 @@ use crate::devices::interbus::state::{Encoder, InterbusAction, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 
-/// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
     #[default]
@@ -57,7 +56,6 @@ pub(crate) struct InterbusUiState {
     lamps: leds::LedsUiState,
 }
 
-/// The view of INTERBUS encoders.
 pub(crate) struct InterbusView;
 
 impl TypedDeviceView for InterbusView {

@@ -27,7 +27,6 @@ pub(super) struct EncoderParametersUiState {
     preset_problem: Option<Text>,
 }
 
-/// Width of a number field.
 const NUMBER: f32 = 112.0;
 /// Height of the word list.
 const WORDS: f32 = 240.0;
@@ -197,7 +196,6 @@ fn wear(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     });
 }
 
-/// Draws the words of the latest handshakes.
 fn handshake(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_handshake.title"), |ui| {
         if encoder.handshake.is_empty() {

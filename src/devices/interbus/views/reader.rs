@@ -15,7 +15,6 @@ pub(super) struct WordReaderUiState {
     reading: Reading,
 }
 
-/// Width of the word column.
 const WORD: f32 = 92.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) {

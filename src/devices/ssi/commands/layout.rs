@@ -17,7 +17,6 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::explain as words;
 use crate::store::Store;
 
-/// A layout to work with.
 pub(crate) struct Chosen {
     pub(crate) profile: SsiProfile,
     pub(crate) layout: Layout,

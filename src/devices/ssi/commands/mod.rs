@@ -24,7 +24,6 @@ use crate::devices::ssi::sim::{AtAdapter, Encoder};
 use crate::kinds::at_adapter;
 use crate::profile::Body;
 
-/// Commands for SSI encoders, which only send their position and have no memory.
 pub(crate) struct SsiCommands;
 
 impl DeviceCommands for SsiCommands {
@@ -91,7 +90,6 @@ impl ProfileCommands for SsiCommands {
     }
 }
 
-/// How an encoder is configured.
 const SET: &str = "configure it with the manufacturer's tool";
 
 /// Command `ssi`, which works on frames without an encoder.

@@ -20,7 +20,6 @@ use crate::sim::Motor;
 use crate::store::Store;
 use crate::worker::{Device, EndedEarly, JobReport, Progress, Session, SessionContext, Watched};
 
-/// SSI encoder connected through an adapter.
 pub struct Ssi {
     wire: Box<dyn ByteLink>,
     station: Station,
@@ -29,7 +28,6 @@ pub struct Ssi {
     streamed_us: Option<u32>,
 }
 
-/// Job for an adapter in front of an SSI encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SsiJob {
     /// Identifies the adapter, switches on the encoder's supply if requested, and configures how words are read.
@@ -41,7 +39,6 @@ pub enum SsiJob {
     Check(Box<Layout>),
 }
 
-/// The result of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SsiOutput {
     Hello(Box<Identity>),
@@ -54,7 +51,6 @@ pub enum SsiOutput {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JobStep;
 
-/// Why a job ended early.
 pub type JobError = Error;
 
 impl EndedEarly for Error {
@@ -95,7 +91,6 @@ impl Session<Ssi> {
         self.device.station.asking = asking;
     }
 
-    /// Returns the state of the line and the adapter.
     pub fn station(&self) -> &Station {
         &self.device.station
     }

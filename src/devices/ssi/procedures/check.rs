@@ -9,12 +9,10 @@ use crate::devices::ssi::protocol::{Flags, FrameFinding as Said, Layout, Meaning
 
 pub use crate::analysis::check::Verdict;
 
-/// Number of words read for the check.
 pub const WORDS: u64 = 50;
 /// Maximum step between consecutive positions of a shaft at standstill, which may jitter by a step or two.
 const TREMBLES: u64 = 4;
 
-/// Result line of a device check.
 pub type SsiStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,13 +21,10 @@ pub enum CheckStep {
     Supply,
     Line,
     Layout,
-    /// Error bits and patterns.
     Errors,
-    /// Position changes from word to word.
     Motion,
 }
 
-/// Fact established by the device check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
     Adapter(String, String),
@@ -40,11 +35,8 @@ pub enum CheckFinding {
     },
     /// Millivolts requested and measured, and milliamperes.
     Supply {
-        /// Millivolts requested.
         requested: u16,
-        /// Millivolts measured.
         measured: u16,
-        /// Milliamperes measured.
         milliampere: u16,
     },
     SuppliedElsewhere,

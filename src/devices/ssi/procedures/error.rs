@@ -4,7 +4,6 @@ use crate::buses::bridge::procedures::{AdapterError, Failure};
 use crate::link::LinkError;
 use crate::link::line::LineError;
 
-/// Reason why no words arrive.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]

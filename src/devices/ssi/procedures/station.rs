@@ -58,7 +58,6 @@ pub struct Identity {
     pub supply: Option<Supply>,
 }
 
-/// State of a session's adapter, and the settings for reading words.
 #[derive(Clone, Debug)]
 pub struct Station {
     pub line: LineState,
@@ -75,10 +74,8 @@ pub struct Station {
     pub(super) asked: u64,
 }
 
-/// Encoder supply as provided by an adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Supply {
-    /// Millivolts requested.
     pub millivolt: u16,
     /// Millivolts and milliamperes measured at switch-on; `None` before that.
     pub measured: Option<(u16, u16)>,
@@ -140,7 +137,6 @@ impl Station {
         }
     }
 
-    /// Restarts the count of single requests.
     pub(crate) fn count_anew(&mut self) {
         self.asked = 0;
     }

@@ -31,7 +31,6 @@ use super::layout::Layout;
 const MOST_FRAMES: usize = 4_000;
 /// Least number of different frames: with fewer, the shaft stands still, or trembles.
 const LEAST_DIFFERENT: usize = 32;
-/// Classes that are shown.
 const CLASSES: usize = 6;
 /// Penalty for a class that is less usual by one setting, in bits of all frames.
 const WEIGHT_BITS: f64 = 8.0;

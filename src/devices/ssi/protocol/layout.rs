@@ -37,7 +37,6 @@ pub struct Layout {
     pub(super) invalid: Flags,
 }
 
-/// A run of bits of the code word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Part {
     /// Bits of the word after it.
@@ -109,7 +108,6 @@ impl Flags {
 }
 
 impl Default for Layout {
-    /// Returns the smallest frame: one bit.
     fn default() -> Self {
         Layout {
             descriptor: Descriptor::plain(0, 1),

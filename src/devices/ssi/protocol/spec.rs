@@ -80,12 +80,10 @@ impl<'t> Setting<'t> {
         }
     }
 
-    /// Returns the error for a value outside the allowed set.
     pub(super) fn wrong(self, expected: Expected) -> SpecError {
         SpecError::Value { name: self.name.to_owned(), expected, value: self.value.to_owned() }
     }
 
-    /// Returns the error for an unknown name.
     pub(super) fn unknown(self) -> SpecError {
         SpecError::Name { name: self.name.to_owned(), names: self.names }
     }

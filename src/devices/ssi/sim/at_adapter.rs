@@ -8,11 +8,9 @@ use crate::parameter::{ANY, Checked, Maybe, Parameters, Refused};
 use crate::parameters;
 use crate::sim::ConfigError;
 
-/// Default SSI frame, with 12 turn bits and 13 step bits.
 pub const DELIVERED: &str = "atm60,code=gray";
 
 parameters! {
-    /// Settings of an SSI encoder on the shaft at an adapter, and its injected faults.
     pub struct Settings: ConfigError {
         /// Family and settings of the encoder. A host that clocks a different number of bits receives a truncated
         /// frame, or zeros after the frame.
@@ -25,7 +23,6 @@ parameters! {
     }
 }
 
-/// An SSI encoder on the shaft at an adapter.
 #[derive(Clone, Debug)]
 pub struct AtAdapter {
     /// Encoder to use if the settings name none, or `None` for the factory settings.

@@ -19,7 +19,6 @@ use crate::devices::ssi::state::TEXTS;
 use crate::store::write_atomically;
 
 impl Encoder {
-    /// Carries out an action.
     pub(crate) fn act(&mut self, action: SsiAction, context: &mut ActContext<'_>) {
         let services = &mut *context.services;
         match action {

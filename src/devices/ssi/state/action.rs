@@ -8,14 +8,12 @@ use super::form::{Field, Input};
 use super::strip::Handle;
 use crate::app::{DeviceAction, Language};
 
-/// Something in the SSI tab.
 pub enum SsiAction {
     Check,
     Edit(Box<Edit>),
     Enter(Field, Input),
     /// Moves a part of the frame to a clock, or as close to it as possible.
     Move(Handle, u8),
-    /// Add an error bit.
     AddErrorBit,
     RemoveErrorBit(usize),
     Try(Try),
@@ -24,9 +22,7 @@ pub enum SsiAction {
     Find,
     /// Asks for a file with frames whose layout is to be found.
     AskFrames,
-    /// Search for the layout of the frames in a file.
     FindIn(PathBuf),
-    /// Discard the result of the search.
     ForgetSearch,
     /// Adopts a layout from the search result, given the index of its class and its index within that class.
     Take(usize, usize),
@@ -40,7 +36,6 @@ pub enum SsiAction {
     Turn(f64),
 }
 
-/// A frame to try a layout with.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Try {
     Position(u64),

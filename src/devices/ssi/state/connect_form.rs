@@ -13,13 +13,10 @@ use crate::kinds::at_adapter;
 use crate::link::{LinkUrl, Scheme};
 use crate::parameter::{Entry, Parameters as _};
 
-/// Kind of connection to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SsiLinkKind {
-    /// Virtual encoder in this program, behind a virtual adapter.
     #[default]
     Virtual,
-    /// An adapter at a serial port or in the network.
     Adapter,
     Replay,
 }
@@ -37,7 +34,6 @@ pub struct SsiForm {
     pub file: String,
     /// The adapter leaves the encoder's supply on at the end.
     pub leave_supply: bool,
-    /// Text typed for the remaining parameters.
     pub typed: Typed,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,

@@ -19,7 +19,6 @@ use crate::link::{LinkUrl, Scheme};
 
 const TO_BEGIN_WITH: &str = "ahm36";
 
-/// A layout that can work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
     pub profile: SsiProfile,
@@ -31,7 +30,6 @@ pub struct Design {
     pub advice: Vec<Advice>,
 }
 
-/// A change of a layout.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
     /// Switches to a family's factory layout, given the family key.
@@ -48,7 +46,6 @@ pub enum Edit {
     Preset(u64),
     Reading(ReadingSettings),
     Name(String),
-    /// Another layout as a whole.
     Whole(Box<SsiProfile>),
     LinuxCnc(String),
 }
@@ -85,7 +82,6 @@ impl Design {
 }
 
 impl Default for Design {
-    /// Creates the least frame.
     fn default() -> Self {
         let layout = Layout::default();
         let profile = SsiProfile::new(layout.descriptor().clone());
@@ -146,7 +142,6 @@ impl Designer {
         self.families.named(self.now.profile.family.as_deref()?)
     }
 
-    /// Returns the family's timing, or `None` without a family.
     pub fn times(&self) -> Option<&Times> {
         self.family().map(|family| &family.times)
     }
@@ -205,7 +200,6 @@ impl Designer {
         self.problem = Some(why);
     }
 
-    /// Returns the layout after a change.
     fn edited(&self, edit: Edit) -> Result<SsiProfile, Text> {
         let mut profile = self.now.profile.clone();
         match edit {

@@ -17,7 +17,6 @@ use crate::devices::ssi::protocol::{Families, Layout, Reads, Times, Timing};
 use crate::link::LinkUrl;
 use crate::sim::Motor;
 
-/// A session with an SSI encoder, or with a layout only.
 pub struct Encoder {
     pub session: Session<Ssi>,
     pub designer: Designer,
@@ -101,7 +100,6 @@ impl Encoder {
         self.designer.is_dirty()
     }
 
-    /// Returns the profile that saving would write.
     pub(crate) fn wanted_profile(&self) -> SsiProfile {
         self.design().profile.clone()
     }
@@ -164,13 +162,11 @@ impl Designer {
         self.times().copied().unwrap_or(Times::GENERAL)
     }
 
-    /// Returns the timing of reading the current layout.
     pub fn timing(&self) -> Timing {
         let reads = self.reads();
         self.times().map_or_else(|| Times::of_any_encoder(&reads), |times| times.reckon(&reads))
     }
 
-    /// Returns how frames are read, for checking the times.
     pub fn reads(&self) -> Reads {
         self.design().profile.reads()
     }

@@ -123,7 +123,6 @@ impl SessionEvents for Encoder {
         }
     }
 
-    /// Returns whether the adapter does not answer.
     fn is_silence(&self, error: &JobError) -> bool {
         matches!(error, JobError::Adapter(AdapterError::Silent | AdapterError::Mute))
     }

@@ -38,7 +38,6 @@ pub fn loss(error: &JobError) -> Option<Text> {
     }
 }
 
-/// Returns the text of a finding about a frame.
 pub fn finding(finding: &FrameFinding) -> Text {
     match finding {
         FrameFinding::Error { name, meaning, cleared_by_transfer } => {
@@ -151,7 +150,6 @@ pub fn code(code: Code) -> Text {
     })
 }
 
-/// Returns the text of an open question about layouts.
 pub fn open(open: Open) -> Text {
     match open {
         Open::TurnOnce => TEXTS.text("ssi_find.turn_once"),
@@ -180,7 +178,6 @@ pub fn doubt(doubt: Option<Uncertainty>) -> Text {
     })
 }
 
-/// Returns the evidence for a layout as text.
 pub fn evidence(evidence: &Evidence) -> Text {
     TEXTS
         .text("ssi_find.evidence")

@@ -11,7 +11,6 @@ use crate::devices::ssi::state::explain as words;
 /// Export format of a layout, other than a profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
-    /// A function in C99.
     C,
     /// IEC 61131-3 structured text function block.
     StructuredText,
@@ -20,7 +19,6 @@ pub enum Format {
     Scl,
     LinuxCnc,
     Sheet,
-    /// A row for each clock.
     Table,
     Frame,
     Timing,

@@ -10,7 +10,6 @@ use crate::devices::ssi::protocol::{Code, Coded, Descriptor, Direction, Fraction
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
-/// A row of the form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     pub field: Field,
@@ -19,10 +18,8 @@ pub struct Row {
     pub hint: Option<&'static str>,
 }
 
-/// The entry of a row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Entry {
-    /// A whole number.
     Number {
         value: u64,
         unit: Option<Text>,
@@ -40,14 +37,12 @@ pub enum Entry {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Input {
-    /// A whole number.
     Number(u64),
     Choice(usize),
     Switch(bool),
     Words(String),
 }
 
-/// The subject of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Field {
     /// Type of position range: bits, steps, round axis or length.
@@ -73,32 +68,23 @@ pub enum Field {
     Shift,
     Errors,
     Clocks,
-    /// Zeros before the position.
     Lead,
-    /// Zeros between turns and steps.
     Between,
     Area,
     Inverted,
-    /// A parity bit, even or odd.
     Parity,
-    /// The clock of the parity bit.
     ParityClock,
     Repeat,
     /// Zeros between both.
     Gap,
     Direction,
-    /// The position at the shaft's zero.
     Preset,
-    /// Name of an error bit.
     ErrorName(usize),
-    /// Clock of an error bit.
     ErrorClock(usize),
-    /// Meaning of an error bit for the position.
     ErrorMeaning(usize),
     /// Whether the error bit with the given index is active low.
     ErrorLow(usize),
     ErrorCleared(usize),
-    /// Clock in hertz.
     ClockRate,
     /// Microseconds between two bursts.
     Pause,

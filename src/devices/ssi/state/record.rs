@@ -196,7 +196,6 @@ impl Record {
         })
     }
 
-    /// Returns the findings of error bits, patterns and the like.
     pub fn tally(&self) -> &Tally {
         &self.tally
     }

@@ -16,7 +16,6 @@ use crate::store::{FileError, FileProblem, read_file};
 /// Maximum number of frames searched: the newest.
 pub(super) const MOST: usize = 8_000;
 
-/// The origin of the frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     Live,
@@ -48,7 +47,6 @@ pub enum SearchState {
         clocks: u8,
         /// Bursts of a logic analyser that are not complete.
         left_out: usize,
-        /// Those that were searched, in the order of reading.
         frames: Vec<u64>,
         search: Box<Search>,
     },

@@ -38,7 +38,6 @@ pub struct Field {
     pub last: u8,
 }
 
-/// The content of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// Nothing, before the position.
@@ -50,17 +49,12 @@ pub enum Kind {
     Gap,
     /// Zeros after the repetition.
     After,
-    /// Bits of the turns.
     Turns,
-    /// Bits of the steps within a turn.
     Steps,
     /// Bits of a position without separate turns and steps.
     Position,
-    /// This error bit.
     Error(usize),
-    /// The parity bit.
     Parity,
-    /// The frame once more.
     Again,
 }
 
@@ -83,15 +77,11 @@ pub enum Handle {
     WordEnd,
     GapEnd,
     FrameEnd,
-    /// The whole position, by its first clock.
     Position,
-    /// This error bit.
     Error(usize),
-    /// The parity bit.
     Parity,
 }
 
-/// The appearance of a cell of a received frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellState {
     pub bit: bool,
@@ -148,12 +138,10 @@ impl Strip {
         &self.layout
     }
 
-    /// Returns its clocks, first to last.
     pub fn cells(&self) -> &[Cell] {
         &self.cells
     }
 
-    /// Returns its fields in the same order.
     pub fn fields(&self) -> &[Field] {
         &self.fields
     }
@@ -179,7 +167,6 @@ impl Strip {
         (end(0), end(u8::MAX))
     }
 
-    /// Returns the clocks of the position, from its first to its last.
     pub fn position(&self) -> Option<(u8, u8)> {
         let own = |field: &&Field| matches!(field.kind, Kind::Turns | Kind::Steps | Kind::Position);
         let first = self.fields.iter().find(own)?;
@@ -187,7 +174,6 @@ impl Strip {
         Some((first.first, last.last))
     }
 
-    /// Returns the appearance of each cell of a frame.
     pub fn cells_of(&self, frame: u64) -> Vec<CellState> {
         let descriptor = self.layout.descriptor();
         let flags = self.layout.decode(frame).flags;
@@ -222,7 +208,6 @@ impl Field {
         self.last.saturating_sub(self.first) + 1
     }
 
-    /// Returns whether the field carries nothing.
     pub const fn is_zeros(&self) -> bool {
         matches!(self.kind, Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After)
     }
@@ -250,7 +235,6 @@ fn has_words(layout: &Layout) -> bool {
     layout.descriptor().patterns.iter().any(|pattern| matches!(pattern.word, Word::Bits(_)))
 }
 
-/// The parts of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Parts {
     /// Bits of the turns and of the steps, both more than none.

@@ -28,7 +28,6 @@ pub struct Piece {
     pub to: f64,
 }
 
-/// Time with its beginning and end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     pub activity: Lasting,
@@ -40,7 +39,6 @@ pub struct Span {
     pub least: f64,
 }
 
-/// An activity that takes time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lasting {
     Period,
@@ -48,7 +46,6 @@ pub enum Lasting {
     Pause,
     /// The data line stays low.
     Monoflop,
-    /// The pause must be longer.
     LeastPause,
     Making,
 }
@@ -60,7 +57,6 @@ pub struct TimingMark {
     pub at: f64,
 }
 
-/// An event at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TimingEvent {
     Latched,
@@ -71,7 +67,6 @@ pub enum TimingEvent {
     Next,
 }
 
-/// A bit on the data line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bit {
     /// The clock that brings it, counted from 1.
@@ -90,7 +85,6 @@ const KEPT: f64 = 0.4;
 const NEXT: f64 = 2.5;
 
 impl Diagram {
-    /// Creates a burst of a frame, read like this.
     pub fn of(layout: &Layout, times: &Times, reads: &Reads) -> Self {
         let reads = Reads { clocks: layout.clocks(), ..*reads };
         let timing = times.reckon(&reads);
@@ -145,7 +139,6 @@ impl Diagram {
         &self.spans
     }
 
-    /// Returns the moments in order.
     pub fn marks(&self) -> &[TimingMark] {
         &self.marks
     }
@@ -186,7 +179,6 @@ impl Diagram {
         self.timing.cycle.as_secs_f64() + self.timing.period.as_secs_f64() / 2.0
     }
 
-    /// Returns the end of the axis, in seconds.
     pub fn end(&self) -> f64 {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
@@ -204,7 +196,6 @@ impl Diagram {
         texts
     }
 
-    /// Returns the text of a span, with its duration.
     pub fn words(&self, span: &Span) -> Text {
         let long = time(span.to - span.from);
         let text = match span.activity {
@@ -238,7 +229,6 @@ impl TimingEvent {
     }
 }
 
-/// Returns the text of a break of the axis.
 pub fn left_out(seconds: f64) -> Text {
     TEXTS.text("ssi.timing_break").with_text("time", time(seconds))
 }

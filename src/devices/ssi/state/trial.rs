@@ -5,7 +5,6 @@ use crate::devices::ssi::protocol::{Cell, Flags, FrameFinding, FrameReading, Lay
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
-/// The frame that a layout is tried with.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trial {
     frame: u64,
@@ -32,7 +31,6 @@ impl Decoded {
         Decoded { frame, reading, place, findings: layout.findings(reading), is_valid: layout.is_valid(reading) }
     }
 
-    /// Returns the frame's bits and the content of each.
     pub fn cells(&self, layout: &Layout) -> Vec<Cell> {
         layout.cells(self.frame)
     }

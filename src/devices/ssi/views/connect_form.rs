@@ -12,7 +12,6 @@ use crate::ui::controls::paragraph;
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{leave_supply, network, recording, segments, serial, typed, unfolded};
 
-/// The connection form of SSI encoders.
 pub(crate) struct SsiConnectForm;
 
 impl TypedConnectForm for SsiConnectForm {

@@ -18,7 +18,6 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct FrameUiState {
     selected: Option<u8>,

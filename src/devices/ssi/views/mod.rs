@@ -22,16 +22,13 @@ use crate::ui::controls::button;
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{NamedAction, Theme, icons, page};
 
-/// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
     /// Frame layout editor, with a trial frame.
     #[default]
     Frame,
     Timing,
-    /// The search for the layout of frames that were read.
     Find,
-    /// Export of the layout for other programs.
     Export,
     /// Adapter, reported error bits and wiring of the encoder.
     Encoder,
@@ -57,7 +54,6 @@ pub(crate) struct SsiUiState {
     find: find::FindUiState,
 }
 
-/// The view of SSI encoders.
 pub(crate) struct SsiView;
 
 impl TypedDeviceView for SsiView {

@@ -112,7 +112,6 @@ fn refused(ui: &mut Ui, theme: &Theme, draft: Option<&(String, Option<Text>)>) {
     problem_beside(ui, theme, draft.and_then(|(_, problem)| problem.as_ref()));
 }
 
-/// Draws the bits as text that can be copied, or replaced by pasting.
 fn bits(
     ui: &mut Ui,
     theme: &Theme,

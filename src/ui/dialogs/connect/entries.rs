@@ -50,7 +50,6 @@ pub(crate) fn network(ui: &mut Ui, theme: &Theme, host: &mut String, port: &mut 
     ui.label(theme.caption(theme.say("connect.tcp_words")));
 }
 
-/// Draws the host and port entries, each with an example.
 pub(crate) fn place(
     ui: &mut Ui,
     theme: &Theme,

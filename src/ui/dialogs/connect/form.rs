@@ -8,9 +8,7 @@ use crate::app::connect::form::FormModel;
 use crate::app::connect::{Connect as Dialog, ConnectAction as Connect};
 use crate::ui::Theme;
 
-/// The connection form of a kind of device, as implemented by the device.
 pub trait TypedConnectForm: 'static {
-    /// The form representation of a link.
     type Form: FormModel;
     /// UI selections that are not part of the link.
     type Memory: Default;

@@ -7,7 +7,6 @@ use super::strip::{Strip, widest};
 use crate::ui::widgets::{focus_ring, hatch, series};
 use crate::ui::{Theme, icons};
 
-/// State of a part of the map.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct State {
     pub(super) selected: bool,
@@ -139,7 +138,6 @@ pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: 
     }
 }
 
-/// Draws the resize handle as two short lines at the end of the last field.
 pub(super) fn handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
     let colour = if active { theme.palette.accent } else { theme.palette.text };
     let (x, y) = (run.right() - theme.space.between, run.center().y);
@@ -149,7 +147,6 @@ pub(super) fn handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
     }
 }
 
-/// Draws a preview of the resized last field.
 pub(super) fn ghost(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], words: &str) {
     let accent = Color32::from(theme.palette.accent);
     let painter = ui.painter();

@@ -7,7 +7,6 @@ pub(super) struct SpaceNeeded {
     pub(super) words: f32,
 }
 
-/// A field, or the part of a split field on one line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Placed {
     pub(super) field: usize,
@@ -19,18 +18,15 @@ pub(super) struct Placed {
     pub(super) width: f32,
 }
 
-/// Placement of all pieces of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Placing {
     pub(super) pieces: Vec<Placed>,
     pub(super) lines: usize,
-    /// Width of the widest line.
     pub(super) width: f32,
     /// Width of a cell, including the gap after it.
     pub(super) cell: f32,
 }
 
-/// Possible cell widths.
 const CELLS: [f32; 10] = [20.0, 19.0, 18.0, 17.0, 16.0, 15.0, 14.0, 13.0, 12.0, 11.0];
 /// Gap after every four bits.
 const GROUP: f32 = 3.0;

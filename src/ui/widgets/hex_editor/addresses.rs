@@ -9,7 +9,6 @@ pub enum HexAddresses {
     Banked {
         /// Bank that starts with the first byte.
         first: usize,
-        /// Number of bytes in a bank, never zero.
         size: usize,
     },
 }
@@ -24,7 +23,6 @@ impl HexAddresses {
         }
     }
 
-    /// Returns the heading of the line that begins at an address: the address without `0x`.
     pub(super) fn heading(self, at: usize, len: usize) -> String {
         self.text(at, len).replace("0x", "")
     }

@@ -6,7 +6,6 @@ use super::HexModel;
 use super::view::Column;
 use crate::ui::Theme;
 
-/// Bytes per line.
 pub(super) const WIDTH: usize = 16;
 
 /// Layout distances in points, measured from the upper left corner of the first line.
@@ -54,12 +53,10 @@ impl Grid {
         self.len.div_ceil(WIDTH)
     }
 
-    /// Returns the height of the given number of lines.
     pub(super) fn height_of(&self, lines: usize) -> f32 {
         self.row * lines as f32
     }
 
-    /// Returns the cell of a byte in a column.
     pub(super) fn cell(&self, origin: Pos2, column: Column, at: usize) -> Rect {
         let (line, place) = (at / WIDTH, at % WIDTH);
         let (left, width) = match column {
@@ -70,7 +67,6 @@ impl Grid {
         Rect::from_min_size(origin + Vec2::new(left, self.row * line as f32), Vec2::new(width, self.row))
     }
 
-    /// Returns the byte under the pointer.
     pub(super) fn hit(&self, origin: Pos2, pos: Pos2) -> Option<(Column, usize)> {
         let (column, at) = self.nearest(origin, pos, Column::Hex, true);
         (at < self.len && self.cell(origin, column, at).contains(pos)).then_some((column, at))

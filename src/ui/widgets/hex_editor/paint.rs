@@ -25,7 +25,6 @@ pub(super) fn header(ui: &Ui, theme: &Theme, grid: &Grid, rect: Rect, model: &He
     painter.hline(rect.x_range(), y, Stroke::new(1.0, theme.palette.line));
 }
 
-/// Everything needed to paint one frame.
 struct Brush<'a> {
     ui: &'a Ui,
     theme: &'a Theme,

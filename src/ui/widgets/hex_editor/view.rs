@@ -4,12 +4,10 @@ use std::ops::Range;
 
 use crate::app::Text;
 
-/// State of an editor between frames.
 #[derive(Clone, Debug, Default)]
 pub struct HexView {
     anchor: usize,
     cursor: usize,
-    /// Number of bytes.
     len: usize,
     /// High nibble already typed for the byte at the cursor, if any.
     pub(super) pending: Option<u8>,
@@ -21,7 +19,6 @@ pub struct HexView {
     before: Option<Vec<u8>>,
 }
 
-/// Column with the keyboard focus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Column {
     #[default]

@@ -21,7 +21,6 @@ pub(super) fn catch_up(ui: &Ui, view: &mut RegisterView, id: Id) {
     }
 }
 
-/// Returns the editor id of a table.
 pub(super) fn entry_id(table: Id) -> Id {
     table.with("entry")
 }

@@ -9,14 +9,12 @@ use super::{RegisterBits, RegisterGroup, RegisterKind, RegisterRow};
 use crate::app::Text;
 use crate::ui::{Theme, icons};
 
-/// Height of the column header.
 pub(super) const HEADER: f32 = 20.0;
 /// Right edge of the caret shown for registers with bit fields.
 pub(super) const CARET: f32 = 16.0;
 /// Spacing between marks.
 const MARK: f32 = 13.0;
 
-/// State of a line.
 #[derive(Clone, Copy)]
 pub(super) struct State {
     selected: bool,
@@ -172,7 +170,6 @@ fn marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
     }
 }
 
-/// Draws a bit field, below its register.
 pub(super) fn bits(ui: &Ui, theme: &Theme, rect: Rect, columns: &Columns, bits: &RegisterBits) {
     let palette = theme.palette;
     let ink = if bits.lit { palette.warn } else { palette.muted };
@@ -219,7 +216,6 @@ fn inscribe(
     width
 }
 
-/// Draws the tooltip of a register, with the hidden columns.
 pub(super) fn tip(ui: &mut Ui, theme: &Theme, (kind, columns): (RegisterKind, &Columns), row: &RegisterRow) {
     ui.spacing_mut().item_spacing.y = theme.space.inside;
     ui.label(egui::RichText::new(row.label()).color(theme.palette.text));

@@ -8,7 +8,6 @@ use super::RegisterLocation;
 use crate::app::Text;
 use crate::ui::Theme;
 
-/// State of a table between frames.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterView {
     pub(super) selected: Option<Selected>,
@@ -28,7 +27,6 @@ pub struct RegisterView {
     pub(super) late: Vec<Event>,
 }
 
-/// Selectable line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Selected {
     Group(usize),
@@ -54,7 +52,6 @@ impl RegisterView {
         }
     }
 
-    /// Returns the selected group, or the group of the selected register.
     pub fn group(&self) -> Option<usize> {
         match self.selected? {
             Selected::Row(place) => Some(place.group),
@@ -92,7 +89,6 @@ impl RegisterView {
         }
     }
 
-    /// Returns whether the registers of a group are hidden.
     pub fn is_folded(&self, group: usize) -> bool {
         self.folded.contains(&group)
     }

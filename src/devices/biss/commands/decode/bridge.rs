@@ -10,7 +10,6 @@ use crate::buses::bridge::protocol::{
 };
 use crate::cli::decode::Explained;
 
-/// Decodes packets. An empty packet between two terminators is skipped.
 pub(super) fn explain(bytes: &[u8]) -> Vec<Explained> {
     if bytes.iter().all(|byte| *byte == 0) {
         let why = "no bridge packet: only zeros, which end one".to_owned();

@@ -22,7 +22,6 @@ const PAUSE: Duration = Duration::from_millis(20);
 /// Number of frames with wrong checksums, without a single correct one, that cannot be noise (`U`).
 const WRONG_FRAMES: u32 = 16;
 
-/// The reason why there is no frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum NoFrame {
     NoAcknowledge,

@@ -21,7 +21,6 @@ const LONGEST_FRAME: usize = PositionWord::BYTES + Frame::OVERHEAD;
 /// Time after the reply time-out after which continuing noise is not a reply in progress.
 const NOISE: Duration = Duration::from_secs(1);
 
-/// A reply with the time of its first byte.
 struct Timed {
     reply: Reply,
     at: Moment,
@@ -32,7 +31,6 @@ struct ReceivedBytes {
     sent: Vec<u8>,
     /// The first bytes received, for the trace.
     raw: Vec<u8>,
-    /// Number of bytes received.
     bytes: usize,
     echo_heard: bool,
     damage: Option<Damage>,
@@ -84,12 +82,10 @@ impl Master<'_> {
         Ok(Ok(PositionReading { is_split_known, ..PositionReading::new(at, &reading, &layout) }))
     }
 
-    /// Returns the maximum duration of an exchange.
     pub(super) fn longest_pin_exchange(&self) -> Duration {
         self.characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
     }
 
-    /// Returns the duration of the given number of characters on the line.
     fn characters(&self, count: usize) -> Duration {
         let format = self.station.format;
         format.baud.time_of_bits(character_bits(format) * count as u64)

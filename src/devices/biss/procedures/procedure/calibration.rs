@@ -15,14 +15,11 @@ const EXPECTED: Duration = Duration::from_secs(5);
 /// Time after which a run is considered failed.
 const LIMIT: Duration = Duration::from_secs(20);
 
-/// A completed calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationReport {
     /// Temperature of the encoder before the calibration, if known.
     pub celsius: Option<i16>,
-    /// Motion of the motor before the first run.
     pub counterclockwise: Option<Motion>,
-    /// Motion before the second run.
     pub clockwise: Option<Motion>,
 }
 

@@ -11,11 +11,7 @@ pub enum Failure {
     #[error(transparent)]
     Device(#[from] Error),
     #[error("the calibration ended with {status}")]
-    Calibration {
-        /// In the clockwise run the table is lost as well.
-        run: Run,
-        status: CalibrationStatus,
-    },
+    Calibration { run: Run, status: CalibrationStatus },
     #[error("the Wiegand test ended with {status}, error code 0x{code:02X}")]
     Wiegand {
         run: Run,
@@ -32,7 +28,6 @@ pub enum Failure {
     /// A status register never reached the required value.
     #[error("the status of the procedure is 0x{found:02X} where 0x{expected:02X} is needed")]
     Status { kind: ProcedureKind, expected: u8, found: u8 },
-    /// A run has no end.
     #[error("the run has not ended after {seconds} s")]
     TooLong {
         run: Run,
@@ -70,7 +65,6 @@ impl Failure {
         *self == Failure::Device(Error::Cancelled)
     }
 
-    /// Returns whether the encoder can no longer be reached.
     pub fn is_lost(&self) -> bool {
         matches!(self, Failure::Device(error) if error.is_lost())
     }

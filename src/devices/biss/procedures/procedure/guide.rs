@@ -37,7 +37,6 @@ const STATUS: Duration = Duration::from_secs(5);
 /// Silence after which a calibrating encoder is considered started (`U`); a damaged reply takes less.
 const BEGUN: Duration = Duration::from_secs(1);
 
-/// Leads an encoder through the operations of a plan.
 pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
     pub(super) master: &'g mut Master<'m>,
     pub(super) description: Arc<Description>,
@@ -52,9 +51,7 @@ pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
 pub(super) struct RunCourse {
     pub(super) run: Run,
     pub(super) command: u8,
-    /// The status before the command, which may be from an earlier run.
     pub(super) was: u8,
-    /// Status before the run.
     pub(super) before: u8,
     pub(super) active: u8,
     pub(super) done: u8,

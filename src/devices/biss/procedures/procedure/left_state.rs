@@ -8,7 +8,6 @@ use crate::devices::biss::protocol::DeviceMode;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Possible<T>(Vec<T>);
 
-/// The known state of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftState {
     pub mode: Possible<DeviceMode>,
@@ -17,7 +16,6 @@ pub struct LeftState {
     pub activity: Activity,
 }
 
-/// The activity of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
     /// Nothing that a loss of the link would cut off.

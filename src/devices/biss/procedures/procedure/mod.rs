@@ -37,7 +37,6 @@ use super::{Error, Master, PositionReading, identify};
 use crate::devices::biss::profile::{Op, PresetParts};
 use crate::devices::biss::protocol::{Descriptions, DeviceMode, Filter, PresetValue, RegisterAddress};
 
-/// The result of an operation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// The operator skipped the procedure, or the part after its first run.
@@ -56,9 +55,7 @@ pub enum Outcome {
     /// A preset was carried out.
     PresetFired {
         parts: PresetParts,
-        /// Before.
         from: PositionReading,
-        /// After.
         to: PositionReading,
     },
     FilterSelected(Filter),
@@ -67,7 +64,6 @@ pub enum Outcome {
 }
 
 impl Guide<'_, '_> {
-    /// Carries out an operation, including reading back.
     pub(super) fn perform(&mut self, op: &Op) -> Result<Outcome, Failure> {
         match op {
             Op::StoreData { area, registers } => self.store_data(area, registers),

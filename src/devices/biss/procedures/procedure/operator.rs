@@ -6,16 +6,12 @@ use std::time::Duration;
 
 use super::Motion;
 
-/// A part of a procedure during which the motor turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Run {
-    /// The first run of the calibration.
     CalibrationCounterclockwise,
     /// The second run of the calibration, whose failure loses the table.
     CalibrationClockwise,
-    /// The first run of the Wiegand test.
     WiegandClockwise,
-    /// The second run of the Wiegand test.
     WiegandCounterclockwise,
 }
 
@@ -87,7 +83,6 @@ impl Run {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Task {
-    /// Turn the motor as the run requires.
     Turn(Run),
     /// Keep the shaft at rest, because data are not accessed while it turns.
     Stand,
@@ -97,9 +92,7 @@ pub enum Task {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Blocker {
-    /// There are not enough positions yet.
     Measuring,
-    /// The encoder does not return a position.
     NoPosition,
     /// The shaft is at rest but must turn.
     Standing,
@@ -108,7 +101,6 @@ pub enum Blocker {
         /// Revolutions per minute, above 0 clockwise.
         rpm: f64,
     },
-    /// The shaft turns in the wrong direction.
     WrongDirection,
     /// The shaft turns too slowly or too fast.
     Speed {
@@ -122,10 +114,11 @@ pub enum Blocker {
         spread: f64,
     },
     /// The temperature is outside 25…40 °C (manual 6.4).
-    Temperature { celsius: i16 },
+    Temperature {
+        celsius: i16,
+    },
 }
 
-/// Advice before the start, which is possible regardless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Advice {
     /// Another speed, or a steadier one, yields a better result.
@@ -136,7 +129,6 @@ pub enum Advice {
     Marked,
 }
 
-/// The present task and measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
     pub task: Task,
@@ -146,7 +138,6 @@ pub struct Demand {
     pub celsius: Option<i16>,
     /// Conditions that prevent the start; empty if there are none.
     pub blockers: Vec<Blocker>,
-    /// Advice before the start.
     pub advice: Vec<Advice>,
     /// Time since the task was given.
     pub waited: Duration,
@@ -207,20 +198,17 @@ impl Demand {
     }
 }
 
-/// The measurement for a task.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Measured {
     pub(super) motion: Option<Motion>,
     pub(super) celsius: Option<i16>,
     /// Positions are marked as invalid.
     pub(super) marked: bool,
-    /// Whether positions are unreadable.
     pub(super) unreadable: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// Nothing yet.
     Wait,
     /// Start. Valid only if nothing prevents the start.
     Go,
@@ -242,7 +230,6 @@ pub trait Operator {
 /// An absent operator: starts as soon as all conditions are met, for which it waits a limited time.
 #[derive(Clone, Copy, Debug)]
 pub struct Unattended {
-    /// The time limit of each task.
     pub patience: Duration,
 }
 

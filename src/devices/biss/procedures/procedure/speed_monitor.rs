@@ -7,7 +7,6 @@ use std::time::Duration;
 use crate::analysis::{Time, Unwrap};
 use crate::devices::biss::procedures::PositionReading;
 
-/// Follows positions over a stretch of time.
 #[derive(Debug)]
 pub(super) struct SpeedMonitor {
     /// Nanoseconds.
@@ -18,7 +17,6 @@ pub(super) struct SpeedMonitor {
     places: VecDeque<(Time, i64)>,
 }
 
-/// The motion of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Mean speed in revolutions per minute, positive clockwise, that is, with rising positions.
@@ -32,7 +30,6 @@ impl Motion {
     /// Allowed jitter of a shaft at rest, in revolutions (`U`).
     const STILL: f64 = 1.0 / 8192.0;
 
-    /// Returns whether the shaft is at rest.
     pub fn is_still(&self) -> bool {
         self.travel <= Self::STILL
     }

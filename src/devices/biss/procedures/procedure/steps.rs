@@ -6,7 +6,6 @@ use super::{Demand, Run, Task};
 use crate::devices::biss::profile::Op;
 use crate::devices::biss::protocol::DeviceMode;
 
-/// A step of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ProcedureStep {
     /// Checking conditions that do not depend on the motor: the filter.
@@ -26,18 +25,14 @@ pub enum ProcedureStep {
     ReadBack,
 }
 
-/// The progress of a write.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProcedureProgress {
     /// Index of the operation in the plan, counted from 0.
     pub op: usize,
-    /// The step of the operation.
     pub step: ProcedureStep,
-    /// Detail of the step.
     pub detail: Detail,
 }
 
-/// The detail of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Detail {
     Begins,
@@ -45,9 +40,7 @@ pub enum Detail {
         done: u64,
         total: u64,
     },
-    /// The step takes some time.
     Lasts {
-        /// Elapsed time.
         elapsed: Duration,
         /// Expected duration, if known.
         expected: Option<Duration>,

@@ -7,15 +7,12 @@ use super::{Activity, Failure, Motion, Outcome, ProcedureStep, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, WiegandResult, WiegandStatus};
 
-/// A completed Wiegand test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiegandReport {
     pub result: WiegandResult,
     /// Whether the result is saved in the encoder, which shows it after a restart.
     pub saved: bool,
-    /// Motion of the motor before the first run.
     pub clockwise: Option<Motion>,
-    /// Motion before the second run.
     pub counterclockwise: Option<Motion>,
 }
 

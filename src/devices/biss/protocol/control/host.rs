@@ -50,7 +50,6 @@ struct Transfer {
 }
 
 impl Transfer {
-    /// Returns the address of the current register. The request's addresses end at 7Fh.
     fn address(&self) -> u8 {
         self.request.address.saturating_add(u8::try_from(self.values.len()).unwrap_or(u8::MAX))
     }

@@ -67,7 +67,6 @@ struct File {
 }
 
 impl File {
-    /// Returns all names in the file, for translation.
     fn names(&mut self) -> impl Iterator<Item = &mut Name> {
         let registers = self.registers.0.iter_mut().flat_map(|register| {
             let values: Box<dyn Iterator<Item = &mut Name>> = match &mut register.decoding {

@@ -6,7 +6,6 @@ use crate::devices::biss::sim::calibration::Ended;
 use crate::units::Moment;
 
 impl Encoder {
-    /// Processes everything that is due by `now` and updates the shaft speed from the motor.
     pub(super) fn settle(&mut self, now: Moment) {
         if let Power::Starting { ready } = self.power
             && ready <= now

@@ -6,7 +6,6 @@ use crate::devices::biss::procedures::Damage;
 use crate::devices::biss::protocol::FrameError;
 use crate::devices::biss::state::TEXTS;
 
-/// Returns the message for a damaged reply.
 pub fn damage(damage: &Damage) -> Text {
     let byte = |byte: &u8| format!("0x{byte:02X}");
     match damage {

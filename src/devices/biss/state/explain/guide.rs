@@ -84,7 +84,6 @@ pub fn blocker(blocker: Blocker) -> Text {
     }
 }
 
-/// Returns the advice to show before a start.
 pub fn advice(advice: Advice) -> Text {
     match advice {
         Advice::Speed { recommended } => {

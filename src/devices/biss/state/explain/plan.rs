@@ -17,7 +17,6 @@ fn of_types(types: &OtherType, kind: &'static str, width: &'static str) -> Text 
     }
 }
 
-/// Returns the reason why a change cannot be planned.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {

@@ -32,7 +32,6 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// Returns the description of an operation, with one line for each run of registers.
 pub fn op(op: &Op, layout: &Layout) -> OpWords {
     let bits = layout.singleturn_bits();
     match op {
@@ -100,7 +99,6 @@ pub fn wear(prepared: &Prepared) -> Option<Text> {
     Some(TEXTS.text("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
 }
 
-/// Returns the message for a completed write.
 pub fn written(written: &Written) -> Text {
     // Only the encoder's status confirms a calibration.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
@@ -143,7 +141,6 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     texts
 }
 
-/// Returns the severity of a message about an interrupted write.
 pub fn weight(text: &Text) -> Severity {
     match text.id() {
         "biss_left.operation" => Severity::Good,

@@ -8,7 +8,6 @@ use crate::devices::hiperdrive::procedures::Opened;
 use crate::devices::hiperdrive::protocol::{InImage, Layout, OutImage};
 use crate::units::Moment;
 
-/// One end of an open cyclic connection.
 #[derive(Clone, Debug)]
 pub struct Connection {
     to_target: u32,

@@ -8,7 +8,6 @@ use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, Intent, Permit};
 use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, OutData, OutImage, ParameterNumber};
 use crate::units::Moment;
 
-/// Drives behind a cyclic connection.
 #[derive(Clone, Debug)]
 pub struct Drives {
     connection: Connection,
@@ -81,7 +80,6 @@ impl Drives {
         self.lost.as_ref()
     }
 
-    /// Returns whether the connection is ending, so that nothing may begin.
     pub const fn is_ending(&self) -> bool {
         self.ending.is_some()
     }

@@ -49,7 +49,6 @@ pub enum CyclicLost {
 /// Microseconds off, between the buckets.
 const EDGES: [i64; 14] = [-5000, -2000, -1000, -500, -200, -100, -50, 50, 100, 200, 500, 1000, 2000, 5000];
 
-/// Number of intervals with a given deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bucket {
     /// Lower bound of the deviation in microseconds, negative for short intervals; `None` if unbounded.

@@ -20,7 +20,6 @@ pub struct ParameterWords {
     next: usize,
 }
 
-/// The latest reading of each watched parameter.
 pub type ParameterReadings = BTreeMap<ParameterNumber, ParameterReading>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +29,6 @@ pub struct ParameterReading {
     pub result: ParameterResult,
 }
 
-/// Result of a request through the parameter words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterResult {
     Number(i64),

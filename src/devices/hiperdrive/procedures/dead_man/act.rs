@@ -16,7 +16,6 @@ pub struct Intent {
     pub refreshed: Moment,
 }
 
-/// A motion request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionRequest {
     /// No request: a motion stops, and the state of the drive is held.
@@ -66,10 +65,8 @@ pub enum Goal {
     Enabled,
 }
 
-/// Speed and torque of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Percentage of the maximum speed (parameter 166).
     pub speed: Percent,
     pub torque: Percent,
 }
@@ -88,10 +85,8 @@ pub struct Permit {
     pub degree: u32,
 }
 
-/// A reason why a drive may not move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lock {
-    /// The parameters were not read.
     Unread,
     /// Parameter 186 is 255 or not a time: the drive could continue to move after a loss of communication.
     NoTimeout,
@@ -105,7 +100,6 @@ pub enum Lock {
     NoAnswer,
 }
 
-/// The phase of a drive's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     Idle,
@@ -149,9 +143,7 @@ pub enum Ended {
     Replaced,
     /// Not refreshed in time.
     Stale,
-    /// No reports from the drive for too long.
     Deaf,
-    /// The cyclic connection was lost or closed.
     Lost,
     /// The drive has a fault. Nothing moves until the fault is acknowledged.
     Fault,
@@ -161,7 +153,6 @@ pub enum Ended {
     Refused(Refusal),
     /// The drive is in this state and has not followed a word on the way to the requested one.
     NoAnswer(State),
-    /// The drive has not begun the motion.
     NotStarted,
     /// The drive has left the state required for a motion.
     Left(State),
@@ -178,7 +169,6 @@ pub enum Ended {
     },
 }
 
-/// Why an act was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     Locked(Lock),
@@ -211,7 +201,6 @@ pub enum Refusal {
         /// Parameter 160.
         high: i32,
     },
-    /// An endless run is not allowed.
     Endless,
     /// The drive has a fault, which must be acknowledged first.
     Fault,
@@ -221,7 +210,6 @@ pub enum Refusal {
     NothingToPause,
     /// No job is paused.
     NothingToResume,
-    /// The port has no drive.
     Absent,
 }
 
@@ -272,7 +260,6 @@ impl MotionRequest {
 }
 
 impl Goal {
-    /// All goals, lowest first.
     pub const ALL: [Goal; 4] = [Goal::Off, Goal::Ready, Goal::Operational, Goal::Enabled];
 
     pub(super) const fn above(self) -> Goal {

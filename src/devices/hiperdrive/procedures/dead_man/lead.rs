@@ -5,7 +5,6 @@ use super::{Act, DeadMan, Ended, Goal, Mark, MotionKind, Refusal, SETTLE, STEP, 
 use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, State, StatusBit, StatusWord};
 use crate::units::Moment;
 
-/// A sequence of words that leads a drive to a state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lead {
     goal: Goal,
@@ -14,11 +13,9 @@ pub(super) struct Lead {
     word: Option<(ControlWord, Mark)>,
 }
 
-/// Next step of leading a drive.
 enum LeadStep {
     By(ControlWord),
     There,
-    /// The drive does not follow.
     Lost,
 }
 
@@ -120,7 +117,6 @@ impl DeadMan {
         Ok(())
     }
 
-    /// Takes the next step.
     pub(super) fn go_on(&mut self, now: Moment, actual: Actual, mut lead: Lead) {
         let mark = self.mark(now);
         match lead.next_step(mark, actual.status, self.after_run) {

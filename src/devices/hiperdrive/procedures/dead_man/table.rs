@@ -9,7 +9,6 @@ use crate::units::Moment;
 
 const DOCUMENT: &str = include_str!("../../../../../docs/motion.md");
 
-/// A drive and its dead-man, simulated interval by interval.
 struct Bench {
     man: DeadMan,
     now: Moment,

@@ -16,14 +16,12 @@ use super::{DeadMan, Ended, Lock, Motion, MotionKind, MotionRequest, Permit, Ref
 use crate::devices::hiperdrive::protocol::{Actual, Direction, RunEnd, State, StatusBit};
 use crate::units::Moment;
 
-/// A side of the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     Below,
     Above,
 }
 
-/// The way in which a drive is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     At(Side),
@@ -31,7 +29,6 @@ pub enum Outside {
     Unclear,
 }
 
-/// Supervision of a running motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
     /// The way in which the drive was outside its limits at the start, or `None` once it has been inside.
@@ -208,7 +205,6 @@ impl Permit {
 }
 
 impl DeadMan {
-    /// Compares the present report with the limits and the target of the motion.
     pub(super) fn watch_motion(&mut self, now: Moment, actual: Actual, permit: &Permit) -> Option<Ended> {
         let mark = self.mark(now);
         let act = self.act.as_mut()?;

@@ -15,7 +15,6 @@ use crate::devices::hiperdrive::procedures::Error;
 use crate::devices::hiperdrive::procedures::error::{Refusal, RequestedItem};
 use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout, Topology};
 
-/// A cyclic connection that was opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Opened {
     pub to_target_id: u32,

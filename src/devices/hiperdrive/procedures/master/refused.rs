@@ -105,7 +105,6 @@ impl Master<'_> {
         }))
     }
 
-    /// Returns the travel of a drive, as far as it is known.
     fn travel(&mut self, drive: DriveNumber) -> Result<Travel, Error> {
         let mut word = |base| {
             let Some(number) = ParameterNumber::of_drive(base, drive) else { return Ok(None) };

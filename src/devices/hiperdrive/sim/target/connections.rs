@@ -26,7 +26,6 @@ pub(super) struct Connections {
     opened: u32,
 }
 
-/// A connection of class 3.
 #[derive(Debug)]
 struct Explicit {
     owner: Owner,

@@ -61,7 +61,6 @@ pub struct Figures {
 }
 
 impl Target {
-    /// Creates the virtual device from `config`.
     pub fn new(config: &Config) -> Self {
         Target::to(Arc::new(Mutex::new(Plant::new(config))), Ipv4Addr::LOCALHOST)
     }

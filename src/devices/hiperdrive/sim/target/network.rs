@@ -40,7 +40,6 @@ const MEGABITS: u32 = 100;
 const LINK_UP: u32 = 0x03;
 
 impl Network {
-    /// Creates the factory settings: DHCP.
     pub(super) fn new(switch: u8, serial_number: u16) -> Self {
         let [high, low] = serial_number.to_be_bytes();
         let mac = [0x02, 0x00, 0x00, 0x00, high, low];
@@ -49,7 +48,6 @@ impl Network {
         network
     }
 
-    /// Determines the address again.
     pub(super) fn power_up(&mut self) {
         let source = match AddressSwitch::parse(self.switch) {
             Some(AddressSwitch::Fixed(address)) => {
@@ -89,7 +87,6 @@ impl Network {
         Some(bytes)
     }
 
-    /// Returns all attributes in order.
     pub(super) fn interface_all(&self) -> Vec<u8> {
         (1..=6).filter_map(|attribute| self.interface(attribute)).flatten().collect()
     }
@@ -129,7 +126,6 @@ impl Network {
         }
     }
 
-    /// Returns all attributes in order.
     pub(super) fn link_all(&self) -> Vec<u8> {
         (1..=3).filter_map(|attribute| self.link(attribute)).flatten().collect()
     }

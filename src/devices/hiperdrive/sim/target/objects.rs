@@ -121,7 +121,6 @@ pub(super) fn object(path: &Path) -> Result<(u16, Option<u16>), GeneralStatus> {
     Ok((class.ok_or(GeneralStatus::PATH_UNKNOWN)?, path.number(LogicalKind::Attribute)))
 }
 
-/// Returns the status for bytes that cannot be parsed.
 pub(super) const fn wrong(error: PacketError) -> GeneralStatus {
     match error {
         PacketError::Short { .. } => GeneralStatus::TOO_SHORT,

@@ -37,14 +37,12 @@ pub(super) struct Plant {
     originators: u64,
 }
 
-/// The peer of a TCP connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Originator {
     number: u64,
     pub(super) address: Ipv4Addr,
 }
 
-/// Delay between a frame and its reply.
 const REPLY: Duration = Duration::from_millis(1);
 
 impl Plant {
@@ -78,7 +76,6 @@ impl Plant {
         self.faults = faults.clone();
     }
 
-    /// Carries out everything due by then.
     pub(super) fn advance(&mut self, now: Moment) {
         self.now = self.now.max(now);
         self.produce();
@@ -118,7 +115,6 @@ impl Plant {
         self.connections.end(session);
     }
 
-    /// Restores a lost supply.
     pub(super) fn supply(&mut self, now: Moment) {
         self.advance(now);
         if self.station.is_dead(self.now) {
@@ -145,7 +141,6 @@ impl Plant {
         speaks && !self.station.is_dead(self.now)
     }
 
-    /// Returns whether the target still sends.
     pub(super) fn speaks(&self) -> bool {
         !self.station.is_cut_off() && self.faults.silent_after().is_none_or(|count| self.heard < count)
     }

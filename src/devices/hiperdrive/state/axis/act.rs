@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use super::{Entries, TestTarget};
 use crate::app::Language;
 
-/// A request to the device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DriveRequest {
     /// Write parameters, by the numbers of drive 1, through a plan that does not save.
@@ -25,7 +24,6 @@ pub enum DriveRequest {
     PowerCycle,
 }
 
-/// A button other than those that move a drive while held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {
     /// Execute the task of the step: request, write or save.
@@ -42,7 +40,6 @@ pub enum Button {
     Recall,
 }
 
-/// An action of the user in the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AxisAction {
     Begin,
@@ -50,10 +47,8 @@ pub enum AxisAction {
     Press(Button),
     /// Adopt the present position as the limit of the step.
     TakePlace,
-    /// Go to the next step.
     Next,
     Skip,
-    /// Go to the previous step.
     Back,
     Cancel,
     /// Ask where to save the report of a finished run.

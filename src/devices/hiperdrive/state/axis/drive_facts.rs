@@ -7,7 +7,6 @@ use crate::devices::hiperdrive::protocol::{Actual, Direction, ErrorCode, Family,
 use crate::devices::hiperdrive::state::ruler::Ruler;
 use crate::units::Moment;
 
-/// Known facts of the drive at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveFacts {
     pub connected: bool,
@@ -23,7 +22,6 @@ pub struct DriveFacts {
     pub actual: Option<Actual>,
     /// Time of the last report on the session's clock, if known.
     pub actual_at: Option<Moment>,
-    /// Position, which the first packets after taking control do not contain.
     pub position: Option<i32>,
     /// Parameters of the drive as last read, by the numbers of drive 1.
     pub values: BTreeMap<u16, i64>,
@@ -40,9 +38,7 @@ pub struct DriveFacts {
     /// Parameters 158 and 160.
     pub limits: Option<(i32, i32)>,
     pub family: Option<Family>,
-    /// Reasons why the drive may not move.
     pub locks: Vec<Lock>,
-    /// Last act of the user that has ended.
     pub ended: Option<(u64, Ended)>,
     /// Latest error since the acknowledgement, if it was read.
     pub error: Option<ErrorCode>,

@@ -20,7 +20,6 @@ pub struct Entries {
     pub upper: String,
 }
 
-/// The result of pitch and resolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preview {
     /// Parameters 154 and 156.
@@ -34,7 +33,6 @@ pub struct Preview {
     pub unchanged: Option<(f64, f64)>,
 }
 
-/// The result of setting a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
     /// Position as entered.

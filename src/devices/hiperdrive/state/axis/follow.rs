@@ -116,7 +116,6 @@ impl Axis {
         self.going = Some((place, target, act));
     }
 
-    /// Records that a request was written and read back.
     pub(crate) fn written(&mut self) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) => {

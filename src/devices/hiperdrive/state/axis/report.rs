@@ -4,7 +4,6 @@ use super::{Axis, AxisStep, DriveFacts, End, Reached, TestTarget, words};
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// The device of the axis, for a report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Device {
     pub name: String,

@@ -23,7 +23,6 @@ pub(super) struct Standstill {
     interrupted: bool,
 }
 
-/// Reading of an axis at a standstill.
 #[derive(Clone, Copy, Debug)]
 struct StandstillReading {
     /// Time of the reading, or `None` if it was part of a complete reading after a loss of the connection.

@@ -14,7 +14,6 @@ pub(super) struct Origin {
     jumps: u32,
 }
 
-/// The facts on which results rest, at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Preconditions {
     pub(super) requested: Option<bool>,
@@ -24,14 +23,12 @@ pub(super) struct Preconditions {
     pub(super) confirmed: bool,
     pub(super) origin: Origin,
     pub(super) limits: Option<(i32, i32)>,
-    /// Taught lower limit.
     pub(super) lower: Option<i32>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct StepOutcome {
     on: Preconditions,
-    /// Whether the step was skipped.
     skipped: bool,
 }
 
@@ -55,7 +52,6 @@ impl StepOutcomes {
         step.index() < self.0.len()
     }
 
-    /// A step was left out.
     pub(super) fn is_skipped(&self, step: AxisStep) -> bool {
         self.0.get(step.index()).is_some_and(|made| made.skipped)
     }

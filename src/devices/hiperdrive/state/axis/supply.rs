@@ -36,7 +36,6 @@ pub enum Restart {
     Disproved,
 }
 
-/// The outcome of switching the supply off and on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Power {
     /// The device still answers.
@@ -44,7 +43,6 @@ pub enum Power {
     /// The drive has stopped replying, or its parameters have not been read since.
     Gone(StateBeforePowerOff),
     Back {
-        /// State before.
         before: StateBeforePowerOff,
         kept: bool,
         /// Steps between the positions before and after, or `None` if one of them is unknown.

@@ -4,7 +4,6 @@ use super::DriveFacts;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
 use crate::devices::hiperdrive::protocol::Direction;
 
-/// The target of a test move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum TestTarget {
@@ -13,7 +12,6 @@ pub enum TestTarget {
     Upper,
 }
 
-/// The outcome of a test move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
     pub target: i32,

@@ -24,7 +24,6 @@ pub fn title(step: AxisStep) -> Text {
     })
 }
 
-/// Returns the task of the user in a step.
 pub fn todo(step: AxisStep, seen: &DriveFacts) -> Text {
     TEXTS.text(match step {
         AxisStep::Request => "hd_axis.do_request",
@@ -139,7 +138,6 @@ fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
     Some(text.with_text("allowed", millimetres(ruler, allowed)).with_text("restart", proof))
 }
 
-/// Returns why a step no longer holds.
 pub fn fallen(step: AxisStep) -> Text {
     let why = TEXTS.text(match step {
         AxisStep::Request => "hd_axis.fell_request",
@@ -174,7 +172,6 @@ pub fn effort(id: &'static str) -> Text {
     TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
 }
 
-/// Describes the outcome of a test move.
 pub fn outcome(outcome: &Outcome, seen: &DriveFacts) -> Text {
     let mm = |steps: i64| millimetres(seen.ruler(), steps);
     if outcome.ended == Ended::Arrived {
@@ -239,7 +236,6 @@ pub fn changes(axis: &Axis) -> Text {
     TEXTS.text("hd_axis.was_written").with_list("changes", last.map(|(_, own)| change(own)))
 }
 
-/// Describes a change with the number that was written, since the scale may have changed.
 fn change(own: &AxisChange) -> Text {
     let text = TEXTS.text("hd_axis.changed");
     match own {

@@ -74,7 +74,6 @@ pub fn device(error: &Error) -> Text {
     }
 }
 
-/// Explains that a number is outside the range of a parameter.
 pub fn out_of_range(error: &OutOfRange) -> Text {
     match error.range {
         Range::OneOf([]) => named("hd_said.a_text", error.number),
@@ -82,12 +81,10 @@ pub fn out_of_range(error: &OutOfRange) -> Text {
     }
 }
 
-/// Explains that the length of a number differs from its type.
 pub fn wrong_length(error: &WrongLength) -> Text {
     named("hd_said.length", error.number).with("expected", error.expected).with("got", error.got)
 }
 
-/// Returns the range of a parameter, as a sentence.
 pub fn range(range: Range) -> Text {
     match range {
         Range::Any => TEXTS.text("hd_range.any"),
@@ -142,7 +139,6 @@ fn frame_remedy(status: EncapsulationStatus) -> Text {
     })
 }
 
-/// Returns what to do after a refusal.
 fn remedy(refusal: &Refusal) -> Text {
     if refusal.status == GeneralStatus::CONNECTION
         && let Some(row) = refusal.row()

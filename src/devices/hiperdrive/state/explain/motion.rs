@@ -89,7 +89,6 @@ pub const fn weight(ended: Ended) -> Severity {
     }
 }
 
-/// Describes a state to which a drive can be led.
 pub fn goal(goal: Goal) -> Text {
     state(match goal {
         Goal::Off => State::NotReady,

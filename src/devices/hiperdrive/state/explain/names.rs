@@ -94,7 +94,6 @@ pub fn error(code: ErrorCode) -> ErrorWords {
     ErrorWords { name: TEXTS.text(name), cause: TEXTS.text(cause), remedy: TEXTS.text(remedy) }
 }
 
-/// Returns the name of a parameter without its number and drive.
 pub fn parameter(number: ParameterNumber) -> Text {
     match number.base() {
         base @ (24..=42) if base % 2 == 0 => TEXTS.text("hd_parameter.register").with("number", (base - 22) / 2),
@@ -121,7 +120,6 @@ mod tests {
     use super::*;
     use crate::devices::hiperdrive::protocol::PARAMETERS;
 
-    /// The catalogue has a name for each parameter, by its number.
     #[test]
     fn each_parameter_has_a_name_and_each_name_a_parameter() {
         let other = |number| parameter(number).id() == "hd_parameter.other";

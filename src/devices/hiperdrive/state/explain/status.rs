@@ -103,7 +103,6 @@ fn coded(code: String, name: &'static str) -> Text {
     TEXTS.text("hd_status_name.coded").with("code", code).with_text("name", TEXTS.text(name))
 }
 
-/// Returns why the bytes of a packet cannot be read.
 pub(super) fn packet(error: &PacketError) -> Text {
     match *error {
         PacketError::Short { what, got } => {

@@ -76,7 +76,6 @@ pub fn item(item: Item) -> Text {
     TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
 }
 
-/// Explains that a profile belongs to another type of device or drive.
 pub fn other_type(types: &OtherType) -> Text {
     of_types(types, "hd_review.other_kind", "hd_review.other_variant")
 }
@@ -153,14 +152,12 @@ pub fn warning(warning: &Warning) -> Text {
     }
 }
 
-/// Describes the result of a write.
 pub fn written(written: &Written) -> Text {
     // An action of the device is not read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// Describes an interrupted write: its progress, its cause, and the location of the backup.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let (Interrupted { done, cause, .. }, unclear) = (interrupted, interrupted.unclear());
     let mut texts = vec![if cause.is_cancelled() {

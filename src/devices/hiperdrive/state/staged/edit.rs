@@ -54,15 +54,9 @@ pub enum EditError {
     OutOfRange(#[from] OutOfRange),
     /// The upper limit would not exceed the lower limit.
     #[error("the lower limit {lower} is not below the upper limit {upper}")]
-    Crossed {
-        /// As entered.
-        lower: i64,
-        /// As entered.
-        upper: i64,
-    },
+    Crossed { lower: i64, upper: i64 },
 }
 
-/// Returns the values after an edit.
 pub(super) fn edited(
     (base, wanted): (&Image, &Image),
     edit: &Edit,

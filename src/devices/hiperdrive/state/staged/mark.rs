@@ -14,22 +14,9 @@ pub enum Mark {
     /// A value from a profile or an earlier edit is not allowed.
     OutOfRange(OutOfRange),
     /// The upper limit does not exceed the lower limit.
-    Crossed {
-        drive: DriveNumber,
-        /// As edited.
-        lower: i64,
-        /// As edited.
-        upper: i64,
-    },
+    Crossed { drive: DriveNumber, lower: i64, upper: i64 },
     /// The drive is outside its edited limits, which it would refuse.
-    Outside {
-        drive: DriveNumber,
-        position: i64,
-        /// As edited.
-        lower: i64,
-        /// As edited.
-        upper: i64,
-    },
+    Outside { drive: DriveNumber, position: i64, lower: i64, upper: i64 },
     /// The scale has changed but the limits have the same numbers, which now denote other positions.
     LimitsMove { drive: DriveNumber, lower: (f64, f64), upper: (f64, f64) },
     /// Parameter 186 is 255: the drive would continue after a loss of the connection, so this program does not move it.
@@ -37,7 +24,6 @@ pub enum Mark {
 }
 
 impl Mark {
-    /// Returns the affected parameters.
     pub fn numbers(&self) -> Vec<ParameterNumber> {
         let of = |drive, numbers: &[u16]| {
             numbers.iter().filter_map(|own| ParameterNumber::of_drive(*own, drive)).collect::<Vec<_>>()

@@ -13,10 +13,8 @@ use crate::ui::controls::{allowed_button, entry, paragraph, problem, row, text_e
 use crate::ui::widgets::HoldButton;
 use crate::ui::{Theme, icons};
 
-/// Width of a numeric entry.
 const NUMBER: f32 = 112.0;
 const PAD: f32 = 64.0;
-/// Room for the button of a test move.
 const GO: f32 = 172.0;
 
 pub(super) fn content_ui(
@@ -185,7 +183,6 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries)
     }
 }
 
-/// Draws the limits that the user must confirm.
 fn limits(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| words::millimetres(shown.seen.ruler(), steps.into());
     let range = |(low, high): (i32, i32)| {

@@ -123,7 +123,6 @@ impl Master<'_> {
     }
 }
 
-/// Returns the codes of an answer to 50h.
 fn codes(answer: Answer) -> Codes {
     match answer {
         Answer::Reply { reply: Reply::Status(codes), pending } | Answer::Rejected { codes, pending } => {

@@ -17,7 +17,6 @@ use crate::units::Moment;
 /// The encoder's replies to a request that was damaged on the line. A lost byte 00h leaves the checksum right.
 const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
 
-/// An exchange that gave no answer.
 pub(in super::super) enum ExchangeFailure {
     /// No reply, except possibly the echo.
     Silence {

@@ -24,7 +24,6 @@ pub(super) fn undo_created(profile: &HiperfaceProfile, device: &DeviceState) -> 
     (undone, left)
 }
 
-/// Returns the encoder without its last fields.
 pub(super) fn without(device: &DeviceState, deleted: &[FieldImage]) -> DeviceState {
     let blocks = deleted.iter().fold(device.memory.blocks, |sum, own| sum.saturating_add(own.status.size().blocks()));
     let count = u8::try_from(deleted.len()).unwrap_or(u8::MAX);

@@ -4,11 +4,9 @@
 use super::bytes;
 use crate::devices::hiperface::protocol::*;
 
-/// A request with its known replies.
 pub(super) struct Vector {
     pub(super) address: u8,
     pub(super) request: Request,
-    /// Bytes on the line.
     pub(super) bytes: &'static str,
     /// Bytes and meaning of each reply.
     pub(super) replies: Vec<(&'static str, Answer)>,

@@ -47,7 +47,6 @@ pub struct Form {
     pub period: String,
 }
 
-/// The purpose of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
     OneSide,
@@ -69,7 +68,6 @@ pub enum Vector {
     Other,
 }
 
-/// The source of the position within a period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The analogue channels of the encoder if available, or else the absolute position.
@@ -79,7 +77,6 @@ pub enum Source {
     Absolute,
 }
 
-/// How the offset is stored in a data field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Storage {
     /// The record of sixteen bytes.
@@ -88,11 +85,9 @@ pub enum Storage {
     Number,
 }
 
-/// The numbers of a form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
     pub motor: Motor,
-    /// Signal periods per revolution.
     pub periods: u32,
     pub pole_pairs: u32,
     /// The position falls while the electrical angle rises.
@@ -106,7 +101,6 @@ pub struct Inputs {
 const MOST_POLE_PAIRS: u32 = 500;
 
 impl Slot {
-    /// All readings in order.
     pub const ALL: [Slot; 3] = [Slot::OneSide, Slot::OtherSide, Slot::Second];
 }
 

@@ -11,7 +11,6 @@ use crate::devices::hiperface::state::{Staged, TEXTS, rules};
 /// Byte values considered empty: erased, or never written.
 const FILLERS: [u8; 2] = [0x00, 0xFF];
 
-/// A location for an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OffsetLocation {
     pub field: u8,
@@ -77,7 +76,6 @@ fn is_kept(storage: Storage, bytes: &[u8]) -> bool {
     storage == Storage::Record && matches!(CommutationRecord::parse(bytes), Some(Ok(_)))
 }
 
-/// Returns the bytes as ASCII characters.
 fn ascii(bytes: &[u8]) -> String {
     let shown = |byte: &u8| if byte.is_ascii_graphic() || *byte == b' ' { char::from(*byte) } else { '·' };
     bytes.iter().map(shown).collect()

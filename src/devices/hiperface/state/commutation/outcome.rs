@@ -16,12 +16,10 @@ const UNUSABLE_DEG: f64 = 90.0;
 /// Step size in degrees from which a warning is given, because the torque falls to cos 30° and below (U).
 const WEAK_DEG: f64 = 30.0;
 
-/// The offset between encoder and motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
     /// Rest position of the shaft, in periods within a revolution.
     pub fine_periods: f64,
-    /// Shaft angle in degrees.
     pub shaft_deg: f64,
     /// Difference between both sides in electrical degrees, or `None` with one side only.
     pub apart_deg: Option<f64>,
@@ -39,7 +37,6 @@ pub struct Setting {
     pub exact: bool,
     /// Remaining offset in electrical degrees, −180 to 180.
     pub remaining_deg: f64,
-    /// Verdict for this step size.
     pub verdict: Verdict,
 }
 

@@ -52,7 +52,6 @@ impl Commutation {
     }
 }
 
-/// Describes how a position was obtained.
 pub fn kind_words(reading: &RestReading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {

@@ -7,7 +7,6 @@ use crate::devices::hiperface::profile::{EntryError, FieldRange, Item, PlanItem}
 use crate::devices::hiperface::state::TEXTS;
 use crate::profile::Cause;
 
-/// Returns the name of an item that can be read.
 pub fn item(item: &Item) -> Text {
     match item {
         Item::Field(range) => field_range(range),
@@ -19,7 +18,6 @@ pub fn item(item: &Item) -> Text {
     }
 }
 
-/// Describes a data field or a part of one.
 pub fn field_range(range: &FieldRange) -> Text {
     let id = match range {
         FieldRange { count: Some(_), .. } => "hf_item.range",

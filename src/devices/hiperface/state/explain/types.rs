@@ -19,7 +19,6 @@ pub fn store(error: &StoreError) -> Text {
     }
 }
 
-/// Explains why a link cannot be opened.
 pub fn open(error: &OpenError) -> Text {
     match error {
         OpenError::Store(error) => store(error),

@@ -65,7 +65,6 @@ pub fn field_code_required(status: DataFieldStatus) -> Text {
     TEXTS.text(if status.code_required() { "field.code_required" } else { "field.code_not_required" })
 }
 
-/// Describes periods and turns, or the length of a period.
 pub fn geometry(geometry: Geometry) -> Text {
     match geometry {
         Geometry::Rotary { periods, turns: 1 } => TEXTS.text("geometry.singleturn").with("periods", periods),

@@ -12,7 +12,6 @@ use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};
 const VALUE_STAYS: Duration = Duration::from_millis(300);
 /// Number of additional readings, since the first may still return an old word.
 const LOOKS: u32 = 2;
-/// Interval between additional readings.
 const LOOK: Duration = Duration::from_millis(10);
 /// How long a mode reading stays valid between two steps of a job that both return the encoder to its mode.
 const STILL: Duration = Duration::from_secs(1);

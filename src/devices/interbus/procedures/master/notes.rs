@@ -43,7 +43,6 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Notes that a value of the running program is set.
     pub(super) fn sets_program(&mut self) {
         self.notes.is_set = matches!(self.is, Some(StartupMode::Cams(_)));
     }

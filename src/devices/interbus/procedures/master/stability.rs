@@ -23,7 +23,6 @@ pub(super) const fn least_cycles(recorded: bool) -> u32 {
 /// Minimum patience; anything shorter would miss words that persist.
 pub(super) const LEAST_PATIENCE: Duration = Duration::from_millis(150);
 
-/// For how long something holds, cycle after cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held {
     /// Whether only cycles count, because no time passes between two readings of a recording.

@@ -51,7 +51,6 @@ impl Columns {
         Columns { places, cam_or_name: matches!(count, 3 | 4) }
     }
 
-    /// Returns the index of a column.
     pub(super) fn place(&self, column: Column) -> Option<usize> {
         self.places.iter().find(|(own, _)| *own == column).map(|(_, place)| *place)
     }

@@ -6,7 +6,6 @@ use crate::devices::interbus::profile::{Scale, Unit};
 /// A line across the chart, at the beginning of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
-    /// Position in steps.
     pub position: f64,
     pub value: f64,
     /// Number of decimals needed to label the line.
@@ -84,7 +83,6 @@ fn turned(value: f64, span: f64) -> f64 {
     if (span - turned).abs() < 1e-9 * span { 0.0 } else { turned }
 }
 
-/// Decimals of a round number.
 fn decimals(unit: f64) -> usize {
     if unit >= 1.0 { 0 } else { (-unit.log10()).ceil().clamp(0.0, 6.0) as usize }
 }

@@ -16,7 +16,6 @@ pub struct Snap {
 }
 
 impl Snap {
-    /// Nothing draws.
     pub const OFF: Snap = Snap { reach: 0.0, apart: None, edges: false };
 
     /// Creates settings that snap to everything in a chart with the given number of steps per point: within six points,

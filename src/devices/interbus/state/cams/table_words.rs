@@ -84,7 +84,6 @@ pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     text.with("step", edge.step).with_text("off", off)
 }
 
-/// Decimals with which a number is written down.
 fn written_decimals(number: f64) -> usize {
     let written = number.to_string();
     written.split_once('.').map_or(0, |(_, decimals)| decimals.len()).min(MOST_DECIMALS)

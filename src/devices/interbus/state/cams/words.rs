@@ -44,7 +44,6 @@ pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
     TEXTS.text("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
 }
 
-/// Describes the position and length of a cam.
 pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
     let (start, stop) = (cam.start.get(), cam.stop.get());
     let text = TEXTS.text(if cam.wraps() { "cams.stretch_over" } else { "cams.stretch" });
@@ -154,7 +153,6 @@ pub fn refused(error: &EditError) -> Text {
     }
 }
 
-/// Returns why steps and turns do not go together.
 pub fn gear(error: &GearError) -> Text {
     match *error {
         GearError::Turns { turns } => TEXTS.text("cams.gear_turns").with("turns", turns).with("most", TURNS),

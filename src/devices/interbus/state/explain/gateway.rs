@@ -4,7 +4,6 @@ use crate::app::Text;
 use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
 use crate::devices::interbus::state::TEXTS;
 
-/// Describes a request to a gateway, worded as part of a sentence.
 pub(super) fn item_text(requested: RequestedItem) -> Text {
     let id = match requested {
         RequestedItem::Input { .. } => "ib_asked.input",
@@ -48,7 +47,6 @@ pub fn exception(exception: Exception) -> Text {
     })
 }
 
-/// Describes the damage to a reply.
 pub fn damage(damage: Damage) -> Text {
     match damage {
         Damage::NoFrame { bytes } => TEXTS.text("ib_damage.no_frame").with("bytes", bytes),

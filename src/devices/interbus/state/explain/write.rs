@@ -29,7 +29,6 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// Describes an operation, with separate wording for each parameter, mask and edge.
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Parameterise(changes) => OpWords {
@@ -140,7 +139,6 @@ pub fn wear(prepared: &Prepared) -> Option<Text> {
     Some(TEXTS.text(id).with("after", after).with("nominal", WEAR_ASK).with("limit", WEAR_LIMIT))
 }
 
-/// Returns why a write was not begun.
 pub(super) fn not_begun(why: &NotBegun) -> Text {
     match why {
         NotBegun::Worn { seen, cost, .. } => {
@@ -150,7 +148,6 @@ pub(super) fn not_begun(why: &NotBegun) -> Text {
     }
 }
 
-/// Returns the message for a completed write.
 pub fn written(written: &Written) -> Text {
     // The values of the default are not known, so none is read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
@@ -194,7 +191,6 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     texts
 }
 
-/// Returns the severity of a sentence about an interrupted write.
 pub fn weight(text: &Text) -> Severity {
     match text.id() {
         "ib_left.as_found" => Severity::Good,

@@ -9,7 +9,6 @@ use crate::devices::interbus::protocol::{
 /// Edit of the encoder's values. Each edit is a single undo step, however much it changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Edit {
-    /// Steps of the measuring range.
     Steps(u32),
     /// Turns until the position starts again.
     Revolutions(u32),
@@ -78,7 +77,6 @@ pub enum Edit {
     Table(Vec<Filled>),
 }
 
-/// Why an edit is refused. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
     /// No values of the encoder were read.
@@ -92,32 +90,20 @@ pub enum EditError {
     /// The profile does not contain the cam.
     #[error("cam {} of program {} has no edges", cam.get(), program.get())]
     NoCam { program: ProgramNumber, cam: CamNumber },
-    /// Steps and turns do not form a valid gear.
     #[error(transparent)]
     Gear(#[from] GearError),
     #[error(transparent)]
     Parameter(#[from] OutOfRange),
     #[error("{to} is outside the measuring range, which ends at {last}")]
-    Edge {
-        edge: Edge,
-        to: u32,
-        /// Last position of the measuring range.
-        last: u32,
-    },
+    Edge { edge: Edge, to: u32, last: u32 },
     /// An active cam is beyond the measuring range, so its program can be neither mirrored nor shifted.
     #[error("cam {} of program {} is outside the measuring range, which ends at {last}", cam.get(), program.get())]
-    Beyond {
-        program: ProgramNumber,
-        cam: CamNumber,
-        /// Last position of the measuring range.
-        last: u32,
-    },
+    Beyond { program: ProgramNumber, cam: CamNumber, last: u32 },
     /// A name is too long or is not a single line.
     #[error("a name must be a single line of at most {LONGEST_NAME} characters")]
     Name,
 }
 
-/// Returns the values after an edit.
 pub(super) fn edited(wanted: &EditedValues, edit: &Edit, ground: BaseSource) -> Result<EditedValues, EditError> {
     let mut after = wanted.clone();
     let parameters = &mut after.image.parameters;

@@ -8,10 +8,8 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, ProgramNumbe
 /// the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// Steps and turns are no gear.
     Gear(GearError),
     Preset {
-        /// Last position of the measuring range.
         last: u32,
     },
     /// A cam that works has an edge beyond the measuring range.
@@ -20,7 +18,6 @@ pub enum Mark {
         cam: CamNumber,
         /// The edge; the start if both are concerned.
         edge: Edge,
-        /// Last position of the measuring range.
         last: u32,
     },
     /// Two active cams of the same name overlap, although the pulses of one track should not. The encoder itself has no
@@ -28,7 +25,6 @@ pub enum Mark {
     Clash {
         program: ProgramNumber,
         first: CamNumber,
-        /// Second of the overlapping cams.
         second: CamNumber,
         /// The first position at which both are on.
         at: u32,

@@ -11,7 +11,6 @@ use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, ca
 use crate::ui::controls::{card_with, icon_button, name, paragraph};
 use crate::ui::{Theme, icons};
 
-/// The view of the chart.
 pub(super) struct CamChartUiState {
     ring: bool,
     snaps: bool,

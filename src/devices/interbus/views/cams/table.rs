@@ -24,7 +24,6 @@ pub(super) struct CamTableUiState {
 /// Entered text, and the reason if it was refused.
 type Draft = Option<(String, Option<Text>)>;
 
-/// The entries of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Column {
     Name,
@@ -32,7 +31,6 @@ enum Column {
     Stop,
 }
 
-/// Widths of the columns.
 const CAM: f32 = 48.0;
 const NAME: f32 = 160.0;
 const NUMBER: f32 = 104.0;

@@ -28,7 +28,6 @@ pub(crate) struct CamChart<'a> {
     pub(crate) snaps: bool,
 }
 
-/// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CamEvent {
     /// Edges that the cam would get if the drag ended now. Sent in every frame until the drag ends.
@@ -39,7 +38,6 @@ pub(crate) enum CamEvent {
         to: Cam,
         drawn: bool,
     },
-    /// The user switched the cam on or off.
     Switched(CamNumber, bool),
     Selected(CamNumber),
     Viewed(VisibleRange),
@@ -107,7 +105,6 @@ impl CamChart<'_> {
         to.map(|to| CamEvent::Preview(cam, to))
     }
 
-    /// Returns the program as it looks during a drag.
     pub(super) fn shown(&self, drag: Option<Drag>) -> Option<Chart> {
         let drag = drag?;
         Some(self.chart.with(drag.hold.cam(), drag.to?))
@@ -206,7 +203,6 @@ impl CamChart<'_> {
         if more == less { None } else { self.by(hold, more - less) }
     }
 
-    /// Shows the tooltip of an edge or a cam.
     pub(super) fn tip(&self, theme: &Theme, response: Response, hold: Hold) {
         let Some(lane) = self.chart.lane(hold.cam()) else { return };
         response.on_hover_ui(|ui| {

@@ -47,15 +47,12 @@ enum Kind {
     Cams,
 }
 
-/// Widths that a cell may have.
 const LEAST: f32 = 17.0;
 const MOST: f32 = 26.0;
-/// Height of the bit numbers.
 const NUMBERS: f32 = 15.0;
 const CELL: f32 = 24.0;
 const NAMES: f32 = 20.0;
 const GAP: f32 = 8.0;
-/// Number of bits in a word.
 const BITS: u8 = 32;
 const POSITION: u8 = Value::BITS as u8;
 
@@ -133,7 +130,6 @@ impl WordLayout<'_> {
     }
 }
 
-/// The layout of the cells.
 struct Cells {
     left: f32,
     top: f32,

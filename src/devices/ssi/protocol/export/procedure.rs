@@ -8,7 +8,6 @@ use crate::devices::ssi::protocol::range::{Fraction, Range};
 
 /// Syntax of a target language. A word holds all or part of a frame's bits; a number is plain text in every language.
 pub(super) trait Dialect {
-    /// Expression that evaluates to a word.
     type Word;
     /// Returns the variable as a word expression.
     fn name(&self, name: &'static str) -> Self::Word;

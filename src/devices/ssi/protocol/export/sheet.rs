@@ -43,7 +43,6 @@ impl Places {
         Places { frame, lowest, highest, turns: ends(&turns), steps: ends(&steps), others }
     }
 
-    /// Returns the number of bits after the position.
     fn behind(&self) -> u8 {
         self.lowest
     }
@@ -99,14 +98,12 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: 
     text
 }
 
-/// The name of a setting.
 enum Label {
     /// A term of the module manual that is the same in every language.
     Own(&'static str),
     Said(ExportText),
 }
 
-/// The value of a setting.
 enum Setting {
     /// A string that is the same in every language.
     Plain(String),

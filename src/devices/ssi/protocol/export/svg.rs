@@ -6,9 +6,7 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::timing::{Reads, Times};
 
-/// Width of a cell.
 const CELL: u32 = 22;
-/// Width of a picture in time.
 const WIDTH: u32 = 900;
 const CLOCK: &str = "#1a5fb4";
 const DATA: &str = "#26a269";

@@ -22,7 +22,6 @@ pub(super) struct FrameSet {
     bits: Vec<Bit>,
 }
 
-/// The behaviour of the bit on a clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bit {
     pub(super) usual: bool,
@@ -52,12 +51,10 @@ impl FrameSet {
         &self.words
     }
 
-    /// Returns the behaviour of the bit on the given clock, counted from 1.
     pub(super) fn bit(&self, clock: u8) -> Bit {
         usize::from(clock).checked_sub(1).and_then(|index| self.bits.get(index)).copied().unwrap_or_default()
     }
 
-    /// Iterates over the clocks and the behaviour of their bits.
     pub(super) fn bits(&self) -> impl DoubleEndedIterator<Item = (u8, Bit)> + '_ {
         (1..=self.clocks).map(|clock| (clock, self.bit(clock)))
     }

@@ -16,7 +16,6 @@ pub(super) const EXCHANGED: f64 = 2.0;
 pub(super) const PADDED: f64 = 1.5;
 const NEVER_ODD: f64 = 8.0;
 
-/// A layout that matches a particular reading of the frames.
 #[derive(Clone, Debug)]
 pub(super) struct Member {
     pub(super) family: Option<(String, Settings)>,

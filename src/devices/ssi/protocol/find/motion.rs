@@ -8,12 +8,10 @@ const MODEL_BITS: f64 = 8.0;
 /// Information of a frame whose number is invalid, in bits.
 const NONE_BITS: f64 = 16.0;
 
-/// Motion described by a sequence of numbers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
     /// Information needed in all, in bits.
     pub(super) bits: f64,
-    /// Steps from a frame to the next, in the middle.
     pub(super) median: i64,
     /// Steps since the previous frame, for each frame but the first; `None` if either frame has no valid number.
     pub(super) steps: Vec<Option<i64>>,

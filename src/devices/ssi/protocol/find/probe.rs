@@ -6,12 +6,10 @@ use super::reading::Read;
 use crate::devices::ssi::protocol::descriptor::{Meaning, Repeat};
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 
-/// Frames that a layout is tried with.
 const TRIED: usize = 96;
 /// Percentage of the tried frames that may fail to fit.
 const MISFITS_PERCENT: usize = 4;
 
-/// The result of a layout for the frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Trial {
     pub(super) positions: Vec<u64>,
@@ -100,7 +98,6 @@ impl<'a> Probe<'a> {
     }
 }
 
-/// Conversion from a reading's steps to a layout's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scale {
     backwards: bool,

@@ -20,7 +20,6 @@ const NEAR_BITS: f64 = 400.0;
 const LAST_PERMILLE: usize = 10;
 /// Minimum percentage of frames with correct parity.
 const PARITY_PERCENT: usize = 85;
-/// Bits for a less usual property.
 const INVERTED_BITS: f64 = 2.0;
 const BCD_BITS: f64 = 6.0;
 const PARITY_BITS: f64 = 6.0;
@@ -29,7 +28,6 @@ const END_BITS: f64 = 12.0;
 const UNUSUAL_END_BITS: f64 = 4.0;
 const UNEXPLAINED_BITS: f64 = 24.0;
 
-/// An interpretation of frames as positions.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Reading {
     /// Every bit upside down.

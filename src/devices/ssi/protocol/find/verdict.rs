@@ -22,7 +22,6 @@ const SURE_BITS: u8 = 5;
 const SURE_DIFFERENT: usize = 64;
 const MEMBERS: usize = 200;
 
-/// Returns why the first group is not certain.
 pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
     let Some(first) = groups.first() else { return Some(Uncertainty::Nothing) };
     let frames = words.words().len();

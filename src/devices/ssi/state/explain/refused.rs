@@ -10,12 +10,10 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
 
-/// Returns the message for an impossible frame.
 pub fn layout(error: &LayoutError) -> Text {
     refused(layout_reason(error))
 }
 
-/// Returns the message for settings that a family does not support.
 pub fn settings(error: &SettingsError) -> Text {
     refused(settings_reason(error))
 }
@@ -85,7 +83,6 @@ pub fn wide(error: WideNumbers) -> Text {
     }
 }
 
-/// Returns the message for a string that is not a valid frame.
 pub fn frame_text(error: &FrameTextError) -> Text {
     match error {
         FrameTextError::Form(text) => TEXTS.text("ssi_trial.form").with("text", text),
@@ -109,7 +106,6 @@ fn refused(why: Text) -> Text {
     TEXTS.text("ssi.refused").with_text("why", why)
 }
 
-/// Returns the name of a setting in a family's description.
 fn field_name(field: SettingName) -> Text {
     TEXTS.text(match field {
         SettingName::Frame => "ssi_field.frame",

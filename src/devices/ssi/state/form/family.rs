@@ -104,7 +104,6 @@ pub(super) fn entered(
     Some(next)
 }
 
-/// Returns the kinds of range available in a family.
 fn kinds(family: &Family) -> Vec<RangeKind> {
     if family.step_nanometres.is_some() {
         return vec![RangeKind::Length];

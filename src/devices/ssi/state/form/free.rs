@@ -6,7 +6,6 @@ use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::design::{Designer, Edit};
 
 const KINDS: [RangeKind; 4] = [RangeKind::Bits, RangeKind::Steps, RangeKind::RoundAxis, RangeKind::Length];
-/// Error bits that a frame may have.
 const MOST_ERRORS: usize = 8;
 
 pub(super) fn groups(designer: &Designer) -> Vec<Group> {

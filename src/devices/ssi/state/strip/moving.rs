@@ -64,7 +64,6 @@ pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
     }
 }
 
-/// Single bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Single {
     Error(usize),

@@ -28,7 +28,6 @@ pub fn cell(strip: &Strip, clock: u8) -> Text {
     )
 }
 
-/// Returns the label of a field's content, including its width in bits.
 pub fn field(strip: &Strip, field: &Field) -> Text {
     let count = |id| TEXTS.text(id).with("count", field.count());
     match field.kind {

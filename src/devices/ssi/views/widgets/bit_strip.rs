@@ -34,7 +34,6 @@ use rows::Rows;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BitStrip<'a> {
     pub(crate) label: &'a str,
-    /// The present frame, also during a drag.
     pub(crate) strip: &'a Strip,
     /// Bits to display, right-justified, if known.
     pub(crate) frame: Option<u64>,
@@ -47,7 +46,6 @@ pub(crate) struct BitStrip<'a> {
     pub(crate) following: bool,
 }
 
-/// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StripEvent {
     /// The clock to which the part would move, sent in every frame of a drag.

@@ -27,7 +27,6 @@ use crate::ui::Theme;
 use axis::Axis;
 use place::{Bar, Flag, Put};
 
-/// A timing diagram to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimingDiagram<'a> {
     pub(crate) label: &'a str,
@@ -251,7 +250,6 @@ impl Picture<'_> {
         }
     }
 
-    /// Draws the breaks of both lines.
     fn breaks(&self, breaks: &[Rangef]) {
         for gap in breaks {
             let middle = self.left + gap.center();

@@ -12,7 +12,6 @@ use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, ink};
 use crate::ui::widgets::focus_ring;
 use crate::ui::{controls, icons};
 
-/// Width of a cam's switch.
 const SWITCH: f32 = 24.0;
 const NUMBER: f32 = 18.0;
 const LAMP: f32 = 34.0;

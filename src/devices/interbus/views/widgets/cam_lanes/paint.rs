@@ -16,7 +16,6 @@ const BEYOND: f32 = 14.0;
 /// Minimum width of a hollow bar.
 const NARROW: f32 = 6.0;
 
-/// The state of an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grip {
     pub(super) active: bool,

@@ -5,7 +5,6 @@ use egui::{Rect, Vec2, pos2};
 use crate::devices::interbus::protocol::{CamNumber, Program};
 use crate::devices::interbus::state::cams::{Stretch, VisibleRange};
 
-/// Height of a ruler.
 const RULER: f32 = 20.0;
 const LANE: f32 = 28.0;
 /// Maximum width of the heads before the lanes.
@@ -29,7 +28,6 @@ pub(super) struct PlotArea {
 }
 
 impl PlotArea {
-    /// Returns the size of all lanes.
     pub(super) fn size(width: f32, units: bool) -> Vec2 {
         let rulers = if units { 2.0 * RULER } else { RULER };
         Vec2::new(width, rulers + Program::CAMS as f32 * LANE)
@@ -93,7 +91,6 @@ impl PlotArea {
         Rect::from_x_y_ranges(left..=right, self.lane(cam).shrink2(Vec2::new(0.0, 2.0)).y_range())
     }
 
-    /// Returns whether an edge at `x` is visible.
     pub(super) fn shows(&self, x: f32) -> bool {
         x >= self.plot.left() - 1.0 && x <= self.plot.right() + 1.0
     }

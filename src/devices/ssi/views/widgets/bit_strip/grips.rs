@@ -64,7 +64,6 @@ fn id(base: Id, handle: Handle) -> Id {
     base.with("handle").with(handle)
 }
 
-/// Returns whether something is still being dragged.
 pub(super) fn is_dragged(ui: &Ui, base: Id, drag: Drag) -> bool {
     ui.ctx().is_being_dragged(id(base, drag.handle))
 }

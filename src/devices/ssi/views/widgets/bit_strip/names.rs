@@ -25,7 +25,6 @@ pub(super) struct Tag {
     galley: Arc<Galley>,
 }
 
-/// Between two names on a line.
 const APART: f32 = 6.0;
 /// Longer names are truncated; the field's tooltip contains the whole name.
 const WIDEST: f32 = 160.0;
@@ -41,7 +40,6 @@ struct Narrow {
     alone: bool,
     /// Whether the name starts at its leader line instead of ending there.
     begins: bool,
-    /// Right end of the cells.
     room: f32,
     galley: Arc<Galley>,
 }

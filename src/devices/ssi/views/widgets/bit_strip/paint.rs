@@ -85,7 +85,6 @@ impl StripContext<'_> {
     }
 }
 
-/// The state of a handle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grip {
     pub(super) active: bool,

@@ -42,12 +42,10 @@ impl Rows {
         Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() }
     }
 
-    /// Returns the left edge of each line.
     pub(super) fn left(&self) -> f32 {
         self.origin.x
     }
 
-    /// Returns the number of lines needed for the given number of clocks.
     pub(super) fn count(&self, clocks: u8) -> usize {
         usize::from(clocks.max(1).div_ceil(self.columns))
     }
@@ -64,12 +62,10 @@ impl Rows {
         self
     }
 
-    /// Returns the width of the cells together.
     pub(super) fn width(&self, clocks: u8) -> f32 {
         f32::from(clocks.min(self.columns)) * self.cell
     }
 
-    /// Returns the size of the whole strip.
     pub(super) fn size(&self, clocks: u8) -> Vec2 {
         Vec2::new(self.width(clocks) + 2.0 * MARGIN, self.tops.last().copied().unwrap_or(GAP) - GAP)
     }

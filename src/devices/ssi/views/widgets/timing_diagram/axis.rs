@@ -4,10 +4,8 @@ use egui::Rangef;
 
 use crate::devices::ssi::state::timing::Piece;
 
-/// Width of a break.
 pub(super) const BREAK: f32 = 24.0;
 
-/// The axis of time on the screen.
 #[derive(Clone, Debug)]
 pub(super) struct Axis {
     pieces: Vec<Piece>,

@@ -6,7 +6,6 @@ pub(super) struct Flag {
     pub(super) width: f32,
 }
 
-/// Position of a label: its line, counted from 0 at the bottom, and its left edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Put {
     pub(super) level: usize,
@@ -64,7 +63,6 @@ fn agree((a, at): (&Flag, &Put), (b, bt): (&Flag, &Put)) -> bool {
     }
 }
 
-/// Extent of a time's bar, and the width of its label.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bar {
     pub(super) ends: (f32, f32),
