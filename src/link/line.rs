@@ -170,12 +170,12 @@ impl<'a> SerialLine<'a> {
     }
 
     /// Starts recording bytes that arrive too late or after a reply.
-    pub(crate) fn keep_passed(&mut self) {
+    pub(crate) fn record_late_bytes(&mut self) {
         self.passed = Some(Vec::new());
     }
 
     /// Returns the recorded bytes that arrived too late or after a reply, and stops recording them.
-    pub(crate) fn take_passed(&mut self) -> Vec<u8> {
+    pub(crate) fn take_late_bytes(&mut self) -> Vec<u8> {
         self.passed.take().unwrap_or_default()
     }
 

@@ -75,7 +75,7 @@ impl eframe::App for StudioApp {
     }
 
     fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
-        self.window.order_input(ctx, input);
+        self.window.split_input(ctx, input);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {

@@ -36,7 +36,7 @@ impl Views {
             help: false,
             palette: None,
             trace: TraceView::default(),
-            plot: plot::PlotUiState::in_panel(),
+            plot: plot::PlotUiState::for_panel(),
             rate: 50_000,
         }
     }

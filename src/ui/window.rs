@@ -53,7 +53,7 @@ impl Window {
 
     /// Splits the input of a frame so that text reaches the entry that was clicked before. Nothing is held back while
     /// drives are under control.
-    pub fn order_input(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+    pub fn split_input(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
         let at_once = !input.focused || self.studio.is_in_control();
         if self.held_input.divide(&mut input.events, at_once) {
             ctx.request_repaint();
@@ -228,14 +228,14 @@ impl Window {
         if pressed(Modifiers::NONE, commands::HELP_KEY) {
             self.views.help = !self.views.help;
         }
-        let covered = self.is_covered() || self.views.help;
+        let covered = self.has_open_dialog() || self.views.help;
         surround_hold_buttons(ctx, HoldSurroundings { covered, moving: self.studio.is_under_way() });
         if covered || !ctx.input(|input| input.focused) {
             // The held button is not visible, or the release of its key will not be reported. This frame already shows it:
             // an action would request another one each time.
             self.studio.act(Action::LetGo);
         }
-        if self.is_covered() {
+        if self.has_open_dialog() {
             return;
         }
         if pressed(Modifiers::COMMAND, Key::K) {
@@ -286,7 +286,7 @@ impl Window {
     }
 
     /// Returns whether a dialog covers the window and has the keyboard focus.
-    fn is_covered(&self) -> bool {
+    fn has_open_dialog(&self) -> bool {
         let dialog = self.views.file.is_some()
             || self.views.about
             || self.views.palette.is_some()

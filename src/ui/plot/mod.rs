@@ -34,7 +34,7 @@ pub struct PlotUiState {
 
 impl PlotUiState {
     /// Creates the state of a plot in a side panel that can expand to the whole page.
-    pub(in crate::ui) fn in_panel() -> Self {
+    pub(in crate::ui) fn for_panel() -> Self {
         PlotUiState { large: Some(false), ..PlotUiState::default() }
     }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::error::exactly;
 use super::identify::identify_with;
 use super::registers::Registers;
-use super::survey::look_around;
+use super::survey::read_survey;
 use super::write::unsaved_mode;
 use super::{Error, Master, PositionReading, Survey};
 use crate::devices::biss::profile::{Bank, BissProfile, DataImage, ListedBank, PresetSetting, Recorded};
@@ -144,7 +144,7 @@ pub fn save(
         let areas: Vec<&Area> = description.areas().iter().filter(|area| area.access.reads()).collect();
         let (mut done, mut total) = (0, areas.iter().map(|area| area.size() as u64).sum());
         let in_areas = total;
-        let survey = look_around(master, identity, registers, &mut |at, of, address| {
+        let survey = read_survey(master, identity, registers, &mut |at, of, address| {
             (done, total) = (of, of + in_areas);
             progress(at, total, ReadStage::Register(address));
         })?;

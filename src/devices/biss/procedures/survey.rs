@@ -82,11 +82,11 @@ pub fn survey(
 ) -> Result<Survey, Error> {
     let mut registers = Registers::default();
     let identity = identify_with(master, types, &mut registers)?;
-    look_around(master, identity, registers, progress)
+    read_survey(master, identity, registers, progress)
 }
 
 /// Reads everything except the identity; `registers` contains the values already read for the identity.
-pub(super) fn look_around(
+pub(super) fn read_survey(
     master: &mut Master<'_>,
     identity: Identity,
     mut registers: Registers,

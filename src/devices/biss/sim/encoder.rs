@@ -216,7 +216,7 @@ impl Encoder {
                 eds.emit().get(usize::from(offset)).copied().unwrap_or(0)
             }
             Some(bank) if bank <= Self::MAX_BANK => {
-                let (area, begin) = Area::of_bank(bank)?;
+                let (area, begin) = Area::containing_bank(bank)?;
                 let at = begin + usize::from(offset);
                 self.data.byte(area, at).or_else(|| self.area(area).get(at).copied())?
             }
@@ -260,7 +260,7 @@ impl Encoder {
             (Some(0x01), 0x02..=0x07) if self.mode == DeviceMode::PRESET => {
                 self.preset.enter(usize::from(offset - 2), value)
             }
-            (Some(bank), _) => Area::of_bank(bank)
+            (Some(bank), _) => Area::containing_bank(bank)
                 .is_some_and(|(area, begin)| self.data.enter(area, begin + usize::from(offset), value)),
             _ => false,
         };

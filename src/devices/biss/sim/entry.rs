@@ -13,7 +13,7 @@ pub(super) enum Area {
 
 impl Area {
     /// Returns the area that contains a bank and the bank's offset in that area, or `None` for any other bank.
-    pub(super) fn of_bank(bank: u8) -> Option<(Area, usize)> {
+    pub(super) fn containing_bank(bank: u8) -> Option<(Area, usize)> {
         let begin = |first: u8| usize::from(bank - first) * 64;
         match bank {
             0x04..=0x23 => Some((Area::Motor, begin(0x04))),

@@ -73,7 +73,7 @@ impl Group {
             let access = area.map_or(Access::R, |area| area.access);
             rows.push(Row { register: described.unwrap_or_else(|| plain(at, access)), is_data: area.is_some() });
         }
-        let name = bank.and_then(|bank| description.bank_name(bank).cloned().or_else(|| usual_name(bank)));
+        let name = bank.and_then(|bank| description.bank_name(bank).cloned().or_else(|| standard_bank_name(bank)));
         Group { bank, name, rows }
     }
 
@@ -144,7 +144,7 @@ fn plain(address: RegisterAddress, access: Access) -> Register {
 }
 
 /// Returns the name of a data sheet bank, which BP3 fixes for every conforming encoder.
-fn usual_name(bank: u8) -> Option<Name> {
+fn standard_bank_name(bank: u8) -> Option<Name> {
     [(EdsBank::Common, "EDS"), (EdsBank::Encoder, "EDS BP3")]
         .into_iter()
         .find(|(own, _)| own.number() == bank)

@@ -191,16 +191,16 @@ impl Moves {
     /// Ends the jog when it is released, or when its button is no longer visible: the drive stops immediately, not at
     /// the next update.
     pub(crate) fn release(&mut self) {
-        self.stop_those(|kind| kind == Kind::Held);
+        self.stop_if(|kind| kind == Kind::Held);
     }
 
     /// Ends every act that lasts until it is stopped: a jog or a run.
     pub(crate) fn let_go(&mut self) {
         self.freed = None;
-        self.stop_those(|kind| matches!(kind, Kind::Held | Kind::Run));
+        self.stop_if(|kind| matches!(kind, Kind::Held | Kind::Run));
     }
 
-    fn stop_those(&mut self, which: impl FnOnce(Kind) -> bool) {
+    fn stop_if(&mut self, which: impl FnOnce(Kind) -> bool) {
         let Some(act) = self.act.filter(|act| which(act.kind)) else { return };
         if let Some(motion) = self.motion.as_ref().filter(|motion| motion.is_latest(act.number)) {
             motion.intend(act.drive, MotionRequest::Stop);

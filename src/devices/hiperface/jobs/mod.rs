@@ -79,7 +79,7 @@ impl Hiperface {
     /// Stores the codes of samples, in which a persistent code is repeated.
     fn keep_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_codes_read();
-        if !codes.is_empty() && self.status.is_news(&codes, context.clock.now()) {
+        if !codes.is_empty() && self.status.record_new(&codes, context.clock.now()) {
             self.keep_codes(context, &codes);
         }
     }

@@ -18,16 +18,16 @@ pub(super) struct StatusKeeper(Vec<(StatusCode, Moment)>);
 
 impl StatusKeeper {
     /// Returns whether any of these codes was not recorded within the last minute; all of them then count as recorded.
-    pub(super) fn is_news(&mut self, codes: &[StatusCode], now: Moment) -> bool {
+    pub(super) fn record_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
         self.0.retain(|(_, kept)| now.since(*kept) < AGAIN);
-        let mut is_news = false;
+        let mut is_new = false;
         for code in codes {
             if !self.0.iter().any(|(own, _)| own == code) {
                 self.0.push((*code, now));
-                is_news = true;
+                is_new = true;
             }
         }
-        is_news
+        is_new
     }
 }
 
@@ -56,10 +56,10 @@ mod tests {
         let mut keeper = StatusKeeper::default();
         let at = |seconds| Moment::default() + Duration::from_secs(seconds);
         let (hot, fast) = (StatusCode::TEMPERATURE, StatusCode::TOO_FAST);
-        assert!(keeper.is_news(&[hot], at(0)));
-        assert!(!keeper.is_news(&[hot], at(59)));
-        assert!(keeper.is_news(&[hot, fast], at(59)), "another one came");
-        assert!(keeper.is_news(&[hot], at(60)));
-        assert!(!keeper.is_news(&[fast, hot], at(100)));
+        assert!(keeper.record_new(&[hot], at(0)));
+        assert!(!keeper.record_new(&[hot], at(59)));
+        assert!(keeper.record_new(&[hot, fast], at(59)), "another one came");
+        assert!(keeper.record_new(&[hot], at(60)));
+        assert!(!keeper.record_new(&[fast, hot], at(100)));
     }
 }

@@ -31,5 +31,5 @@ pub use rest_reading::{Rest, Signals, read_at_rest};
 pub use save::{SaveOptions, profile_of, save};
 pub use station::{AccessCodes, Codes, LinkParameters, MOST_PERIODS, Station};
 
-use survey::{Reading, look_around};
+use survey::{Reading, read_survey};
 pub use survey::{Survey, survey};

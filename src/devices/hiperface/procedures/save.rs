@@ -1,6 +1,6 @@
 //! Reading everything that can be restored, and the identity of the encoder.
 
-use super::{Error, Identity, Master, Reading, Sample, Survey, look_around};
+use super::{Error, Identity, Master, Reading, Sample, Survey, read_survey};
 use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface, ProfileIdentity, Recorded};
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::profile::Unknown;
@@ -31,7 +31,7 @@ fn save_once(
     options: SaveOptions,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<HiperfaceProfile, Error> {
-    let Survey { identity, fields, counter, position, .. } = look_around(master, types, progress, Reading::Whole)?;
+    let Survey { identity, fields, counter, position, .. } = read_survey(master, types, progress, Reading::Whole)?;
     if let Some(locked) = fields.iter().find(|field| field.bytes.is_none())
         && options.complete
     {

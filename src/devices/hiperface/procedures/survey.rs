@@ -35,7 +35,7 @@ pub fn survey(
 ) -> Result<Survey, Error> {
     // They stay among the collected codes until the survey is complete: if it fails, they are reported regardless.
     master.collect_codes()?;
-    let mut survey = look_around(master, types, progress, Reading::AsFarAsPossible)?;
+    let mut survey = read_survey(master, types, progress, Reading::AsFarAsPossible)?;
     survey.codes = master.station().take_codes();
     // A code that the encoder announced before applies to this position too.
     let spoilt = survey.codes.iter().any(|code| code.spoils_position());
@@ -54,7 +54,7 @@ pub(super) enum Reading {
 }
 
 /// Reads everything except the error queue.
-pub(super) fn look_around(
+pub(super) fn read_survey(
     master: &mut Master<'_>,
     types: &EncoderTypes,
     progress: &mut dyn FnMut(u64, u64),

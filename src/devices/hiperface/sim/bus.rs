@@ -129,7 +129,7 @@ impl Bus {
         }
     }
 
-    fn let_host_receive(&mut self) {
+    fn deliver_to_host(&mut self) {
         let Some((_, travelling)) = self.to_host.pop() else { return };
         // The usual driver setting passes on bytes with a wrong parity bit unchanged.
         let clean = !self.collides(&travelling) && travelling.format == self.wires.host;
@@ -194,7 +194,7 @@ impl VirtualLine for Bus {
         match event {
             Event::EncoderActs(index) => self.let_encoder_act(index, at),
             Event::EncodersHear => self.let_encoders_hear(),
-            Event::HostReceives => self.let_host_receive(),
+            Event::HostReceives => self.deliver_to_host(),
         }
     }
 

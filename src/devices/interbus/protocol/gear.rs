@@ -44,7 +44,7 @@ impl Gear {
         if turns == 0 || turns > TURNS {
             return Err(GearError::Turns { turns });
         }
-        let most = Gear::most_steps(turns);
+        let most = Gear::max_steps(turns);
         if steps == 0 || steps > most {
             return Err(GearError::Steps { steps, turns, most });
         }
@@ -53,7 +53,7 @@ impl Gear {
 
     /// Returns the maximum number of steps over the given number of turns. With all 4096 turns, the count exceeds the
     /// largest 25-bit value by one.
-    pub(super) const fn most_steps(turns: u32) -> u32 {
+    pub(super) const fn max_steps(turns: u32) -> u32 {
         let all = STEPS_PER_TURN * turns;
         if all > Value::MAX.get() { Value::MAX.get() } else { all }
     }

@@ -104,7 +104,7 @@ impl Parameter {
     pub const fn range(self, gear: Gear) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,
-            Limit::StepsOfTurns => 1..=Gear::most_steps(gear.turns()),
+            Limit::StepsOfTurns => 1..=Gear::max_steps(gear.turns()),
             Limit::WithinRange => 0..=gear.steps() - 1,
         }
     }

@@ -44,7 +44,7 @@ impl Master<'_> {
         let mut tries = 0;
         loop {
             tries += 1;
-            self.line.keep_passed();
+            self.line.record_late_bytes();
             let sent = self.station.line.quality.requests;
             let attempt = self.attempt(&Request::ReadStatus);
             // Cancellation, or a line that is never silent, is detected before it is sent.
@@ -59,7 +59,7 @@ impl Master<'_> {
                 }
                 Err(trouble) => (None, self.may_try_again(&Request::ReadStatus, tries, trouble)),
             };
-            let passed = self.line.take_passed();
+            let passed = self.line.take_late_bytes();
             let late = self.replies_in(&passed);
             self.station.line.quality.late += late.len() as u64;
             let mut pending = None;

@@ -125,7 +125,7 @@ impl Reading {
     }
 
     /// Returns the last run of clocks before the lowest bit that never moved.
-    pub(super) fn unmoved(&self, seen: &FrameSet) -> Option<(u8, u8)> {
+    pub(super) fn constant_run(&self, seen: &FrameSet) -> Option<(u8, u8)> {
         let to = (1..self.last).rev().find(|clock| !seen.bit(*clock).moves)?;
         let from = (1..=to).rev().take_while(|clock| !seen.bit(*clock).moves).last()?;
         Some((from, to))

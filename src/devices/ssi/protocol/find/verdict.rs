@@ -60,10 +60,10 @@ fn unproven(words: &FrameSet, group: &Group) -> Vec<Open> {
     let Group { read, members, .. } = group;
     let reading = &read.reading;
     let mut open = Vec::new();
-    let unmoved = reading.unmoved(words);
+    let constant_run = reading.constant_run(words);
     // After the highest bit a constant one may be anything; before it, once the end was passed, it does not belong to the
     // position.
-    match unmoved.filter(|(from, _)| !read.closed || *from > reading.first) {
+    match constant_run.filter(|(from, _)| !read.closed || *from > reading.first) {
         Some((from, to)) => open.push(Open::TurnFarther { from, to }),
         None if !read.closed => open.push(Open::PassAnEnd),
         None => {}
