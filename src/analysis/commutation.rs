@@ -64,7 +64,7 @@ impl Motor {
         self.offset(fine_periods).map(|angle| ElectricalAngle(angle.0.wrapping_sub(offset.0)))
     }
 
-    /// Returns the difference between two neighbouring values of [`position_to_set`], in degrees of shaft rotation.
+    /// Returns the difference between two neighbouring values of [`preset_position`], in degrees of shaft rotation.
     pub fn mechanical_step_deg(&self) -> f64 {
         360.0 / f64::from(self.periods)
     }
@@ -94,7 +94,7 @@ impl Motor {
 
 /// Returns the value for command 43h that sets the present position to period `period` (method 2). Its five lower bits
 /// are the upper bits of the phase, as the encoder requires. `None` beyond 2²⁷ periods.
-pub fn position_to_set(period: u32, phase: Phase) -> Option<u32> {
+pub fn preset_position(period: u32, phase: Phase) -> Option<u32> {
     if period >> 27 == 0 { Some(period << 5 | phase.step(5)) } else { None }
 }
 
@@ -123,11 +123,11 @@ mod tests {
 
     #[test]
     fn method_2_matches_section_5() {
-        assert_eq!(position_to_set(0, phase(0.47)), Some(0x0F));
-        assert_eq!(position_to_set(3, phase(0.47)), Some(0x6F));
-        assert_eq!(position_to_set(0, phase(0.02)), Some(0));
-        assert_eq!(position_to_set(0, phase(0.97)), Some(31));
-        assert_eq!(position_to_set(1 << 27, phase(0.0)), None);
+        assert_eq!(preset_position(0, phase(0.47)), Some(0x0F));
+        assert_eq!(preset_position(3, phase(0.47)), Some(0x6F));
+        assert_eq!(preset_position(0, phase(0.02)), Some(0));
+        assert_eq!(preset_position(0, phase(0.97)), Some(31));
+        assert_eq!(preset_position(1 << 27, phase(0.0)), None);
         let rows = [
             (16, 5, 22.5, 112.5),
             (128, 5, 2.8125, 14.0625),

@@ -59,11 +59,11 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     let sampled = |values: &[f64]| values.iter().take(count).step_by(stride).copied().collect::<Vec<f64>>();
     let (ys, xs) = (sampled(sine), sampled(cosine));
     // An ellipse distorted by an outlier misses the other samples; the upright ellipse is used if it fits them better.
-    let upright = boxed(&ys, &xs).ok().filter(|boxed| median_off(&ys, &xs, boxed) < UPRIGHT * boxed.amplitude_v);
+    let upright = boxed(&ys, &xs).ok().filter(|boxed| median_deviation(&ys, &xs, boxed) < UPRIGHT * boxed.amplitude_v);
     let start = match (all, upright) {
         (Some(all), Some(upright)) => {
-            let off = median_off(&ys, &xs, all);
-            let misses = off > LEAST_SHARE * upright.amplitude_v && off > median_off(&ys, &xs, &upright);
+            let off = median_deviation(&ys, &xs, all);
+            let misses = off > LEAST_SHARE * upright.amplitude_v && off > median_deviation(&ys, &xs, &upright);
             if misses { upright } else { *all }
         }
         (Some(all), None) => *all,
@@ -73,7 +73,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     let mut ellipse = start;
     let mut stretches: Vec<Range<usize>> = Vec::new();
     for round in 0..ROUNDS {
-        let limit = (DEVIATIONS * NORMAL * median_off(&ys, &xs, &ellipse)).max(LEAST_SHARE * ellipse.amplitude_v);
+        let limit = (DEVIATIONS * NORMAL * median_deviation(&ys, &xs, &ellipse)).max(LEAST_SHARE * ellipse.amplitude_v);
         let found = beyond(sine, cosine, &ellipse, limit);
         let left_out: usize = found.iter().map(Range::len).sum();
         if left_out as f64 > MOST * count as f64 {
@@ -152,7 +152,7 @@ fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
 }
 
 /// Returns the median distance from an ellipse, in volts on its corrected circle.
-fn median_off(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
+fn median_deviation(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
     let correction = ellipse.correction();
     let off = |(y, x): (&f64, &f64)| {
         let (y, x) = correction.apply(*y, *x);

@@ -194,7 +194,7 @@ pub trait AnyOpened: Any + Send {
 impl<D: Kind> AnyOpened for Opened<D> {
     fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services) {
         let Opened { worker, url, turn, .. } = *self;
-        let about = services.world.kinds.shown_link(&url);
+        let about = services.world.kinds.display_link(&url);
         services.leave(worker, ClosingSessionInfo { session, about, url, write: None }, Some(turn));
     }
 

@@ -84,7 +84,7 @@ impl Studio {
             let confirm = Text::new("question.close_window");
             self.question = Some(Question::before(text, confirm, Then::CloseWindow));
         } else {
-            self.begin_to_close();
+            self.begin_closing();
         }
     }
 
@@ -92,10 +92,10 @@ impl Studio {
     pub(super) fn quit(&mut self) {
         self.question = None;
         self.stop();
-        self.begin_to_close();
+        self.begin_closing();
     }
 
-    fn begin_to_close(&mut self) {
+    fn begin_closing(&mut self) {
         if std::mem::replace(&mut self.closing, true) {
             return;
         }
@@ -139,7 +139,7 @@ impl Studio {
         match self.question.take().map(|question| question.then) {
             Some(Then::CloseWindow) => {
                 self.stop();
-                self.begin_to_close();
+                self.begin_closing();
             }
             Some(Then::CloseSession(id)) => self.remove(id),
             Some(Then::Write(question, path)) => self.chosen(question, path),
@@ -148,8 +148,8 @@ impl Studio {
                 self.services.tasks.run("save", move || saving.run(kinds));
             }
             Some(Then::OpenLink(id)) => self.open_confirmed(id),
-            Some(Then::Find(tab)) => self.find_confirmed(tab),
-            Some(Then::Forget(owner)) => self.act_recorder(owner, recorder::RecorderAction::Clear),
+            Some(Then::Find(tab)) => self.start_confirmed_search(tab),
+            Some(Then::Forget(owner)) => self.apply_recorder_action(owner, recorder::RecorderAction::Clear),
             None => {}
         }
     }

@@ -73,35 +73,35 @@ impl Studio {
         }
     }
 
-    pub(super) fn act_device(&mut self, id: SessionId, action: Payload) {
+    pub(super) fn apply_device_action(&mut self, id: SessionId, action: Payload) {
         let Some(at) = self.devices.iter().position(|device| device.id() == id) else { return };
         let mut device = self.devices.remove(at);
         let mut context = ActContext::new(&mut self.services, &self.devices);
         let done = device.act(action, &mut context);
         let next = context.into_next();
         self.devices.insert(at, device);
-        self.check_kind(done, id);
+        self.report_wrong_kind(done, id);
         for command in next {
             self.command(id, command);
         }
     }
 
-    pub(super) fn device_done(&mut self, id: SessionId, done: Payload) {
+    pub(super) fn finish_device_action(&mut self, id: SessionId, done: Payload) {
         let mut taken = Ok(());
         self.with_device(id, |device, services| taken = device.done(done, services));
-        self.check_kind(taken, id);
+        self.report_wrong_kind(taken, id);
     }
 
     /// Stops all motion if an action has reached another kind of device, because its intended target does not exist.
-    pub(super) fn check_kind(&mut self, done: Result<(), WrongKind>, id: SessionId) {
+    pub(super) fn report_wrong_kind(&mut self, done: Result<(), WrongKind>, id: SessionId) {
         if done.is_err() {
             let name = self.device(id).map(AnyDevice::name);
-            self.refuse_kind(name.as_deref());
+            self.notify_wrong_kind(name.as_deref());
         }
     }
 
     /// Reports that an action was meant for another kind of device, and stops all motion.
-    pub(super) fn refuse_kind(&mut self, about: Option<&str>) {
+    pub(super) fn notify_wrong_kind(&mut self, about: Option<&str>) {
         self.stop_motion();
         self.services.notify(Severity::Error, vec![Text::new("session.wrong_kind")], about);
     }

@@ -159,7 +159,7 @@ impl Studio {
     }
 
     /// Shows in the session of a profile that its file has changed since it was opened.
-    pub(super) fn has_diverged(&mut self, diverged: Diverged) {
+    pub(super) fn show_divergence(&mut self, diverged: Diverged) {
         self.with_device(diverged.session(), |device, _| device.save_waits());
         if let Some(tab) = self.device(diverged.session()).map(|device| device.tab()) {
             self.show(tab, diverged.session());

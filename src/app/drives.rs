@@ -117,7 +117,7 @@ impl RememberedDrives {
 
     /// Returns the drives marked since `before`. A mark with an unchanged number may already be confirmed here and not
     /// yet on disk. Programs that do not count omit the numbers.
-    pub(crate) fn marked_since(&self, before: &RememberedDrives) -> Vec<u8> {
+    pub(crate) fn newly_marked(&self, before: &RememberedDrives) -> Vec<u8> {
         let is_new = |drive: &u8| {
             let number = self.marks(*drive);
             number != before.marks(*drive) || number == 0 && !before.is_unconfirmed(*drive)
@@ -183,7 +183,7 @@ mod tests {
             ("marks: {1: 2}", "marks: {1: 1}", &[]),
         ];
         for (found, before, marked) in cases {
-            assert_eq!(of(found).marked_since(&of(before)), marked, "{found}, {before}");
+            assert_eq!(of(found).newly_marked(&of(before)), marked, "{found}, {before}");
         }
     }
 }

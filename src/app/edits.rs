@@ -58,7 +58,7 @@ impl<B: EditBase> Edits<B> {
     }
 
     /// Undoes the edits selected by `is_meant` as one step; returns `false` if there are none.
-    pub fn take_back(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
+    pub fn undo_matching(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
         let mut after = self.edits.clone();
         after.retain(|at, _| !is_meant(*at));
         self.history.step(&mut self.edits, after)
@@ -113,7 +113,7 @@ impl<B: EditBase> PendingEdits for Edits<B> {
     }
 
     fn revert(&mut self) -> bool {
-        self.take_back(|_| true)
+        self.undo_matching(|_| true)
     }
 
     fn forget_steps(&mut self) {

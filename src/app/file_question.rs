@@ -48,7 +48,7 @@ impl DeviceFile {
     }
 
     /// Creates the question for a file to write, with a suggested name; its content may depend on the window language.
-    pub fn to_write<A: DeviceAction>(
+    pub fn write_question<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),
         endings: &'static [&'static str],

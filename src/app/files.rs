@@ -87,18 +87,18 @@ impl Studio {
         }
     }
 
-    pub(super) fn act_recorder(&mut self, owner: RecorderOwner, action: recorder::RecorderAction) {
+    pub(super) fn apply_recorder_action(&mut self, owner: RecorderOwner, action: recorder::RecorderAction) {
         if let Some(recorder) = self.recorder_mut(owner) {
             recorder.act(action);
         }
     }
 
-    pub(super) fn ask_forget(&mut self, owner: RecorderOwner) {
+    pub(super) fn confirm_discard_recording(&mut self, owner: RecorderOwner) {
         if self.recorder(owner).is_some_and(|recorder| recorder.unsaved() >= MUCH) {
             let (text, confirm) = (Text::new("question.forget"), Text::new("question.forget_it"));
             self.question = Some(Question::before(text, confirm, Then::Forget(owner)));
         } else {
-            self.act_recorder(owner, recorder::RecorderAction::Clear);
+            self.apply_recorder_action(owner, recorder::RecorderAction::Clear);
         }
     }
 
@@ -108,7 +108,7 @@ impl Studio {
     }
 
     /// Reports that a picture was requested of something that is not completely visible.
-    pub(super) fn tell_picture_cut(&mut self) {
+    pub(super) fn notify_picture_truncated(&mut self) {
         self.services.notify(Severity::Warning, vec![Text::new("recorder.picture_cut")], None);
     }
 
@@ -145,7 +145,7 @@ impl Studio {
         }
     }
 
-    pub(super) fn table_written(&mut self, owner: RecorderOwner, exported: Exported) {
+    pub(super) fn finish_table_export(&mut self, owner: RecorderOwner, exported: Exported) {
         let is_written = matches!(exported.rows, Ok(Some(_)));
         // Another drive may be selected by now.
         let recorders = match owner {
@@ -183,7 +183,7 @@ impl Studio {
         self.services.notify(severity, vec![text], None);
     }
 
-    pub(super) fn picture_saved(&mut self, path: &Path, result: Result<(), FileError>) {
+    pub(super) fn finish_picture_save(&mut self, path: &Path, result: Result<(), FileError>) {
         match result {
             Ok(()) => {
                 self.services.log.settle_file(path);

@@ -133,10 +133,10 @@ impl HoldState {
                 }
             }
             HoldInput::PointerMoved { inside: true } => {}
-            HoldInput::PointerMoved { inside: false } => self.let_go_of_pointer(),
+            HoldInput::PointerMoved { inside: false } => self.release_pointer(),
             HoldInput::PointerUp | HoldInput::PointerGone => {
                 self.pointer = false;
-                self.let_go_of_pointer();
+                self.release_pointer();
             }
         }
     }
@@ -146,7 +146,7 @@ impl HoldState {
         self.next_picture = self.keys.end_picture(now);
         self.pointer = pointer_down;
         if !(pointer_down && inside) {
-            self.let_go_of_pointer();
+            self.release_pointer();
         }
         // Released and pressed between two frames: the next press counts.
         if self.stop || self.was_held && self.began {
@@ -207,7 +207,7 @@ impl HoldState {
         self.holder = None;
     }
 
-    fn let_go_of_pointer(&mut self) {
+    fn release_pointer(&mut self) {
         if self.holder == Some(Holder::Pointer) {
             self.let_go();
         }

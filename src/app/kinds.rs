@@ -34,7 +34,7 @@ impl Kinds {
     }
 
     /// Returns the kind of device of a tab, or `None` for a tool or an unknown tab.
-    pub(super) fn of_tab(self, tab: Tab) -> Option<&'static dyn DeviceKind> {
+    pub(super) fn kind_for_tab(self, tab: Tab) -> Option<&'static dyn DeviceKind> {
         self.devices.iter().copied().find(|kind| kind.tab() == tab)
     }
 
@@ -49,7 +49,7 @@ impl Kinds {
 
     /// Returns a link in a form that may be displayed and stored: without the parameters that are secret for any kind
     /// of device, since the link may have been given for another kind.
-    pub fn shown_link(self, url: &LinkUrl) -> String {
+    pub fn display_link(self, url: &LinkUrl) -> String {
         let secrets: Vec<&str> = self.devices.iter().flat_map(|kind| kind.secrets()).collect();
         let query: Vec<String> =
             url.query.without(&secrets).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
@@ -64,6 +64,6 @@ impl Kinds {
     }
 
     pub(super) fn has_tab(self, tab: Tab) -> bool {
-        self.of_tab(tab).is_some() || self.tools.iter().any(|kind| kind.tab() == tab)
+        self.kind_for_tab(tab).is_some() || self.tools.iter().any(|kind| kind.tab() == tab)
     }
 }

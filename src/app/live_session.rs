@@ -42,7 +42,7 @@ impl<D: Kind> LiveSession<D> {
         LiveSession { worker, trace, running: None, is_virtual }
     }
 
-    pub fn progressing(&self) -> Option<Progressing> {
+    pub fn job_progress(&self) -> Option<Progressing> {
         let running = self.running.as_ref()?;
         let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::step_text(&own.step)));
         Some(Progressing { title: running.title.clone(), progress, stopping: running.stopping })

@@ -43,7 +43,7 @@ impl Studio {
 
     /// Ends everything that is held, and endless runs, because the window has lost the keyboard or is covered by a
     /// dialog.
-    pub(super) fn let_go_of_jogs(&mut self) {
+    pub(super) fn release_jogs(&mut self) {
         self.motions_mut().for_each(MotionControl::let_go);
     }
 

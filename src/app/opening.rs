@@ -28,15 +28,16 @@ impl Studio {
     pub(super) fn tab_of(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
         let tab = self.settings.tab;
-        let shown = if kinds.of_tab(tab).is_some() { tab } else { kinds.first_tab() };
+        let shown = if kinds.kind_for_tab(tab).is_some() { tab } else { kinds.first_tab() };
         let Some(link) = link else { return shown };
-        let fits = |tab: &Tab| kinds.of_tab(*tab).is_some_and(|kind| kind.check(link).is_ok());
+        let fits = |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| kind.check(link).is_ok());
         // Each kind has virtual devices: their links do not tell the kind.
         let text = (link.scheme != Scheme::Sim).then(|| link.to_string());
         let used = |tab: &Tab| fits(tab) && text.as_ref().is_some_and(|text| self.settings.links(*tab).contains(text));
         let tabs = || std::iter::once(shown).chain(kinds.devices().iter().map(|kind| kind.tab()));
         let is_elsewhere = |error| matches!(error, OpenError::Url(UrlError::Device { .. }));
-        let leads_there = |tab: &Tab| kinds.of_tab(*tab).is_some_and(|kind| !kind.check(link).is_err_and(is_elsewhere));
+        let leads_there =
+            |tab: &Tab| kinds.kind_for_tab(*tab).is_some_and(|kind| !kind.check(link).is_err_and(is_elsewhere));
         // An invalid link is reported by a kind that such links lead to.
         tabs().find(used).or_else(|| tabs().find(fits)).or_else(|| tabs().find(leads_there)).unwrap_or(shown)
     }
@@ -52,7 +53,8 @@ impl Studio {
 
     /// Opens a link to a device found by a search, which has already asked about other masters on the line.
     pub(super) fn open_found(&mut self, tab: Tab, url: LinkUrl) {
-        let was_asked = self.services.world.kinds.of_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
+        let was_asked =
+            self.services.world.kinds.kind_for_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
         if let Some(id) = self.session_at(tab, &url) {
             self.attempt_to_open(id, url, was_asked);
         }
@@ -85,7 +87,7 @@ impl Studio {
             Some(id) => id,
             None => {
                 let id = self.new_id();
-                let kind = self.services.world.kinds.of_tab(tab)?;
+                let kind = self.services.world.kinds.kind_for_tab(tab)?;
                 let device = kind.at_link(id, url.clone(), &mut self.services);
                 self.devices.push(device);
                 id
@@ -131,11 +133,11 @@ impl Studio {
     fn open_for(&mut self, id: SessionId, url: LinkUrl) {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
-        if !kinds.of_tab(device.tab()).is_some_and(|kind| kind.may_have_other_master(&url)) {
+        if !kinds.kind_for_tab(device.tab()).is_some_and(|kind| kind.may_have_other_master(&url)) {
             return self.attempt_to_open(id, url, false);
         }
         *device.phase_mut() = Phase::Lost(Text::new("session.not_asked"));
-        self.question = Some(Question::other_master(kinds.shown_link(&url), Then::OpenLink(id)));
+        self.question = Some(Question::other_master(kinds.display_link(&url), Then::OpenLink(id)));
     }
 
     pub(super) fn open_confirmed(&mut self, id: SessionId) {
@@ -168,10 +170,10 @@ impl Studio {
         match result {
             Ok(opened) => {
                 if let Source::Link(url) = device.source() {
-                    self.settings.use_link(device.tab(), &self.services.world.kinds.shown_link(url));
+                    self.settings.use_link(device.tab(), &self.services.world.kinds.display_link(url));
                 }
                 let taken = device.connect(opened, &mut self.services);
-                self.check_kind(taken, session);
+                self.report_wrong_kind(taken, session);
             }
             Err(failed) => {
                 let why = device.open_failed(&failed);
@@ -193,7 +195,7 @@ impl Services {
     ) -> Receiver<()> {
         let (turn, over) = bounded(0);
         let (world, wake) = (self.world.clone(), self.tasks.wake());
-        let endings = self.endings_on(&url);
+        let endings = self.closing_workers_on(&url);
         self.tasks.run("open", move || {
             if let Some(earlier) = earlier {
                 // Nothing is sent on it: it disconnects, or never does.

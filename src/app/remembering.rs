@@ -40,8 +40,8 @@ impl Studio {
         }
     }
 
-    pub(super) fn settings_read(&mut self, found: Option<Settings>) {
-        if let Some(found) = self.settings_store.read_done(found, &mut self.settings) {
+    pub(super) fn apply_read_settings(&mut self, found: Option<Settings>) {
+        if let Some(found) = self.settings_store.finish_read(found, &mut self.settings) {
             for drives in self.devices.iter_mut().filter_map(|device| device.remembers_drives()) {
                 drives.remembered_as().into_iter().for_each(|key| drives.lock_by(&found.drives(&key)));
             }
@@ -54,7 +54,7 @@ impl Studio {
     /// Records that the settings could not be read: no drive under control moves before they are.
     pub(super) fn settings_unread(&mut self, error: &FileError) {
         tracing::warn!("{error}");
-        self.settings_store.read_failed();
+        self.settings_store.fail_read();
         self.drives_in_hand().for_each(|drives| drives.set_marks(SettingsReadState::Unread));
     }
 

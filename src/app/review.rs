@@ -284,7 +284,7 @@ pub fn written_texts<K: Reviewed>(committed: &Committed<K::Written>) -> (Severit
 }
 
 /// Describes the values that a restore leaves unchanged: those missing on one side, and those of another mounting.
-pub(crate) fn left_alone(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
+pub(crate) fn skipped_texts(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
     let mut texts = Vec::new();
     if !missing.is_empty() {
         texts.push(words.into().with_list("items", missing));

@@ -160,7 +160,7 @@ impl Services {
         }
     }
 
-    pub(crate) fn job_ends(&mut self, session: SessionId, id: JobId, end: JobEnd) {
+    pub(crate) fn end_job(&mut self, session: SessionId, id: JobId, end: JobEnd) {
         let now = self.now();
         if let Some(job) = self.jobs.iter_mut().rev().find(|job| job.key == (session, id)) {
             job.end = end;

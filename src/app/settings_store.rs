@@ -141,7 +141,7 @@ impl SettingsStore {
     }
 
     /// Handles the result of a write; a failure is reported once.
-    pub(super) fn write_done(
+    pub(super) fn finish_write(
         &mut self,
         result: Result<SettingsWritten, FileError>,
         settings: &mut Settings,
@@ -188,12 +188,12 @@ impl SettingsStore {
     }
 
     /// Handles settings that could not be read, which count as not read, since they may contain locks.
-    pub(crate) fn read_failed(&mut self) {
+    pub(crate) fn fail_read(&mut self) {
         self.last_failed_read = self.reading_since.take();
     }
 
     /// Merges settings that were read. During a write they are returned instead, and its result is merged later.
-    pub(crate) fn read_done(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
+    pub(crate) fn finish_read(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
         self.last_read = self.reading_since.take();
         if self.writing.is_some() {
             return found;
@@ -229,7 +229,7 @@ fn read(path: PathBuf, kinds: Kinds) -> SettingsRead {
     match understood(read_text(&path), kinds) {
         Ok(Some((settings, true))) => SettingsRead::Whole(Box::new(settings)),
         Ok(Some((settings, false))) => {
-            let aside = aside_of(&path);
+            let aside = broken_copy_path(&path);
             let copied = fs::copy(&path, &aside);
             let aside = copied.map(|_| aside).map_err(|error| error.to_string());
             SettingsRead::Broken { settings: Box::new(settings), path, aside }
@@ -267,7 +267,7 @@ fn found(path: &Path, kinds: Kinds) -> Result<Option<Settings>, FileError> {
     }
 }
 
-fn aside_of(path: &Path) -> PathBuf {
+fn broken_copy_path(path: &Path) -> PathBuf {
     let mut aside = path.to_owned().into_os_string();
     aside.push(".broken");
     PathBuf::from(aside)
@@ -280,7 +280,7 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result
             Some((found, is_whole)) => (Some(found), is_whole),
             None => (None, true),
         };
-        let aside = if is_whole { None } else { put_aside(path)? };
+        let aside = if is_whole { None } else { move_to_backup(path)? };
         // If the file was deleted, it has no other changes.
         let merged = there.clone().map_or_else(|| ours.clone(), |there| there.with_changes(known, ours));
         let text = (there.as_ref() != Some(&merged) || !is_whole).then(|| merged.emit());
@@ -289,8 +289,8 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result
 }
 
 /// Copies a broken file, unless that was done before; returns both paths.
-fn put_aside(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
-    let aside = aside_of(path);
+fn move_to_backup(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
+    let aside = broken_copy_path(path);
     let is_there = fs::read(path).is_ok_and(|broken| fs::read(&aside).is_ok_and(|before| before == broken));
     if is_there {
         return Ok(None);

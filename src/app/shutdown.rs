@@ -109,7 +109,7 @@ impl Services {
         info: ClosingSessionInfo,
         turn: Option<Sender<()>>,
     ) {
-        let (watched, patience) = (ending.clone(), self.patience_with(info.write.is_some()));
+        let (watched, patience) = (ending.clone(), self.closing_timeout(info.write.is_some()));
         self.tasks.run("leave", move || {
             watched.wait(patience);
             drop(turn);
@@ -138,7 +138,7 @@ impl Services {
             !ended
         });
         for (session, about, last) in endings {
-            self.job_ends(session, last.job, last.end);
+            self.end_job(session, last.job, last.end);
             self.notify(last.severity, last.texts, Some(&about));
         }
     }
@@ -149,12 +149,12 @@ impl Services {
     }
 
     /// Returns the sessions that are ending on the wire of a link, with the time allowed for each.
-    pub(crate) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn ClosingWorker>, Duration)> {
+    pub(crate) fn closing_workers_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn ClosingWorker>, Duration)> {
         let own = self.closing_sessions.iter().filter(|closing| same_wire(&closing.info.url, url));
-        own.map(|closing| (closing.ending.clone(), self.patience_with(closing.info.write.is_some()))).collect()
+        own.map(|closing| (closing.ending.clone(), self.closing_timeout(closing.info.write.is_some()))).collect()
     }
 
-    fn patience_with(&self, writes: bool) -> Duration {
+    fn closing_timeout(&self, writes: bool) -> Duration {
         if writes { self.world.patience.write } else { self.world.patience.job }
     }
 }

@@ -98,13 +98,13 @@ impl Studio {
             Action::CloseSession(id) => self.close_session(id),
             Action::Stop => self.stop(),
             Action::StopMotion => self.stop_motion(),
-            Action::LetGo => self.let_go_of_jogs(),
+            Action::LetGo => self.release_jogs(),
             Action::Escape => self.escape(),
             Action::Close => self.close(),
             Action::Quit => self.quit(),
             Action::Confirm => self.confirm(),
             Action::Dismiss => self.services.log.dismiss(),
-            Action::Connect(action) => self.act_connect(action),
+            Action::Connect(action) => self.apply_connect_action(action),
             Action::OpenVirtual => {
                 let tab = self.settings.tab;
                 if let Some(link) = self.virtual_link(tab) {
@@ -130,15 +130,15 @@ impl Studio {
             Action::Typed(question, path) => self.typed(question, path),
             Action::Chosen(question, path) => self.chosen(question, path),
             Action::CloseComparison => self.comparison = None,
-            Action::Recorder(owner, action) => self.act_recorder(owner, action),
-            Action::AskForget(owner) => self.ask_forget(owner),
+            Action::Recorder(owner, action) => self.apply_recorder_action(owner, action),
+            Action::AskForget(owner) => self.confirm_discard_recording(owner),
             Action::AskTable { owner, visible } => self.ask_table(owner, visible),
             Action::AskPicture(picture) => self.ask_picture(picture),
-            Action::PictureCut => self.tell_picture_cut(),
+            Action::PictureCut => self.notify_picture_truncated(),
             Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
             Action::Command(id, command) => self.command(id, command),
-            Action::Device(id, action) => self.act_device(id, action),
-            Action::Tool(tab, action) => self.act_tool(tab, action),
+            Action::Device(id, action) => self.apply_device_action(id, action),
+            Action::Tool(tab, action) => self.apply_tool_action(tab, action),
             Action::Done(done) => self.done(done),
             Action::NoThread(why) => {
                 self.devices.iter_mut().for_each(|device| device.save_waits());
@@ -227,7 +227,7 @@ impl Studio {
 
     /// Returns the link to the virtual device of a tab, or `None` for a tool.
     fn virtual_link(&self, tab: Tab) -> Option<LinkUrl> {
-        Some(self.services.world.kinds.of_tab(tab)?.virtual_link())
+        Some(self.services.world.kinds.kind_for_tab(tab)?.virtual_link())
     }
 
     /// Shows a tab. If its kind creates profiles without a device and none is open, a new profile is created.
@@ -240,7 +240,7 @@ impl Studio {
 
     /// Creates an unsaved profile, if the kind supports that.
     fn new_profile(&mut self, tab: Tab) {
-        let Some(kind) = self.services.world.kinds.of_tab(tab) else { return };
+        let Some(kind) = self.services.world.kinds.kind_for_tab(tab) else { return };
         let taken: Vec<PathBuf> = self.devices.iter().filter_map(|device| device.source().suggested()).collect();
         let id = self.new_id();
         let is_taken = |name: &Path| taken.iter().any(|own| own == name);
@@ -308,7 +308,7 @@ impl Studio {
     fn done(&mut self, done: Done) {
         match done {
             Done::Opened(attempt) => self.opened(attempt),
-            Done::Device(id, done) => self.device_done(id, done),
+            Done::Device(id, done) => self.finish_device_action(id, done),
             Done::Finder(tab, done) => self.finder_done(tab, done),
             Done::Shared(with) => with(&mut self.services, &mut self.devices),
             Done::Ports(ports) => {
@@ -325,28 +325,28 @@ impl Studio {
                 self.question = Some(Question::before(text, confirm, Then::Write(question, path)));
             }
             Done::Looked { question, path, exists: false } => self.chosen(question, path),
-            Done::TableWritten(owner, exported) => self.table_written(owner, exported),
-            Done::PictureSaved(path, result) => self.picture_saved(&path, result),
+            Done::TableWritten(owner, exported) => self.finish_table_export(owner, exported),
+            Done::PictureSaved(path, result) => self.finish_picture_save(&path, result),
             Done::ReportSaved(path, result) => self.report_saved(&path, result),
             // It has been handled by polling.
             Done::Left => {}
             Done::Written { saving, file, result } => self.with_device(saving.session, |device, services| {
                 device.written(*saving, file, result, services);
             }),
-            Done::Diverged(diverged) => self.has_diverged(*diverged),
+            Done::Diverged(diverged) => self.show_divergence(*diverged),
             Done::WouldLose(saving, lost) => self.ask_to_lose(*saving, &lost),
             Done::SettingsRead(read) => self.settings_store.take(read, &mut self.settings, &mut self.services),
             Done::SettingsKept(result) => {
-                self.settings_store.write_done(result, &mut self.settings, &mut self.services)
+                self.settings_store.finish_write(result, &mut self.settings, &mut self.services)
             }
-            Done::SettingsSeen(Ok(found)) => self.settings_read(found.map(|found| *found)),
+            Done::SettingsSeen(Ok(found)) => self.apply_read_settings(found.map(|found| *found)),
             Done::SettingsSeen(Err(error)) => self.settings_unread(&error),
             Done::Draft(id, done) => self.draft_done(id, done),
             Done::Listed(id, of, listed) => self.with_device(id, |device, _| device.listed(&of, *listed)),
             Done::Backup { session, of, path, result } => {
                 self.with_device(session, |device, services| device.take_backup(&of, &path, result, services));
             }
-            Done::Tool(tab, done) => self.tool_done(tab, done),
+            Done::Tool(tab, done) => self.finish_tool_action(tab, done),
         }
     }
 

@@ -120,20 +120,20 @@ impl Studio {
         self.tools.iter().find_map(|(_, tool)| tool.get())
     }
 
-    pub(super) fn act_tool(&mut self, tab: Tab, action: Payload) {
-        let Some(at) = self.tools.iter().position(|(own, _)| *own == tab) else { return self.refuse_kind(None) };
+    pub(super) fn apply_tool_action(&mut self, tab: Tab, action: Payload) {
+        let Some(at) = self.tools.iter().position(|(own, _)| *own == tab) else { return self.notify_wrong_kind(None) };
         let (_, mut tool) = self.tools.remove(at);
         let done = tool.act(action, &mut ToolContext { tab, studio: self });
         self.tools.insert(at, (tab, tool));
         if done.is_err() {
-            self.refuse_kind(None);
+            self.notify_wrong_kind(None);
         }
     }
 
-    pub(super) fn tool_done(&mut self, tab: Tab, done: Payload) {
+    pub(super) fn finish_tool_action(&mut self, tab: Tab, done: Payload) {
         let tool = self.tools.iter_mut().find(|(own, _)| *own == tab);
         if tool.is_none_or(|(_, tool)| tool.done(done, &mut self.services).is_err()) {
-            self.refuse_kind(None);
+            self.notify_wrong_kind(None);
         }
     }
 

@@ -235,10 +235,10 @@ impl<W: Watchable> Track<W> {
         // A recording that was cleared has no ended lines.
         kept.retain(|own| self.recorder.line(own.line).is_some());
         self.watched = kept;
-        watched.iter().for_each(|what| self.begin_to_watch(what));
+        watched.iter().for_each(|what| self.begin_watching(what));
     }
 
-    fn begin_to_watch(&mut self, what: &W) {
+    fn begin_watching(&mut self, what: &W) {
         let Some(own) = self.watched.iter_mut().find(|own| own.value.continues(what)) else {
             let kind = if what.is_whole() { Kind::Whole } else { Kind::Real };
             let group = self.recorder.add_group(&[kind], WATCHED, Some(WATCHED_APART));

@@ -49,7 +49,7 @@ fn word(verdict: Verdict) -> &'static str {
 }
 
 fn line_quality(quality: &LineQuality) -> Json {
-    let milliseconds = |percent| quality.answered_within(percent).map(|time| time.as_secs_f64() * 1e3);
+    let milliseconds = |percent| quality.answer_time_percentile(percent).map(|time| time.as_secs_f64() * 1e3);
     json!({
         "requests": quality.requests,
         "replies": quality.replies,

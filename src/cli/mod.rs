@@ -75,7 +75,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands
     let arguments = match args::parse_arguments(words, commands) {
         Ok(arguments) => arguments,
         Err(error) => {
-            output::say_usage(&error);
+            output::print_usage_error(&error);
             return Invocation::Command(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };

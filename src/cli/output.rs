@@ -83,7 +83,7 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
 }
 
 /// Prints help unchanged, and an argument error in at most four lines, the last of which is the usage.
-pub(super) fn say_usage(error: &clap::Error) {
+pub(super) fn print_usage_error(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {
         // If help cannot be printed, that cannot be reported either.

@@ -318,14 +318,14 @@ mod terminal {
     fn wait_for_client(master: &mut TTYPort, ended: &AtomicBool) {
         while !ended.load(Ordering::SeqCst) {
             match master.bytes_to_read() {
-                Ok(0) if hung_up(master) => std::thread::sleep(PATIENCE / 4),
+                Ok(0) if has_hung_up(master) => std::thread::sleep(PATIENCE / 4),
                 _ => return,
             }
         }
     }
 
     /// Returns whether no client has opened the other end.
-    fn hung_up(master: &mut TTYPort) -> bool {
+    fn has_hung_up(master: &mut TTYPort) -> bool {
         let _ = master.set_timeout(Duration::ZERO);
         matches!(Read::read(master, &mut []), Err(error) if error.kind() != ErrorKind::TimedOut)
     }

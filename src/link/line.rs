@@ -41,7 +41,7 @@ pub(crate) enum LineError {
 
 impl LineError {
     /// Converts the line error to the error type of the device on that line.
-    pub(crate) fn at_device<E>(self, cancelled: E, never_silent: E, link: fn(LinkError) -> E) -> E {
+    pub(crate) fn into_device_error<E>(self, cancelled: E, never_silent: E, link: fn(LinkError) -> E) -> E {
         match self {
             LineError::Cancelled => cancelled,
             LineError::NeverSilent => never_silent,
@@ -113,7 +113,7 @@ impl<'a> SerialLine<'a> {
             self.ctx.wire.receive(slice, &mut heard)?;
             heard.truncate(MOST_KEPT);
         }
-        self.show_hidden(end, heard.len());
+        self.trace_hidden_bytes(end, heard.len());
         Ok(heard)
     }
 
@@ -139,7 +139,7 @@ impl<'a> SerialLine<'a> {
             if stray.is_empty() {
                 return Ok(());
             }
-            self.show_hidden(self.now(), stray.len());
+            self.trace_hidden_bytes(self.now(), stray.len());
             self.pass(&stray);
             stray.clear();
             self.wait_for_silence(state, quiet)?;
@@ -190,7 +190,7 @@ impl<'a> SerialLine<'a> {
         self.ctx.trace.record(at, Direction::Received, shown);
     }
 
-    fn show_hidden(&mut self, at: Moment, count: usize) {
+    fn trace_hidden_bytes(&mut self, at: Moment, count: usize) {
         self.show(at, MaskedBytes::hidden(count));
     }
 
@@ -230,9 +230,9 @@ impl<'a> SerialLine<'a> {
             let slice = (self.now() + SLICE).min(end);
             self.ctx.wire.receive(slice, &mut late)?;
         }
-        self.show_hidden(self.now(), late.len());
+        self.trace_hidden_bytes(self.now(), late.len());
         self.pass(&late);
-        self.let_late_ones_pass(state, quiet)
+        self.discard_late_answers(state, quiet)
     }
 
     /// Skips late bytes, since every unanswered request may still get a reply. The first late byte shows the maximum
@@ -240,7 +240,7 @@ impl<'a> SerialLine<'a> {
     ///
     /// # Errors
     /// See [`LineError`].
-    pub(crate) fn let_late_ones_pass(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
+    pub(crate) fn discard_late_answers(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         let now = self.now();
         let lateness = now.since(state.outstanding_since.unwrap_or(now)).min(LONGEST_MARGIN);
         let passed = state.last_sent + lateness + state.margin;
@@ -251,7 +251,7 @@ impl<'a> SerialLine<'a> {
             self.pass(&late);
         }
         self.wait_for_silence(state, quiet)?;
-        state.allow_for(lateness);
+        state.extend_allowance(lateness);
         Ok(())
     }
 

@@ -123,7 +123,7 @@ impl Packets {
                     // A closed port of the target is reported here; it may be opened again.
                     Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
                     // This may repeat without limit, so other threads are given time to run.
-                    Err(error) if is_passing(&error) => std::thread::sleep(Duration::from_millis(1)),
+                    Err(error) if is_transient(&error) => std::thread::sleep(Duration::from_millis(1)),
                     Err(_) => return,
                 }
             }
@@ -134,7 +134,7 @@ impl Packets {
     }
 }
 
-fn is_passing(error: &io::Error) -> bool {
+fn is_transient(error: &io::Error) -> bool {
     use ErrorKind::{ConnectionRefused, ConnectionReset, Interrupted, TimedOut, WouldBlock};
     matches!(error.kind(), WouldBlock | TimedOut | Interrupted | ConnectionRefused | ConnectionReset)
 }
@@ -158,7 +158,7 @@ impl Datagrams for Packets {
         match self.socket.send_to(packet, self.target) {
             Ok(_) => Ok(()),
             // The error belongs to an earlier packet.
-            Err(error) if is_passing(&error) => Ok(()),
+            Err(error) if is_transient(&error) => Ok(()),
             Err(error) => Err(LinkError::during_use(&self.name, &error)),
         }
     }
@@ -189,7 +189,7 @@ impl UdpBroadcast {
     /// The system has no free socket.
     pub fn to_all(port: u16, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let mut networks = vec![Ipv4Addr::BROADCAST];
-        networks.extend(networks_of_ours());
+        networks.extend(local_networks());
         networks.dedup();
         Self::to(networks.into_iter().map(|address| SocketAddrV4::new(address, port)).collect(), clock)
     }
@@ -215,7 +215,7 @@ impl UdpBroadcast {
 }
 
 /// Returns the broadcast addresses of the directly connected networks, if the system lists them.
-fn networks_of_ours() -> Vec<Ipv4Addr> {
+fn local_networks() -> Vec<Ipv4Addr> {
     std::fs::read_to_string("/proc/net/route").map(|table| broadcasts(&table)).unwrap_or_default()
 }
 
@@ -266,7 +266,7 @@ impl Broadcast for UdpBroadcast {
                     return Ok(Some(*from.ip()));
                 }
                 Ok(_) => {}
-                Err(error) if is_passing(&error) => {}
+                Err(error) if is_transient(&error) => {}
                 Err(error) => return Err(Self::fail(&self.to, &error)),
             }
         }

@@ -75,7 +75,7 @@ impl Document {
             return Err(ProfileError::Schema { found: schema, known: SCHEMA });
         }
         if schema > SCHEMA {
-            reading.set_newer(schema);
+            reading.set_newer_schema(schema);
         }
         let device: String = entries.required("device", Expected::Text)?;
         let saved = entries.optional("saved", Expected::Text)?;

@@ -33,7 +33,7 @@ impl Misspelling {
 
 impl Reading {
     /// Notes that the file uses the given newer schema.
-    pub(super) fn set_newer(&self, schema: u32) {
+    pub(super) fn set_newer_schema(&self, schema: u32) {
         self.newer.set(Some(schema));
     }
 
@@ -52,7 +52,7 @@ impl Reading {
     }
 
     /// Records a misspelt name where reading ended early. The innermost structure takes precedence.
-    pub(super) fn is_misspelt(&self, slip: Misspelling) {
+    pub(super) fn record_misspelling(&self, slip: Misspelling) {
         self.slip.borrow_mut().get_or_insert(slip);
     }
 
@@ -75,7 +75,7 @@ impl Reading {
 
 /// Returns how many letters differ between a name and the intended one if that looks like a typing error: only a few
 /// letters differ, or one name is a prefix of the other. Case, hyphens and underscores are ignored.
-pub(super) fn letters_apart(name: &str, intended: &str) -> Option<usize> {
+pub(super) fn edit_distance(name: &str, intended: &str) -> Option<usize> {
     let plain = |text: &str| -> Vec<char> {
         text.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()
     };
@@ -129,8 +129,8 @@ mod tests {
             ("multiturn_bits", "singleturn_bits", None),
         ];
         for (name, meant, letters) in cases {
-            assert_eq!(letters_apart(name, meant), letters, "{name} {meant}");
-            assert_eq!(letters_apart(meant, name), letters, "{meant} {name}");
+            assert_eq!(edit_distance(name, meant), letters, "{name} {meant}");
+            assert_eq!(edit_distance(meant, name), letters, "{meant} {name}");
         }
     }
 }

@@ -9,7 +9,7 @@ use ron::Value;
 use serde::de::DeserializeOwned;
 
 use super::ProfileError;
-use super::misspelt::{Misspelling, Reading, letters_apart};
+use super::misspelt::{Misspelling, Reading, edit_distance};
 use crate::bits::{HexError, parse_hex};
 use crate::expected::Expected;
 
@@ -66,7 +66,7 @@ impl Entries {
         let left = self.entries.keys().filter(|name| *name != EXTRA);
         let pairs = left.flat_map(|name| self.missed.iter().map(move |intended| (name, intended)));
         let slips = pairs.filter_map(|(name, intended)| {
-            let letters = letters_apart(name, intended).filter(|letters| *letters <= most)?;
+            let letters = edit_distance(name, intended).filter(|letters| *letters <= most)?;
             Some(Misspelling { letters, path: self.path_of(name), intended: intended.clone() })
         });
         slips.min()
@@ -166,7 +166,7 @@ impl Entries {
     pub fn rest(mut self) -> Result<Unknown, ProfileError> {
         let left = std::mem::take(&mut self.entries);
         if self.reading.is_newer() {
-            self.tell_beyond(&left);
+            self.report_unknown(&left);
             return Ok(left);
         }
         self.entries = left;
@@ -178,7 +178,7 @@ impl Entries {
             None => Unknown::new(),
             Some(value) => std::mem::take(&mut Entries::open(&self.path_of(EXTRA), value, &self.reading)?.entries),
         };
-        self.tell_beyond(&left);
+        self.report_unknown(&left);
         for (name, value) in left {
             own.entry(name).or_insert(value);
         }
@@ -190,7 +190,7 @@ impl Entries {
         self.reading.is_beyond(path);
     }
 
-    fn tell_beyond(&self, left: &Unknown) {
+    fn report_unknown(&self, left: &Unknown) {
         left.keys().for_each(|name| self.reading.is_beyond(self.path_of(name)));
     }
 }
@@ -199,7 +199,7 @@ impl Drop for Entries {
     /// Looks for a misspelt name if reading ended before all names were requested.
     fn drop(&mut self) {
         if let Some(slip) = self.misspelt(2) {
-            self.reading.is_misspelt(slip);
+            self.reading.record_misspelling(slip);
         }
     }
 }

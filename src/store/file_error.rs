@@ -100,7 +100,7 @@ impl FileProblem {
     }
 
     /// Returns the problem with creating a new file, in which case the file itself cannot be what is missing.
-    pub(super) fn while_making(error: io::Error) -> Self {
+    pub(super) fn while_creating(error: io::Error) -> Self {
         match error.into() {
             FileProblem::NotFound => FileProblem::NoFolder,
             problem => problem,

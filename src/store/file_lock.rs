@@ -67,7 +67,7 @@ pub fn update_text<T>(
 }
 
 fn wait_for(path: &Path) -> Result<FileLock, FileError> {
-    let beside = lock_of(path);
+    let beside = lock_path(path);
     let began = Instant::now();
     loop {
         // The message names the file that the user knows, not the lock file.
@@ -81,7 +81,7 @@ fn wait_for(path: &Path) -> Result<FileLock, FileError> {
 }
 
 /// Returns the path of the lock file, which is separate because the file itself is replaced by each write.
-fn lock_of(path: &Path) -> PathBuf {
+fn lock_path(path: &Path) -> PathBuf {
     let mut beside = path.to_owned().into_os_string();
     beside.push(".lock");
     PathBuf::from(beside)
@@ -125,8 +125,8 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.ron");
         fs::write(&path, "old").unwrap();
-        let lock = FileLock::try_at(&lock_of(&path)).unwrap();
-        assert!(lock.is_some() && FileLock::try_at(&lock_of(&path)).unwrap().is_none());
+        let lock = FileLock::try_at(&lock_path(&path)).unwrap();
+        assert!(lock.is_some() && FileLock::try_at(&lock_path(&path)).unwrap().is_none());
         let error = update_text(&path, |text| appended(text, "x")).unwrap_err();
         assert_eq!((&error.path, error.problem), (&path, FileProblem::InUse));
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
@@ -138,7 +138,7 @@ mod tests {
     fn a_blocked_lock_names_the_file() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.ron");
-        fs::create_dir_all(lock_of(&path)).unwrap();
+        fs::create_dir_all(lock_path(&path)).unwrap();
         let error = update_text(&path, |text| appended(text, "x")).unwrap_err();
         assert_eq!((error.path, error.problem), (path, FileProblem::IsFolder));
     }

@@ -30,14 +30,14 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if fs::metadata(path).is_ok_and(|target| !target.is_dir() && !target.is_file()) {
         return write_directly(path, content).map_err(|error| FileProblem::from(error).of(FileTask::Write, path));
     }
-    write_by(path, |file| file.write_all(content))
+    write_with(path, |file| file.write_all(content))
 }
 
 /// Writes a text like [`write_atomically`] does, but preserves an existing byte order mark from an editor.
 ///
 /// # Errors
 /// Returns the errors of [`write_atomically`].
-pub fn write_text_over(path: &Path, text: &str) -> Result<(), FileError> {
+pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
     let is_file = fs::metadata(path).is_ok_and(|target| target.is_file());
     let has_mark = is_file && read_at_most(path, 3).is_ok_and(|head| head == MARK.as_bytes());
     let mark = if has_mark && !text.starts_with(MARK) { MARK } else { "" };
@@ -49,7 +49,7 @@ pub fn write_text_over(path: &Path, text: &str) -> Result<(), FileError> {
 ///
 /// # Errors
 /// Returns the errors of [`write_atomically`] and of `write`; a device or a pipe is refused.
-pub fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+pub fn write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
     let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
     let permissions = match fs::metadata(path) {
         Ok(target) if target.is_dir() => return Err(failed(FileProblem::IsFolder)),
@@ -59,10 +59,10 @@ pub fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()
         Ok(target) => Some(target.permissions()),
         Err(_) => None,
     };
-    let target = through_links(path).map_err(|e| failed(e.into()))?;
+    let target = resolve_links(path).map_err(|e| failed(e.into()))?;
     let failed = |problem: FileProblem| problem.of(FileTask::Write, &target);
     let folder = folder_of(&target).map_err(failed)?;
-    let staged = stage(folder, write, permissions).map_err(|e| failed(FileProblem::while_making(e)))?;
+    let staged = stage(folder, write, permissions).map_err(|e| failed(FileProblem::while_creating(e)))?;
     staged.persist(&target).map_err(|e| failed(e.error.into()))?;
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
@@ -76,7 +76,7 @@ pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
     let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
     let folder = folder_of(path).map_err(failed)?;
     let staged =
-        stage(folder, |file| file.write_all(content), None).map_err(|e| failed(FileProblem::while_making(e)))?;
+        stage(folder, |file| file.write_all(content), None).map_err(|e| failed(FileProblem::while_creating(e)))?;
     staged.persist_noclobber(path).map_err(|e| failed(e.error.into()))?;
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
@@ -152,7 +152,7 @@ fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
 }
 
 /// Returns the file at the end of a chain of links; the file need not exist.
-fn through_links(path: &Path) -> io::Result<PathBuf> {
+fn resolve_links(path: &Path) -> io::Result<PathBuf> {
     /// Maximum number of links followed, as in Linux.
     const MOST: usize = 40;
     let mut target = path.to_owned();

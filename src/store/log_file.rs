@@ -47,7 +47,7 @@ impl LogFile {
     /// Returns an error if no thread can be started.
     pub fn begin(path: &Path) -> io::Result<Self> {
         let own = path.to_owned();
-        let log = Self::writing_into(move || Rotating::open(&own, LARGE), QUEUE)?;
+        let log = Self::spawn_writer(move || Rotating::open(&own, LARGE), QUEUE)?;
         let lines = log.clone();
         let layer = fmt::layer().with_writer(move || lines.clone()).with_ansi(false).with_target(false);
         let filter = Targets::new().with_default(Level::WARN).with_target(env!("CARGO_CRATE_NAME"), Level::INFO);
@@ -56,7 +56,7 @@ impl LogFile {
         Ok(log)
     }
 
-    fn writing_into<W: Write>(open: impl FnOnce() -> io::Result<W> + Send + 'static, queue: usize) -> io::Result<Self> {
+    fn spawn_writer<W: Write>(open: impl FnOnce() -> io::Result<W> + Send + 'static, queue: usize) -> io::Result<Self> {
         let (sender, orders) = bounded(queue);
         let dropped = Arc::new(AtomicU64::new(0));
         let counted = dropped.clone();
@@ -170,7 +170,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("data").join("own.log");
         for line in ["one\n", "two\n"] {
-            let log = LogFile::writing_into(
+            let log = LogFile::spawn_writer(
                 {
                     let path = path.clone();
                     move || Rotating::open(&path, LARGE)
@@ -189,7 +189,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("own.log");
         let own = path.clone();
-        let log = LogFile::writing_into(move || Rotating::open(&own, 8), QUEUE).unwrap();
+        let log = LogFile::spawn_writer(move || Rotating::open(&own, 8), QUEUE).unwrap();
         for line in ["one\n", "two\n", "three\n", "four\n"] {
             log.add(line.as_bytes());
         }
@@ -220,7 +220,7 @@ mod tests {
     fn a_hanging_disk_blocks_no_thread_and_lost_lines_are_counted() {
         let (release, lock) = bounded::<()>(0);
         let written = Arc::new(Mutex::new(Vec::new()));
-        let log = LogFile::writing_into(
+        let log = LogFile::spawn_writer(
             {
                 let written = written.clone();
                 move || Ok(Hanging { lock, written })

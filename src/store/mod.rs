@@ -23,7 +23,7 @@ pub use device_files::read_folder;
 pub use drafts::{Claim, Drafts};
 pub use file_error::{FileError, FileProblem, FileTask};
 pub use file_lock::update_text;
-pub use files::{MAX_TEXT, read_file, read_text, write_atomically, write_by, write_in_folder, write_text_over};
+pub use files::{MAX_TEXT, overwrite_text, read_file, read_text, write_atomically, write_in_folder, write_with};
 pub use folders::Folders;
 pub use log_file::LogFile;
 pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, LogbookProblem, Outcome, StatusEntry};

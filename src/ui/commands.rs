@@ -56,7 +56,7 @@ pub(super) fn with_keys(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Co
     let mut commands = of_program(theme, studio, views);
     if let Some(device) = studio.selected_device().filter(|device| device.tab() == studio.settings.tab) {
         let has_undo_keys = views.tabs.device(device.tab()).is_some_and(DeviceView::has_undo_keys);
-        let of_device = of_every_device(theme, device, views).into_iter();
+        let of_device = common_device_commands(theme, device, views).into_iter();
         commands.extend(of_device.filter(|command| has_undo_keys || !command.yields_to_typing));
     }
     commands.retain(|command| command.shortcut.is_some());
@@ -67,7 +67,7 @@ pub(super) fn with_keys(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Co
 pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = Vec::new();
     if let Some(device) = studio.selected_device() {
-        commands.extend(of_every_device(theme, device, views));
+        commands.extend(common_device_commands(theme, device, views));
         if let Some(view) = views.tabs.device(device.tab()) {
             let own = view.named_actions(theme, device).into_iter();
             commands.extend(own.map(|NamedAction { name, is_enabled, action }| Command {
@@ -125,7 +125,7 @@ fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     commands
 }
 
-fn of_every_device(theme: &Theme, device: &AnyDevice, views: &Views) -> Vec<Command> {
+fn common_device_commands(theme: &Theme, device: &AnyDevice, views: &Views) -> Vec<Command> {
     let act = |word: &'static str, action| Command::new(device.name(), theme.say(word), Effect::Act(action));
     let ask = |word: &'static str, command| act(word, device.command(command));
     let is_offline = *device.phase() == Phase::Offline;
@@ -142,9 +142,12 @@ fn of_every_device(theme: &Theme, device: &AnyDevice, views: &Views) -> Vec<Comm
         ask("profile_card.save_as", DeviceCommand::AskSave).by(COMMAND_SHIFT, Key::S).only_if(device.is_savable()),
         ask("shell.restore", DeviceCommand::AskRestore).only_if(device.is_ready() && device.has_memory()),
         ask("shell.compare", DeviceCommand::AskCompare).only_if(device.is_comparable()),
-        ask("memory.undo", DeviceCommand::Undo).by(COMMAND, Key::Z).beside_text().only_if(device.can_undo()),
-        ask("memory.redo", DeviceCommand::Redo).by(COMMAND_SHIFT, Key::Z).beside_text().only_if(device.can_redo()),
-        ask("memory.redo", DeviceCommand::Redo).by(COMMAND, Key::Y).beside_text().only_if(device.can_redo()),
+        ask("memory.undo", DeviceCommand::Undo).by(COMMAND, Key::Z).disable_while_typing().only_if(device.can_undo()),
+        ask("memory.redo", DeviceCommand::Redo)
+            .by(COMMAND_SHIFT, Key::Z)
+            .disable_while_typing()
+            .only_if(device.can_redo()),
+        ask("memory.redo", DeviceCommand::Redo).by(COMMAND, Key::Y).disable_while_typing().only_if(device.can_redo()),
         ask("memory.revert", DeviceCommand::RevertAll).only_if(device.is_dirty()),
         ask("live.once", DeviceCommand::ReadPosition).only_if(device.is_ready()),
         live,
@@ -192,7 +195,7 @@ impl Command {
         Command { shortcut: Some(KeyboardShortcut::new(modifiers, key)), ..self }
     }
 
-    fn beside_text(self) -> Self {
+    fn disable_while_typing(self) -> Self {
         Command { yields_to_typing: true, ..self }
     }
 

@@ -5,7 +5,7 @@ use egui::Ui;
 use super::controls::{icon_button, name};
 use super::device_view::PageInfo;
 use super::docks::Docks;
-use super::views::shown_in;
+use super::views::device_in_tab;
 use super::{Theme, Views, icons};
 use crate::app::{Action, Studio};
 
@@ -22,7 +22,7 @@ pub(super) fn navigation_ui(
         let word = views.tabs.title(theme, tab);
         let text = egui::RichText::new(&word).font(theme.strong(theme.sizes.body));
         if entry(ui, false, text, &word).clicked() {
-            views.plot.make_small();
+            views.plot.restore_size();
             actions.push(Action::ShowTab(tab));
         }
         if tab == studio.settings.tab {
@@ -45,13 +45,13 @@ fn open_pages(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
         let pressed = pages_ui(ui, theme, &pages, tool.page(), |_| false);
         pressed.inspect(|page| tool.open(*page))
     } else {
-        let Some(device) = shown_in(studio, tab) else { return };
+        let Some(device) = device_in_tab(studio, tab) else { return };
         let Some(session) = views.session(device) else { return };
         let pressed = pages_ui(ui, theme, &pages, session.page(), |page| session.is_edited(device, page));
         pressed.inspect(|page| session.open(*page))
     };
     if pressed.is_some() {
-        views.plot.make_small();
+        views.plot.restore_size();
     }
 }
 

@@ -6,7 +6,7 @@ use egui::{Align, Color32, Layout, Panel, RichText, Sense, TextStyle, Ui, UiBuil
 
 use super::controls::{button, enabled_button, icon_button, severity, spinner};
 use super::page::apart;
-use super::views::shown_in;
+use super::views::device_in_tab;
 use super::{Theme, Views, icons};
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand, Notice, Studio, TraceFault, TraceLine, TraceLog, connect};
@@ -64,7 +64,7 @@ fn chevron(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action
 /// Draws the line from the right, so that buttons stay in position however long the text is.
 fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let notice = studio.services.log.standing();
-    let device = shown_in(studio, studio.settings.tab);
+    let device = device_in_tab(studio, studio.settings.tab);
     apart(ui, "dismiss", |ui| match notice {
         Some(_) => {
             if icon_button(ui, true, icons::X, &theme.say("shell.dismiss")).clicked() {
@@ -87,7 +87,7 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
                 }
             });
         } else if let Some((device, _)) = lost {
-            ways_back(ui, theme, device, actions);
+            reconnect_buttons(ui, theme, device, actions);
         }
     });
     ui.with_layout(Layout::left_to_right(Align::Center), |ui| match (notice, lost) {
@@ -119,7 +119,7 @@ fn lost_of(device: &AnyDevice) -> Option<(&AnyDevice, &crate::app::Text)> {
 }
 
 /// Draws the buttons for reconnecting, last one first.
-fn ways_back(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
+fn reconnect_buttons(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
         actions.push(Action::Connect(connect::ConnectAction::Open));
     }
@@ -161,7 +161,7 @@ fn message(ui: &mut Ui, theme: &Theme, words: String, colour: Color32) {
 
 /// Draws the last frame of the displayed device, or the last message if newer.
 fn latest(ui: &mut Ui, theme: &Theme, studio: &Studio) {
-    let frame = studio.selected_device().and_then(|device| Some((device.trace(), last_of(device.trace())?)));
+    let frame = studio.selected_device().and_then(|device| Some((device.trace(), last_frame_line(device.trace())?)));
     let frame = frame.and_then(|(trace, line)| Some((trace.time_of(line)?, line)));
     let message = studio.services.log.notices().next_back();
     match (frame, message) {
@@ -184,7 +184,7 @@ fn latest(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 
 /// Returns the last reply if it is one of the last two frames, so that the line does not flicker between requests and
 /// replies; otherwise the last frame.
-fn last_of(trace: &TraceLog) -> Option<&TraceLine> {
+fn last_frame_line(trace: &TraceLog) -> Option<&TraceLine> {
     let mut newest = trace.lines().iter().rev().take(2);
     let is_reply = |line: &&TraceLine| line.direction == Direction::Received;
     newest.find(is_reply).or_else(|| trace.lines().back())

@@ -55,7 +55,7 @@ impl Views {
     /// Returns the open page of the open tab; for a device tab without an open device, its first page.
     pub(super) fn page(&mut self, studio: &Studio) -> Option<PageInfo> {
         let tab = studio.settings.tab;
-        let page = match (self.tool(tab), shown_in(studio, tab)) {
+        let page = match (self.tool(tab), device_in_tab(studio, tab)) {
             (Some(tool), _) => tool.page(),
             (None, Some(device)) => self.session(device)?.page(),
             (None, None) => 0,
@@ -69,6 +69,6 @@ impl Views {
 }
 
 /// Returns the device shown by a tab, if that tab is open.
-pub(super) fn shown_in(studio: &Studio, tab: Tab) -> Option<&AnyDevice> {
+pub(super) fn device_in_tab(studio: &Studio, tab: Tab) -> Option<&AnyDevice> {
     studio.selected_device().filter(|device| device.tab() == tab)
 }

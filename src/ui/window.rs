@@ -176,7 +176,7 @@ impl Window {
     /// Handles closing even if nothing is drawn, since a minimised window must still be closed. This never keeps a
     /// motion going.
     pub fn logic(&mut self, ctx: &egui::Context) {
-        self.hear_close(ctx);
+        self.handle_close_request(ctx);
         // Drawing must know about it in this frame.
         self.close_heard = true;
         // The jog buttons of a minimised window are in no frame.
@@ -198,7 +198,7 @@ impl Window {
     }
 
     /// Handles the request to close the window: motion is stopped first, then any questions are asked.
-    fn hear_close(&mut self, ctx: &egui::Context) {
+    fn handle_close_request(&mut self, ctx: &egui::Context) {
         let (asked, minimised) = ctx.input(|input| {
             let viewport = input.raw.viewport();
             (viewport.close_requested(), viewport.minimized == Some(true))
@@ -216,7 +216,7 @@ impl Window {
 
     fn take_input(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
         if !std::mem::take(&mut self.close_heard) {
-            self.hear_close(ctx);
+            self.handle_close_request(ctx);
         }
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         actions.extend(dropped.iter().map(|file| Action::Open(file.path().to_owned())));
@@ -261,21 +261,21 @@ impl Window {
         match effect {
             Effect::Act(action) => {
                 if matches!(action, Action::ShowTab(_)) {
-                    views.plot.make_small();
+                    views.plot.restore_size();
                 }
                 actions.push(action);
             }
             Effect::Page(session, page) => {
                 if let Some(view) = studio.device(session).and_then(|device| views.session(device)) {
                     view.open(page);
-                    views.plot.make_small();
+                    views.plot.restore_size();
                     actions.push(Action::Select(session));
                 }
             }
             Effect::ToolPage(tab, page) => {
                 if let Some(tool) = views.tool(tab) {
                     tool.open(page);
-                    views.plot.make_small();
+                    views.plot.restore_size();
                     actions.push(Action::ShowTab(tab));
                 }
             }
@@ -328,7 +328,7 @@ impl Window {
                 || views.file.take().is_some()
                 || std::mem::take(&mut views.about)
                 || std::mem::take(&mut views.help)
-                || views.plot.make_small())
+                || views.plot.restore_size())
         {
             return;
         }

@@ -6,7 +6,7 @@ use super::controls::{button, empty};
 use super::device_view::DeviceView;
 use super::page::apart;
 use super::panels::plot_ui;
-use super::views::shown_in;
+use super::views::device_in_tab;
 use super::{Theme, Views, icons};
 use crate::app::{Action, Studio, connect};
 
@@ -23,7 +23,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
         tool.page_ui(ui, theme, studio, actions);
         return;
     }
-    let Some(device) = shown_in(studio, tab) else {
+    let Some(device) = device_in_tab(studio, tab) else {
         return nothing(ui, theme, views.tabs.device(tab), actions);
     };
     let Some(session) = views.session(device) else { return };

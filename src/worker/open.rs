@@ -77,7 +77,7 @@ pub fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<
 }
 
 /// Creates the error for links that do not lead to a device; `known` lists those that do.
-pub fn leads_elsewhere(scheme: Scheme, known: &'static str) -> OpenError {
+pub fn wrong_target_error(scheme: Scheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.word(), known }.into()
 }
 

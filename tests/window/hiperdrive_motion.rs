@@ -191,7 +191,7 @@ fn a_move_arrives_and_a_target_beyond_the_limits_is_refused() {
         "it arrives",
         |studio| {
             let own = studio.hiperdrive().unwrap();
-            own.running_or_last(ONE).is_some_and(|said| said.words.id() == "hd_end.arrived")
+            own.current_or_last_request(ONE).is_some_and(|said| said.words.id() == "hd_end.arrived")
         },
     );
     assert_eq!(unit(&desk).actual(ONE).unwrap().position, 4096);

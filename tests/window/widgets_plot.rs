@@ -122,7 +122,7 @@ fn cursors_are_shown_dragged_and_read() {
     screen.click("recorder.fit");
     switch_cursors(&mut screen);
     let a = recorder(&screen).cursor(Cursor::A).unwrap();
-    assert!(recorder(&screen).between_cursors().unwrap() > 0);
+    assert!(recorder(&screen).cursor_distance().unwrap() > 0);
     let (mut from, to) = (inside(&screen, 0.0, 0.5), inside(&screen, 0.9, 0.5));
     // The first third of the visible part; the gutter's width is not known here, so it is searched for.
     let mut moved = false;
@@ -139,7 +139,7 @@ fn cursors_are_shown_dragged_and_read() {
     assert!(recorder(&screen).cursor(Cursor::A).unwrap() > a);
     assert!(screen.shows("Δt"));
     switch_cursors(&mut screen);
-    assert_eq!(recorder(&screen).between_cursors(), None);
+    assert_eq!(recorder(&screen).cursor_distance(), None);
 }
 
 #[test]

@@ -127,7 +127,7 @@ impl Import {
         }
         // End of the input: a row without a line end stops at this point and may be truncated.
         if let Err(error) = self.step(&[]) {
-            self.leave_out(self.reader.line(), error);
+            self.skip_row(self.reader.line(), error);
         }
         let (taken, left_out) = (self.capture.sine_v.len() as u64, self.capture.left_out);
         match self.first_left_out {
@@ -148,7 +148,7 @@ impl Import {
         CaptureError::OpenQuote { row: self.reader.line().saturating_sub(self.lines_in_row() as u64) }
     }
 
-    fn leave_out(&mut self, row: u64, why: CaptureError) {
+    fn skip_row(&mut self, row: u64, why: CaptureError) {
         self.capture.left_out += 1;
         self.first_left_out.get_or_insert((row, why));
     }
@@ -177,7 +177,7 @@ impl Import {
                 if line >= self.layout.first_row
                     && let Some(missing) = self.taken.take(&self.row, ends, line, &mut self.capture)?
                 {
-                    self.leave_out(line, missing);
+                    self.skip_row(line, missing);
                 }
                 (self.written, self.ended) = (0, 0);
             }
@@ -307,7 +307,7 @@ const NO_VALUE: std::ops::RangeInclusive<f64> = 9.9e37..=9.91e37;
 pub(super) fn number(field: &[u8], comma: bool) -> Number {
     let field = field.strip_prefix(b"+").filter(|rest| rest.first() != Some(&b'-')).unwrap_or(field);
     let parsed = match field.iter().position(|byte| *byte == b',') {
-        Some(at) if comma => with_point(field, at),
+        Some(at) if comma => parse_with_decimal_comma(field, at),
         _ => fast_float2::parse::<f64, _>(field).ok(),
     };
     match parsed {
@@ -317,7 +317,7 @@ pub(super) fn number(field: &[u8], comma: bool) -> Number {
     }
 }
 
-fn with_point(field: &[u8], comma: usize) -> Option<f64> {
+fn parse_with_decimal_comma(field: &[u8], comma: usize) -> Option<f64> {
     /// Maximum length of a number, more than the digits of a double with sign and exponent.
     const LONGEST: usize = 64;
     let mut copy = [0; LONGEST];

@@ -95,7 +95,7 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
             let by_shape = [harmonics.map(|(_, share)| share), modulation].into_iter().flatten();
             let explained = by_lines + by_shape.map(|share| share * share / 2.0).sum::<f64>();
             diagnosis.explained = explained >= EXPLAINED * analysis.coverage.residual_rms.powi(2);
-            diagnosis.leave_out_explained();
+            diagnosis.remove_explained_findings();
             diagnosis.residual = Some(analysis.coverage.residual_rms);
             diagnosis.amplitude_v = Some(amplitude);
             diagnosis.noise_v = Some(noise_v);
@@ -112,7 +112,7 @@ impl Diagnosis {
     /// Returns the diagnosis under other limits, without the samples. Findings that depend on limits are judged again
     /// from the analysis and the mean levels of REFSIN and REFCOS in volts.
     #[must_use]
-    pub fn by_limits(
+    pub fn from_limits(
         &self,
         analysis: Result<&Analysis, &AnalysisError>,
         levels_v: Option<(f64, f64)>,
@@ -134,12 +134,12 @@ impl Diagnosis {
         if let Ok(analysis) = analysis {
             parameters(analysis, limits, &mut say);
         }
-        diagnosis.leave_out_explained();
+        diagnosis.remove_explained_findings();
         diagnosis.findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
         diagnosis
     }
 
-    fn leave_out_explained(&mut self) {
+    fn remove_explained_findings(&mut self) {
         if self.explained {
             self.findings.retain(|finding| !matches!(finding.kind, FindingKind::Limit(OutOfLimits::Residual(_))));
         }

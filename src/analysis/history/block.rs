@@ -190,7 +190,7 @@ impl<T: Number> Block<T> {
         }
         let mut at = range.start;
         while at < range.end {
-            match self.nothing_from(at, range.end) {
+            match self.next_gap(at, range.end) {
                 0 => return Some(at),
                 skipped => at += skipped,
             }
@@ -207,7 +207,7 @@ impl<T: Number> Block<T> {
         }
         let mut end = range.end;
         while end > range.start {
-            match self.nothing_before(end, range.start) {
+            match self.previous_gap(end, range.start) {
                 0 => return end.checked_sub(1),
                 skipped => end -= skipped,
             }
@@ -303,7 +303,7 @@ impl<T: Number> Block<T> {
 
     /// Returns the length of a run of samples without a value, from `at` and within `end`, as far as a single check
     /// reveals.
-    fn nothing_from(&self, at: usize, end: usize) -> usize {
+    fn next_gap(&self, at: usize, end: usize) -> usize {
         let empty = |level: &&Level| {
             let inside = at.is_multiple_of(level.size) && at + level.size <= end;
             inside && self.bucket(**level, at).is_some_and(Bucket::is_empty)
@@ -313,7 +313,7 @@ impl<T: Number> Block<T> {
 
     /// Returns the length of a run of samples without a value that ends before `end`, within `start`, as far as a
     /// single check reveals.
-    fn nothing_before(&self, end: usize, start: usize) -> usize {
+    fn previous_gap(&self, end: usize, start: usize) -> usize {
         let empty = |level: &&Level| {
             let inside = end.is_multiple_of(level.size) && start + level.size <= end;
             inside && self.bucket(**level, end - level.size).is_some_and(Bucket::is_empty)

@@ -9,11 +9,11 @@ use crate::app::tab::Tab;
 use crate::app::{FileQuestion, Text};
 
 impl Studio {
-    pub(in crate::app) fn act_connect(&mut self, action: ConnectAction) {
+    pub(in crate::app) fn apply_connect_action(&mut self, action: ConnectAction) {
         match action {
             ConnectAction::Open => {
                 let kinds = self.services.world.kinds;
-                let tab = Some(self.settings.tab).filter(|tab| kinds.of_tab(*tab).is_some());
+                let tab = Some(self.settings.tab).filter(|tab| kinds.kind_for_tab(*tab).is_some());
                 let shown = || self.selected_device().map(|device| device.tab());
                 let device = tab.or_else(shown).unwrap_or_else(|| kinds.first_tab());
                 // The last used target comes first.
@@ -72,17 +72,17 @@ impl Studio {
         let Some(connect) = &mut self.connect else { return };
         let form = connect.forms_mut().find(|form| form.is_of_form(&entries));
         if form.is_none_or(|form| form.edit(entries).is_err()) {
-            return self.refuse_kind(None);
+            return self.notify_wrong_kind(None);
         }
         self.edit(|connect| connect.typed = None);
     }
 
     fn find(&mut self, action: Payload) {
         let is_its = |form: &dyn AnyForm| form.is_of_finder(&action);
-        let Some((tab, place)) = self.place_of_form(is_its) else {
+        let Some((tab, place)) = self.form_position(is_its) else {
             // Without a dialog it is too late.
             if self.connect.is_some() {
-                self.refuse_kind(None);
+                self.notify_wrong_kind(None);
             }
             return;
         };
@@ -91,12 +91,12 @@ impl Studio {
         match fills_in {
             Ok(true) => self.edit(|connect| connect.typed = None),
             Ok(false) => {}
-            Err(WrongKind) => self.refuse_kind(None),
+            Err(WrongKind) => self.notify_wrong_kind(None),
         }
     }
 
     /// Continues after the user has confirmed that no other master is on the line of the form.
-    pub(in crate::app) fn find_confirmed(&mut self, tab: Tab) {
+    pub(in crate::app) fn start_confirmed_search(&mut self, tab: Tab) {
         let at = |connect: &Connect| connect.forms.iter().position(|(own, _)| *own == tab);
         if let Some(place) = self.connect.as_ref().and_then(at) {
             self.with_finder(tab, place, |form, context| form.confirmed(context));
@@ -104,16 +104,16 @@ impl Studio {
     }
 
     pub(in crate::app) fn finder_done(&mut self, tab: Tab, done: Payload) {
-        let Some(kind) = self.services.world.kinds.of_tab(tab) else { return self.refuse_kind(None) };
+        let Some(kind) = self.services.world.kinds.kind_for_tab(tab) else { return self.notify_wrong_kind(None) };
         let forms = self.connect.as_mut().map(|connect| &mut connect.forms);
         let form = forms.and_then(|forms| forms.iter_mut().find(|(own, _)| *own == tab));
         let form = form.map(|(_, form)| form.as_mut() as &mut dyn AnyForm);
         if kind.finder_done(form, done, &mut self.services).is_err() {
-            self.refuse_kind(None);
+            self.notify_wrong_kind(None);
         }
     }
 
-    fn place_of_form(&self, is_it: impl Fn(&dyn AnyForm) -> bool) -> Option<(Tab, usize)> {
+    fn form_position(&self, is_it: impl Fn(&dyn AnyForm) -> bool) -> Option<(Tab, usize)> {
         let forms = &self.connect.as_ref()?.forms;
         forms.iter().enumerate().find_map(|(at, (tab, form))| is_it(form.as_ref()).then_some((*tab, at)))
     }

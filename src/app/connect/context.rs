@@ -64,9 +64,9 @@ impl<'a> FinderContext<'a> {
     }
 
     /// Asks whether another master is on the line; the search continues if there is none.
-    pub fn ask_other_master(&mut self, url: &LinkUrl) {
+    pub fn confirm_other_master(&mut self, url: &LinkUrl) {
         self.studio.question =
-            Some(Question::other_master(self.studio.services.world.kinds.shown_link(url), Then::Find(self.tab)));
+            Some(Question::other_master(self.studio.services.world.kinds.display_link(url), Then::Find(self.tab)));
     }
 
     pub fn refuse(&mut self, problem: Text) {

@@ -100,7 +100,7 @@ impl Connect {
     /// Parses a link to the chosen kind of device.
     fn read(&self, link: &str) -> Result<LinkUrl, Text> {
         let url: LinkUrl = link.parse().map_err(|error| target::other(explain::url(&error)))?;
-        target::checked(url, |url| self.kinds.of_tab(self.device).map_or(Ok(()), |kind| kind.check(url)))
+        target::checked(url, |url| self.kinds.kind_for_tab(self.device).map_or(Ok(()), |kind| kind.check(url)))
     }
 
     /// Adopts a typed link; a valid one fills in the form.

@@ -94,7 +94,12 @@ pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
 ///
 /// # Errors
 /// As for [`host_and_port`]; `missing`, if no host is entered.
-pub(crate) fn host_and_usual_port(host: &str, missing: &'static str, port: &str, usual: &str) -> Result<String, Text> {
+pub(crate) fn host_and_default_port(
+    host: &str,
+    missing: &'static str,
+    port: &str,
+    usual: &str,
+) -> Result<String, Text> {
     host_and_port(&entered(host, missing)?, filled(port).as_deref().unwrap_or(usual))
 }
 
@@ -105,7 +110,7 @@ pub(crate) fn parted(place: &str) -> (String, String) {
 }
 
 /// Splits a network address of a link into host and port; the port is empty if it is the default.
-pub(crate) fn parted_from_usual(place: &str, usual: &str) -> (String, String) {
+pub(crate) fn split_host_default_port(place: &str, usual: &str) -> (String, String) {
     let (host, port) = parted(place);
     (host, Some(port).filter(|port| port != usual).unwrap_or_default())
 }

@@ -189,7 +189,7 @@ impl<M: DeviceModel> OpenDevice for M {
     }
 
     fn running(&self) -> Option<Progressing> {
-        self.session().line().and_then(|line| line.progressing())
+        self.session().line().and_then(|line| line.job_progress())
     }
 
     fn is_dirty(&self) -> bool {

@@ -52,7 +52,7 @@ impl Recorder {
     }
 
     /// Nanoseconds from A to B.
-    pub fn between_cursors(&self) -> Option<i64> {
+    pub fn cursor_distance(&self) -> Option<i64> {
         Some(self.cursor(Cursor::B)?.nanoseconds_since(self.cursor(Cursor::A)?))
     }
 

@@ -11,7 +11,7 @@ use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use super::{GroupId, Recorder, SAMPLE, Series};
 use crate::analysis::Time;
 use crate::analysis::history::{Flags, History};
-use crate::store::{FileError, write_by};
+use crate::store::{FileError, write_with};
 
 /// Rows of a portion, and portions that wait.
 const ROWS: usize = 16_384;
@@ -271,7 +271,7 @@ impl Writing {
     /// Writes until all rows have arrived; `wake` tells that more can be passed on.
     pub(in crate::app) fn run(self, wake: &dyn Fn()) -> Exported {
         let mut given_up = false;
-        let rows = write_by(&self.path, |file| {
+        let rows = write_with(&self.path, |file| {
             given_up = !self.write(file, wake)?;
             // An incomplete file does not replace the existing one.
             if given_up { Err(io::ErrorKind::Interrupted.into()) } else { Ok(()) }

@@ -88,7 +88,7 @@ fn cursors_measure_on_the_raw_samples() {
     assert_eq!(recorder.measure(recorder.line(counts).unwrap()), None);
     recorder.act(RecorderAction::SetCursor(Cursor::A, Some(at(200))));
     recorder.act(RecorderAction::SetCursor(Cursor::B, Some(Time::from_nanoseconds(99_800_000))));
-    assert_eq!(recorder.between_cursors(), Some(-100 * MILLISECOND), "on the samples that are read");
+    assert_eq!(recorder.cursor_distance(), Some(-100 * MILLISECOND), "on the samples that are read");
     recorder.act(RecorderAction::SetScale(counts, 1));
     let measured = recorder.measure(recorder.line(counts).unwrap()).unwrap();
     let degrees = 360.0 / 4096.0;

@@ -76,7 +76,7 @@ pub trait Drafted: HasSession {
         if let Some(edits) = self.session_mut().drafting.take(done, key.as_ref(), dirty, &name, services) {
             self.take_edits(edits);
             let edits = self.edited();
-            self.session_mut().drafting.came_back(edits, &name, services);
+            self.session_mut().drafting.restore_edits(edits, &name, services);
         }
     }
 

@@ -151,7 +151,7 @@ impl<E: DraftEdits> Drafting<E> {
             DraftDone::Looked { key, claim, result } if own == Some(&key) => (claim, result),
             DraftDone::Looked { .. } => return None,
             DraftDone::Kept { key, result } => {
-                self.was_kept(own == Some(&key), result, name, services);
+                self.finish_draft_store(own == Some(&key), result, name, services);
                 return None;
             }
         };
@@ -189,14 +189,14 @@ impl<E: DraftEdits> Drafting<E> {
     }
 
     /// Records that earlier edits were restored; `edits` are those still valid.
-    pub(in crate::app) fn came_back(&mut self, edits: E, name: &str, services: &mut Services) {
+    pub(in crate::app) fn restore_edits(&mut self, edits: E, name: &str, services: &mut Services) {
         if !edits.is_nothing() {
             services.notify(Severity::Warning, vec![Text::new(DRAFT_BACK)], Some(name));
         }
         self.kept = edits;
     }
 
-    fn was_kept(&mut self, is_own: bool, result: Result<(), FileError>, name: &str, services: &mut Services) {
+    fn finish_draft_store(&mut self, is_own: bool, result: Result<(), FileError>, name: &str, services: &mut Services) {
         if is_own {
             self.busy = false;
         }

@@ -261,7 +261,7 @@ impl<D: Kind> Session<D> {
         let Some(line) = self.line.take() else { return };
         let write = line.running().filter(|running| running.writes && end == JobEnd::Cancelled).map(|own| own.id);
         if let Some(running) = line.running().filter(|_| write.is_none()) {
-            services.job_ends(self.id, running.id, end);
+            services.end_job(self.id, running.id, end);
         }
         services.leave(line.into_worker(), ClosingSessionInfo { session: self.id, about, url, write }, None);
     }

@@ -9,7 +9,7 @@ use crate::app::diverged::Diverged;
 use crate::app::studio::SessionId;
 use crate::app::{Kinds, Text};
 use crate::profile::{Document, Formats};
-use crate::store::{FileError, FileProblem, read_file, write_text_over};
+use crate::store::{FileError, FileProblem, overwrite_text, read_file};
 
 /// A profile file as last read or written.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +70,7 @@ impl Saving {
         if !lost.is_empty() && !self.may_lose {
             return Action::Done(Done::WouldLose(Box::new(self), lost));
         }
-        let result: Result<(), FileError> = write_text_over(&self.path, &text);
+        let result: Result<(), FileError> = overwrite_text(&self.path, &text);
         // A link may lead elsewhere by now, and a new file has a name only now.
         let file = ProfileFile { key: file_key(&self.path), path: self.path.clone(), text };
         Action::Done(Done::Written { saving: Box::new(self), file, result })

@@ -119,7 +119,7 @@ pub trait SessionEvents: HasSession {
             Event::Progress(_, progress) => self.progressed(progress.step),
             Event::Remark(remark) => self.message_received(remark, services),
             Event::Finished(id, output) => {
-                services.job_ends(self.session().id, id, JobEnd::Done);
+                services.end_job(self.session().id, id, JobEnd::Done);
                 if Self::is_answer(&output) {
                     self.session_mut().answers();
                 }
@@ -147,7 +147,7 @@ pub trait SessionEvents: HasSession {
 
     /// Handles a cancelled job; values written before the cancellation are read again.
     fn cancelled(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
-        services.job_ends(self.session().id, id, JobEnd::Cancelled);
+        services.end_job(self.session().id, id, JobEnd::Cancelled);
         self.session_mut().save_to = None;
         let (texts, begun) = (Self::Device::error_texts(error), error.has_begun());
         let stands_there = self.ended_early(EarlyEnd::Cancelled(error), &texts, services);
@@ -161,7 +161,7 @@ pub trait SessionEvents: HasSession {
     /// Handles a failed job.
     fn failed(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         let texts = Self::Device::error_texts(error);
-        services.job_ends(self.session().id, id, JobEnd::Failed(first(&texts)));
+        services.end_job(self.session().id, id, JobEnd::Failed(first(&texts)));
         let stands_there = self.ended_early(EarlyEnd::Failed(error), &texts, services);
         self.session_mut().save_to = None;
         match Self::Device::connection_error(error) {

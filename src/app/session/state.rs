@@ -67,7 +67,7 @@ impl SessionState {
     /// Returns the source of the data, without secrets.
     pub fn place(&self) -> String {
         match &self.source {
-            Source::Link(url) => self.kinds.shown_link(url),
+            Source::Link(url) => self.kinds.display_link(url),
             Source::File { path, .. } => path.display().to_string(),
             Source::New { .. } => String::new(),
         }
@@ -81,14 +81,14 @@ impl SessionState {
             }
             (Source::Link(_) | Source::New { .. }, Some(title)) => title.clone(),
             (Source::New { suggested }, None) => suggested.display().to_string(),
-            (Source::Link(url), None) => self.kinds.shown_link(url),
+            (Source::Link(url), None) => self.kinds.display_link(url),
         }
     }
 
     /// Logs the first answer since the link was opened, with facts about the device.
     pub fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
         let Source::Link(url) = &self.source else { return };
-        let link = Text::new("log.answers").with("link", self.kinds.shown_link(url));
+        let link = Text::new("log.answers").with("link", self.kinds.display_link(url));
         let texts = std::iter::once(link).chain(facts).collect();
         services.note(Severity::Note, texts, Some(&self.name()));
     }

@@ -36,14 +36,14 @@ impl LineQuality {
     }
 
     /// Returns the time within which `percent` of the most recent replies arrived, or `None` if there were none.
-    pub fn answered_within(&self, percent: usize) -> Option<Duration> {
+    pub fn answer_time_percentile(&self, percent: usize) -> Option<Duration> {
         let mut times: Vec<Duration> = self.answers.iter().copied().collect();
         times.sort_unstable();
         let at = (times.len() * percent).div_ceil(100).saturating_sub(1);
         times.get(at).copied()
     }
 
-    pub(super) fn answered_after(&mut self, time: Duration) {
+    pub(super) fn record_answer_time(&mut self, time: Duration) {
         if self.answers.len() == Self::ANSWERS {
             self.answers.pop_front();
         }

@@ -68,8 +68,8 @@ impl LineState {
     }
 
     /// Records when the reply began.
-    pub(crate) fn answer_began(&mut self, at: Moment) {
-        self.quality.answered_after(at.since(self.last_sent));
+    pub(crate) fn record_answer_start(&mut self, at: Moment) {
+        self.quality.record_answer_time(at.since(self.last_sent));
     }
 
     /// Resets the time-out margin after a valid reply.
@@ -78,7 +78,7 @@ impl LineState {
     }
 
     /// Allows further replies to be late by the given time plus half as much again.
-    pub(super) fn allow_for(&mut self, lateness: Duration) {
+    pub(super) fn extend_allowance(&mut self, lateness: Duration) {
         let margin = (self.margin + lateness).saturating_mul(3) / 2;
         self.margin = margin.min(LONGEST_MARGIN).max(self.margin);
         tracing::warn!(

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::changes::{Change, Step, means_the_same, steps};
-use super::tree::{Kind, Node, Part, comment_behind, read};
+use super::tree::{Kind, Node, Part, read, trailing_comment};
 
 /// Applies the changes one after the other; returns `None` if one of them cannot be placed in the text.
 pub(in crate::profile) fn applied(text: &str, changes: &[Change]) -> Option<String> {
@@ -31,7 +31,7 @@ pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
                 return None;
             }
             let text = with_comment(text, part.end, &change.comments)?;
-            replaced(&text, &part.value.span, &indented(to, indent_at(&text, part.start()), line_end(&text)))
+            replaced(&text, &part.value.span, &indent_value(to, indent_at(&text, part.start()), line_end(&text)))
         }
         (Some(part), None) => without(text, part),
         (None, Some(to)) => with(text, within, change, last, to),
@@ -65,7 +65,7 @@ fn replaced(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
 
 /// Moves the comment that this program wrote after an entry along with its value; a user's own comment stays.
 fn with_comment(text: &str, at: usize, comments: &(Option<String>, Option<String>)) -> Option<String> {
-    let found = comment_behind(text, at);
+    let found = trailing_comment(text, at);
     match (found, comments) {
         (Some((place, own)), (Some(from), to)) if own == from => match to {
             Some(to) => replaced(text, &place, &format!("// {to}")),
@@ -80,7 +80,7 @@ fn without(text: &str, part: &Part) -> Option<String> {
     let before = text.get(..part.start())?;
     let after = part.end;
     let line = before.rfind('\n').map_or(0, |at| at + 1);
-    let behind = comment_behind(text, after).map_or(after, |(place, _)| place.end);
+    let behind = trailing_comment(text, after).map_or(after, |(place, _)| place.end);
     let rest = text.get(behind..)?;
     let ends = rest.trim_start_matches([' ', '\t', '\r']);
     if before.get(line..)?.trim().is_empty() && ends.starts_with('\n') {
@@ -125,9 +125,9 @@ fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Op
     };
     let heading: String = change.heading.iter().map(|line| format!("{end}{indent}// {line}")).collect();
     let comment = change.comments.1.as_ref().map(|comment| format!(" // {comment}")).unwrap_or_default();
-    let line = format!("{heading}{end}{indent}{key}{},{comment}", indented(to, &indent, end));
+    let line = format!("{heading}{end}{indent}{key}{},{comment}", indent_value(to, &indent, end));
     let place = match anchor {
-        Some(part) => comment_behind(text, part.end).map_or(part.end, |(place, _)| place.end),
+        Some(part) => trailing_comment(text, part.end).map_or(part.end, |(place, _)| place.end),
         None => open + text.get(open..)?.len() - after_comment(text.get(open..)?).len(),
     };
     let follows = text.get(place..)?.lines().next().unwrap_or_default();
@@ -146,7 +146,7 @@ fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Op
 
 /// Returns the text after an opening bracket and any comment on the same line.
 fn after_comment(text: &str) -> &str {
-    match comment_behind(text, 0) {
+    match trailing_comment(text, 0) {
         Some((place, _)) => text.get(place.end..).unwrap_or_default(),
         None => text,
     }
@@ -160,7 +160,7 @@ fn indent_at(text: &str, at: usize) -> &str {
 }
 
 /// Adapts the indentation of a multi-line value to its new position.
-fn indented(value: &str, indent: &str, end: &str) -> String {
+fn indent_value(value: &str, indent: &str, end: &str) -> String {
     let mut lines = value.lines();
     let first = lines.next().unwrap_or_default().to_owned();
     let rest: Vec<&str> = lines.collect();

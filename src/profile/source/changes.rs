@@ -5,7 +5,7 @@ use std::fmt;
 use ron::Value;
 use serde::{Deserialize, Serialize};
 
-use super::tree::{Kind, Node, Part, comment_behind, read};
+use super::tree::{Kind, Node, Part, read, trailing_comment};
 
 /// Entries that identify the elements of a list; the first existing one takes precedence.
 const NAMES: [&str; 7] = ["number", "program", "cam", "bank", "banks", "item", "name"];
@@ -119,7 +119,7 @@ impl Walk<'_> {
         let (own, other) = (steps(self.left, from), steps(self.right, to));
         let same_kind = match (&from.kind, &to.kind) {
             (Kind::Entries(_), Kind::Entries(_)) => true,
-            (Kind::List(_), Kind::List(_)) => is_one_order(&own, &other),
+            (Kind::List(_), Kind::List(_)) => is_same_order(&own, &other),
             _ => false,
         };
         let (left, right) = (self.left.get(from.span.clone()), self.right.get(to.span.clone()));
@@ -155,7 +155,7 @@ impl Walk<'_> {
         behind: &[Step],
     ) {
         let comment = |text: &str, part: Option<&Part>| {
-            part.and_then(|part| comment_behind(text, part.end)).map(|(_, comment)| comment.to_owned())
+            part.and_then(|part| trailing_comment(text, part.end)).map(|(_, comment)| comment.to_owned())
         };
         self.found.push(Change {
             path: self.path.clone(),
@@ -170,7 +170,7 @@ impl Walk<'_> {
 
 /// Returns whether the order is unchanged. Named elements may be added or removed as long as the rest keep their order;
 /// unnamed elements keep their index.
-fn is_one_order(own: &[Step], other: &[Step]) -> bool {
+fn is_same_order(own: &[Step], other: &[Step]) -> bool {
     let common = |these: &[Step], those: &[Step]| -> Vec<Step> {
         these.iter().filter(|step| those.contains(step)).cloned().collect()
     };

@@ -73,7 +73,7 @@ pub(super) fn comments(text: &str) -> Vec<&str> {
 }
 
 /// Returns the comment that follows a position on the same line, along with its range.
-pub(super) fn comment_behind(text: &str, at: usize) -> Option<(Range<usize>, &str)> {
+pub(super) fn trailing_comment(text: &str, at: usize) -> Option<(Range<usize>, &str)> {
     let rest = text.get(at..)?;
     let blanks = rest.len() - rest.trim_start_matches([' ', '\t']).len();
     let mut reader = Reader { text, at: at + blanks };

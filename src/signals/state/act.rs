@@ -183,7 +183,7 @@ impl Signals {
     /// Returns the changes since the capture used for comparison, with both judged by the same limits.
     pub fn changes(&self) -> Option<Changes> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
-        let before = kept.diagnosis.by_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
+        let before = kept.diagnosis.from_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
         Some(compare(&before, &own.diagnosis))
     }
 
@@ -191,7 +191,7 @@ impl Signals {
         self.periods = Some(periods.clamp(1, MOST_PERIODS));
         self.periods_of_source = of_source;
         if self.measurement.as_ref().is_some_and(|own| own.judge != self.judge()) {
-            self.judge_again(services);
+            self.reevaluate(services);
         }
     }
 
@@ -231,10 +231,10 @@ impl Signals {
                 }
             }
             SignalsAction::Cancel => self.give_up(),
-            SignalsAction::Source(action) => self.act_source(action, services),
+            SignalsAction::Source(action) => self.handle_source_action(action, services),
             SignalsAction::SetFamily(family) => {
                 self.family = family;
-                self.judge_again(services);
+                self.reevaluate(services);
             }
             SignalsAction::Keep => {
                 let shown = self.measurement.as_ref().map(|own| own.results().clone());
@@ -311,7 +311,7 @@ impl Signals {
                 let judge = measurement.judge;
                 self.show(measurement, services);
                 if judge != self.judge() {
-                    self.judge_again(services);
+                    self.reevaluate(services);
                 }
                 self.problem = None;
                 self.table = Some(table);
@@ -361,7 +361,7 @@ impl Signals {
         Judge { family: self.family, periods: self.periods }
     }
 
-    pub(super) fn judge_again(&mut self, services: &mut Services) {
+    pub(super) fn reevaluate(&mut self, services: &mut Services) {
         let Some(measurement) = self.measurement.clone() else { return };
         self.judgements = self.judgements.wrapping_add(1);
         let (number, judge) = (self.judgements, self.judge());

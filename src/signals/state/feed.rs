@@ -96,7 +96,7 @@ impl AdapterLink {
         services: &Services,
     ) -> Result<Feed, Text> {
         let AdapterLink { url, clock, margin, open } = self;
-        let (before, patience) = (services.endings_on(&url), services.world.patience.job);
+        let (before, patience) = (services.closing_workers_on(&url), services.world.patience.job);
         let open: Open = Box::new(move || {
             if let Some(earlier) = earlier {
                 // Nothing is sent on it: it disconnects, or never does.
@@ -122,7 +122,7 @@ impl Feed {
     ///
     /// # Errors
     /// Returns an error if no thread can be started.
-    pub(super) fn of_encoder(checked: Checked, services: &Services) -> Result<Self, Text> {
+    pub(super) fn from_encoder(checked: Checked, services: &Services) -> Result<Self, Text> {
         let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
         let producer = Analogue::new(checked, clock.now());
         Ok(Feed::Virtual(spawn(producer, clock, services)?))
@@ -150,7 +150,7 @@ impl Feed {
         }
     }
 
-    pub(super) fn why_ended(&self) -> Text {
+    pub(super) fn end_reason(&self) -> Text {
         match self {
             Feed::Virtual(stream) if stream.take_error().is_some() => TEXTS.text("virtual.forgotten"),
             Feed::Virtual(_) => TEXTS.text("virtual.ended"),

@@ -213,7 +213,7 @@ impl Source {
                 return false;
             }
         };
-        match Feed::of_encoder(checked, services) {
+        match Feed::from_encoder(checked, services) {
             Ok(feed) => {
                 self.run(SourceKind::Encoder, feed, services);
                 true
@@ -289,7 +289,7 @@ impl Live {
 }
 
 impl Signals {
-    pub(super) fn act_source(&mut self, action: SourceAction, services: &mut Services) {
+    pub(super) fn handle_source_action(&mut self, action: SourceAction, services: &mut Services) {
         let settings = self.source.settings().clone();
         match action {
             SourceAction::Start => {
@@ -384,7 +384,7 @@ impl Signals {
     }
 
     fn ended(&mut self, services: &mut Services) {
-        let Some(why) = self.source.live.as_ref().map(|live| live.feed.why_ended()) else { return };
+        let Some(why) = self.source.live.as_ref().map(|live| live.feed.end_reason()) else { return };
         self.source.stop(services);
         if self.source.kind == SourceKind::Adapter {
             self.source.adapter_problem = Some(why.clone());
@@ -403,7 +403,7 @@ impl Signals {
         self.show_live(measurement, services);
         // The settings were changed meanwhile.
         if judge != self.judge() {
-            self.judge_again(services);
+            self.reevaluate(services);
         }
     }
 

@@ -116,7 +116,7 @@ impl Measurement {
             rows_left_out: capture.left_out,
             levels_v: capture.references_v().map(|(sine, cosine)| (mean(sine), mean(cosine))),
             spectra: Spectra::of(samples),
-            nonlinearities: beside_reference(&capture, &analysis, judge),
+            nonlinearities: compare_with_reference(&capture, &analysis, judge),
             absolute_offset: reference_comparison::absolute_offset(&capture, analysis.as_ref().ok()),
             raw: density(samples, None),
             corrected: analysis.as_ref().ok().and_then(|own| density(samples, Some(own.ellipse.correction()))),
@@ -134,7 +134,7 @@ impl Measurement {
     pub fn judged(&self, judge: Judge) -> Self {
         let results = Results {
             diagnosis: diagnosis(&self.capture, &self.analysis, judge),
-            nonlinearities: beside_reference(&self.capture, &self.analysis, judge),
+            nonlinearities: compare_with_reference(&self.capture, &self.analysis, judge),
             judge,
             ..(*self.results).clone()
         };
@@ -168,7 +168,7 @@ fn diagnosis(capture: &Capture, analysis: &Result<Analysis, AnalysisError>, judg
     diagnose(&record, analysis.as_ref(), &judge.family.limits())
 }
 
-fn beside_reference(
+fn compare_with_reference(
     capture: &Capture,
     analysis: &Result<Analysis, AnalysisError>,
     judge: Judge,

@@ -78,10 +78,10 @@ fn figure(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Measu
         }
         let compared = signals.comparison().map(|kept| {
             let picture = other.of(ui, theme, kept, corrected, 1);
-            figure_of(kept, corrected, picture, (1, true))
+            figure_text(kept, corrected, picture, (1, true))
         });
         let picture = own.of(ui, theme, measurement.results(), corrected, 0);
-        let shown = figure_of(measurement, corrected, picture, (0, false));
+        let shown = figure_text(measurement, corrected, picture, (0, false));
         let figures: Vec<Figure> = compared.into_iter().chain([shown]).collect();
         let side = ui.available_width().min(440.0);
         let lissajous_ = Lissajous {
@@ -125,7 +125,7 @@ impl Picture {
     }
 }
 
-fn figure_of(
+fn figure_text(
     measurement: &Results,
     corrected: bool,
     picture: Option<(TextureId, Square)>,

@@ -101,10 +101,10 @@ impl Logbook {
     /// Returns an error if the file is damaged, not a database, in use for longer than two seconds, not writable, or
     /// created by a newer version of the program; the file is then left unchanged.
     pub fn open(path: &Path) -> Result<Self, LogbookError> {
-        Self::open_patiently(path, PATIENCE)
+        Self::open_with_timeout(path, PATIENCE)
     }
 
-    fn open_patiently(path: &Path, patience: Duration) -> Result<Self, LogbookError> {
+    fn open_with_timeout(path: &Path, patience: Duration) -> Result<Self, LogbookError> {
         let database = schema::open(path, patience).map_err(|problem| problem.of(path))?;
         Ok(Logbook { path: path.to_owned(), database })
     }
@@ -130,7 +130,7 @@ impl Logbook {
             ":serial_number": device.serial_number,
             ":is_virtual": device.is_virtual,
             ":what": what,
-            ":planned_cycles": countable(planned_cycles),
+            ":planned_cycles": saturating_cycle_count(planned_cycles),
             ":backup": backup.map(Path::to_string_lossy),
         };
         self.database.execute(sql, parameters).map_err(|error| self.failed(error))?;
@@ -161,7 +161,7 @@ impl Logbook {
             ":at": at.to_string(),
             ":outcome": outcome,
             ":failure": failure,
-            ":cycles_spent": countable(cycles_spent),
+            ":cycles_spent": saturating_cycle_count(cycles_spent),
             ":id": id.0,
         };
         match self.database.execute(sql, parameters).map_err(|error| self.failed(error))? {
@@ -205,7 +205,7 @@ impl Logbook {
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be written.
-    pub fn note_status(&mut self, at: Timestamp, device: &DeviceKey, codes: &str) -> Result<(), LogbookError> {
+    pub fn record_status(&mut self, at: Timestamp, device: &DeviceKey, codes: &str) -> Result<(), LogbookError> {
         let sql = "INSERT INTO status (at, kind, device_type, serial_number, is_virtual, codes)
                    VALUES (?1, ?2, ?3, ?4, ?5, ?6)";
         let (kind, device_type, serial) = (&device.kind, &device.device_type, &device.serial_number);
@@ -240,7 +240,7 @@ impl Logbook {
 
 /// Limits the cycles of an entry to 32 bits, so that no sum of entries overflows; no EEPROM survives a thousandth of
 /// that number.
-fn countable(cycles: u64) -> u32 {
+fn saturating_cycle_count(cycles: u64) -> u32 {
     u32::try_from(cycles).unwrap_or(u32::MAX)
 }
 

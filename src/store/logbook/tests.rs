@@ -155,12 +155,12 @@ fn concurrent_writers_do_not_lose_entries() {
 fn a_locked_logbook_is_reported() {
     let (_root, path) = place();
     let patience = Duration::from_millis(20);
-    let mut logbook = Logbook::open_patiently(&path, patience).unwrap();
+    let mut logbook = Logbook::open_with_timeout(&path, patience).unwrap();
     let other = Connection::open(&path).unwrap();
     other.execute_batch("BEGIN IMMEDIATE").unwrap();
     assert_eq!(problem(logbook.intend(at(0), &device("1"), "x", 1, None)), LogbookProblem::Locked);
     // Reading, and opening to read, do not wait.
-    assert_eq!(Logbook::open_patiently(&path, patience).unwrap().write_cycles(&device("1")), Ok(0));
+    assert_eq!(Logbook::open_with_timeout(&path, patience).unwrap().write_cycles(&device("1")), Ok(0));
     other.execute_batch("ROLLBACK").unwrap();
     logbook.intend(at(0), &device("1"), "x", 1, None).unwrap();
 }

@@ -61,7 +61,7 @@ pub(in crate::ui) fn connect_ui(
         link_ui(ui, theme, dialog, url.as_ref().ok(), actions);
         let searching = dialog.is_searching().then(|| Text::new("connect.searching"));
         let refused = searching.or(url.err());
-        why_ui(ui, theme, refused.as_ref().or(dialog.problem.as_ref()));
+        reason_ui(ui, theme, refused.as_ref().or(dialog.problem.as_ref()));
         at_the_right(ui, |ui| {
             let word = theme.say("connect.connect");
             if primary(ui, theme, refused.is_none(), icons::PLUGS_CONNECTED, &word).clicked() {
@@ -122,7 +122,7 @@ fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, a
 
 /// Draws the reason why the dialog cannot continue. Two lines are reserved, so that the buttons do not move under the
 /// pointer.
-fn why_ui(ui: &mut Ui, theme: &Theme, why: Option<&Text>) {
+fn reason_ui(ui: &mut Ui, theme: &Theme, why: Option<&Text>) {
     let top = ui.cursor().top();
     match why {
         Some(why) if is_missing(why) => paragraph(ui, theme.label(theme.words(why))),

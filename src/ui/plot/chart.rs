@@ -36,7 +36,7 @@ pub(super) fn paint(
     trigger(painter, context, layout, &font);
     cursors(painter, context, layout, &font);
     if let Some(place) = hovered {
-        under_pointer(painter, context, layout, place);
+        paint_pointer_readout(painter, context, layout, place);
     }
     if let Some(Drag::Box { from, to }) = drag {
         let colour = Color32::from(theme.palette.accent);
@@ -185,7 +185,7 @@ fn dot(
     }
 }
 
-fn under_pointer(painter: &Painter, context: &Context<'_>, layout: &Layout, place: Pos2) {
+fn paint_pointer_readout(painter: &Painter, context: &Context<'_>, layout: &Layout, place: Pos2) {
     let faint = Stroke::new(1.0, Color32::from(context.theme.palette.muted).gamma_multiply(0.6));
     painter.vline(place.x.round(), layout.chart.y_range(), faint);
     let time = layout.time.time(place.x);

@@ -43,7 +43,7 @@ impl PlotUiState {
     }
 
     /// Moves the plot back into its panel; returns false if the plot was already there.
-    pub(in crate::ui) fn make_small(&mut self) -> bool {
+    pub(in crate::ui) fn restore_size(&mut self) -> bool {
         let was = self.is_large();
         self.large = self.large.map(|_| false);
         was

@@ -49,7 +49,7 @@ pub(super) fn interact(
     if response.drag_stopped()
         && let Some(Drag::Box { from, to }) = drag.take()
     {
-        look_into(Rect::from_two_pos(from, to), context, layout);
+        zoom_into(Rect::from_two_pos(from, to), context, layout);
     }
     if !response.dragged() {
         *drag = None;
@@ -96,7 +96,7 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
 
 /// Zooms into the chosen box: a wide box selects a time span, a tall box a value range, and a box that is both selects
 /// both.
-fn look_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
+fn zoom_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     let chosen = chosen.intersect(layout.chart);
     if chosen.width() >= CLICK {
         context.act(RecorderAction::Look(layout.time.time(chosen.left()), layout.time.time(chosen.right())));

@@ -16,7 +16,7 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
     }
     ui.spacing_mut().item_spacing = vec2(theme.space.between, 2.0);
     ui.spacing_mut().interact_size.y = 16.0;
-    if let Some(between) = recorder.between_cursors() {
+    if let Some(between) = recorder.cursor_distance() {
         ui.horizontal_wrapped(|ui| {
             if recorder.counts() {
                 figure(ui, theme, "Δn", &(between / SAMPLE).to_string());

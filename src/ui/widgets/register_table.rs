@@ -322,7 +322,7 @@ fn row(
         ui.memory_mut(|memory| memory.request_focus(id));
     }
     let boxed = (table.kind == RegisterKind::Numbers && row.read_only.is_none())
-        .then(|| columns.range(columns::Column::Value).map(|value| paint::box_of(theme, rect, value)))
+        .then(|| columns.range(columns::Column::Value).map(|value| paint::value_box(theme, rect, value)))
         .flatten();
     let in_box = response.clicked()
         && response.interact_pointer_pos().zip(boxed).is_some_and(|(pos, boxed)| boxed.contains(pos));

@@ -10,7 +10,7 @@ use encoder_studio::profile::{Interrupted, RestoreOptions, Written};
 use encoder_studio::store::{DeviceKey, Store};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::commit::{ApprovedPlan, cycles_seen, write_plan};
-use encoder_studio::worker::open::{check_parameters, inside, leads_elsewhere, open_bytes};
+use encoder_studio::worker::open::{check_parameters, inside, open_bytes, wrong_target_error};
 use encoder_studio::worker::{self, Device, JobReport, OpenError, Progress, Session, SessionContext, Watched};
 
 use super::profile::{NovoPlan, NovoProfile, Op, plan};
@@ -84,7 +84,7 @@ pub(crate) fn check(url: &LinkUrl) -> Result<(), OpenError> {
     match url.scheme {
         Scheme::Sim => Virtual::from_pairs(url.query.pairs()).map(drop)?,
         Scheme::Serial | Scheme::Tcp => check_parameters(&url.query, url.scheme, &[])?,
-        other => return Err(leads_elsewhere(other, "sim:, serial:, tcp:")),
+        other => return Err(wrong_target_error(other, "sim:, serial:, tcp:")),
     }
     Ok(())
 }

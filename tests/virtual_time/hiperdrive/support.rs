@@ -134,7 +134,7 @@ impl Stand {
         use encoder_studio::buses::ethernet_ip::protocol::{LogicalKind, Service};
         let of_parameter = |request: &Request| {
             let class = request.path.number(LogicalKind::Class)?;
-            ParameterNumber::of_attribute(class, request.path.number(LogicalKind::Attribute)?)
+            ParameterNumber::from_attribute(class, request.path.number(LogicalKind::Attribute)?)
         };
         let requests = self.requests().into_iter().filter(|request| request.service != Service::GET);
         requests.filter_map(|request| Some((of_parameter(&request)?.get(), request.data))).collect()

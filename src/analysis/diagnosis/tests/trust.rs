@@ -102,7 +102,7 @@ fn single_ended_columns_are_reported_instead_of_an_offset() {
         near(sine_v, 2.5, 1e-3);
         near(cosine_v, 2.6, 1e-3);
         let analysis = analysed(&capture);
-        let again = capture.diagnosed().by_limits(Ok(&analysis), None, &Limits::TTK70);
+        let again = capture.diagnosed().from_limits(Ok(&analysis), None, &Limits::TTK70);
         assert_eq!(again.findings.len(), 1, "{again:?}");
     }
     let offset = made(steady, |_, _, (sine, cosine)| (sine + 0.3, cosine));

@@ -11,7 +11,7 @@ use crate::parameter::{Maybe, Parameters, Words};
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
-use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, simulated};
+use crate::worker::open::{inside, margin, open_bytes, simulated, wrong_target_error};
 
 /// Link parameter of the virtual adapter that sessions require but streams do not.
 const BRIDGE: &str = "bridge";
@@ -35,7 +35,7 @@ pub fn open_adapter(
     devices: &[&dyn Attachable],
 ) -> Result<(Duration, Open), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Bridge) {
-        return Err(leads_elsewhere(url.scheme, "sim: and bridge:"));
+        return Err(wrong_target_error(url.scheme, "sim: and bridge:"));
     }
     let mut line = LinkParameters::KEYS.to_vec();
     if url.scheme == Scheme::Sim {

@@ -146,8 +146,8 @@ impl AdapterState {
     }
 
     /// Returns whether the supply must be switched off at the end of the session.
-    pub(crate) fn supply_goes_off(&self) -> bool {
-        self.power.goes_off()
+    pub(crate) fn switches_supply_off(&self) -> bool {
+        self.power.switches_off()
     }
 
     /// Returns whether anything has been received from the adapter, even if damaged.
@@ -211,7 +211,7 @@ impl Adapter<'_, '_> {
     /// Switches the encoder supply off at the end of a session, unless it is to remain on.⎏⎏# Errors⎏See
     /// [`AdapterError`].
     pub(crate) fn leave_supply(&mut self) -> Result<(), Failure> {
-        if self.adapter.supply_goes_off() { self.switch_off() } else { Ok(()) }
+        if self.adapter.switches_supply_off() { self.switch_off() } else { Ok(()) }
     }
 
     fn switch_off(&mut self) -> Result<(), Failure> {
@@ -257,7 +257,7 @@ impl Adapter<'_, '_> {
             while let Some(packet) = self.adapter.receiver.next_packet() {
                 if let Some(reply) = self.judge(request, seq, &packet)? {
                     self.state.answered();
-                    self.state.answer_began(self.line.now());
+                    self.state.record_answer_start(self.line.now());
                     return Ok(Some(TimedReply { reply, sent_at, received_at: self.line.now() }));
                 }
             }

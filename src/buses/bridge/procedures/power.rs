@@ -29,7 +29,7 @@ pub(super) struct Power {
 
 impl Power {
     /// Returns whether the supply must be switched off at the end of the session.
-    pub(super) fn goes_off(self) -> bool {
+    pub(super) fn switches_off(self) -> bool {
         let found = self.found == Some(true);
         match self.after {
             SupplyAfter::AsFound => self.given && !found,
@@ -67,7 +67,7 @@ mod tests {
             (Off, None, false, false),
         ];
         for (after, found, given, off) in cases {
-            assert_eq!(Power { after, found, given }.goes_off(), off, "{after:?} {found:?} {given}");
+            assert_eq!(Power { after, found, given }.switches_off(), off, "{after:?} {found:?} {given}");
         }
         for (word, after) in [("as-found", Some(AsFound)), ("on", Some(On)), ("off", Some(Off)), ("yes", None)] {
             assert_eq!(SupplyAfter::WORDS.read(word), after);

@@ -144,7 +144,7 @@ impl Command {
 impl Request {
     /// The position request as the manual defines it.
     pub const POSITION: Request = Request::Position { argument: 0x01 };
-    /// A request whose reply reveals the byte order of register numbers: see [`order_told_by`]. Sent low byte first.
+    /// A request whose reply reveals the byte order of register numbers: see [`byte_order_from_reply`]. Sent low byte first.
     pub const PROBE: Request = Request::Read { register: Request::PROBE_REGISTER };
     /// Register that [`PROBE`](Self::PROBE) reads.
     pub const PROBE_REGISTER: u16 = 0x0001;
@@ -198,7 +198,7 @@ impl Request {
 
 /// Returns the byte order of register numbers, derived from the reply to [`Request::PROBE`]: 02h is the data sheet bank
 /// in register 0001h, 01h the profile version in register 0100h. `None` if the encoder returns another value.
-pub const fn order_told_by(answer: u8) -> Option<ByteOrder> {
+pub const fn byte_order_from_reply(answer: u8) -> Option<ByteOrder> {
     match answer {
         0x02 => Some(ByteOrder::LowFirst),
         0x01 => Some(ByteOrder::HighFirst),
@@ -327,9 +327,9 @@ mod tests {
         let frame = Frame::parse(&bytes).unwrap();
         assert_eq!(Request::parse(&frame, ByteOrder::LowFirst), Ok(Request::Read { register: 0x0001 }));
         assert_eq!(Request::parse(&frame, ByteOrder::HighFirst), Ok(Request::Read { register: 0x0100 }));
-        assert_eq!(order_told_by(0x02), Some(ByteOrder::LowFirst));
-        assert_eq!(order_told_by(0x01), Some(ByteOrder::HighFirst));
-        assert_eq!(order_told_by(0x00), None);
+        assert_eq!(byte_order_from_reply(0x02), Some(ByteOrder::LowFirst));
+        assert_eq!(byte_order_from_reply(0x01), Some(ByteOrder::HighFirst));
+        assert_eq!(byte_order_from_reply(0x00), None);
     }
 
     #[test]

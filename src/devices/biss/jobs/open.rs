@@ -11,7 +11,7 @@ use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
 use crate::parameter::Words;
 use crate::sim::{ConfigError, Motor};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
+use crate::worker::open::{check_parameters, inside, margin, open_bytes, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Link parameter for schemes that do not reveal whether there is an adapter.
@@ -70,7 +70,7 @@ fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
     match url.scheme {
         Scheme::Bridge => Ok(Transport::Adapter),
         Scheme::Serial | Scheme::Tcp => Ok(Transport::ConfigPin),
-        Scheme::Modbus | Scheme::Enip => Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, bridge:, replay:")),
+        Scheme::Modbus | Scheme::Enip => Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, bridge:, replay:")),
         Scheme::Sim | Scheme::Replay => Ok(url.query.read(BRIDGE, &WAYS)?.unwrap_or(Transport::ConfigPin)),
     }
 }

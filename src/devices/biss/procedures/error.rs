@@ -144,7 +144,7 @@ impl Error {
 }
 
 /// Returns the register of a request over the configuration pin, or the bank selection if the number names none.
-pub(super) fn asked_register(number: u16) -> RegisterAddress {
+pub(super) fn requested_register(number: u16) -> RegisterAddress {
     RegisterAddress::from_global(number).unwrap_or(RegisterAddress::BANK_SELECT)
 }
 
@@ -178,7 +178,7 @@ pub enum Damage {
 
 impl From<LineError> for Error {
     fn from(error: LineError) -> Self {
-        error.at_device(Error::Cancelled, Error::NeverSilent, Error::Link)
+        error.into_device_error(Error::Cancelled, Error::NeverSilent, Error::Link)
     }
 }
 

@@ -146,7 +146,7 @@ pub(super) fn identify_with(
         tracing::warn!("mt, st and crc of the link are not used: the encoder tells its frame itself");
     }
     station.layout = sheet_layout.or_else(|| station.given.clone().filter(|_| source == FrameSource::Given));
-    let source = if source == FrameSource::Assumed { look_at_frames(master)? } else { source };
+    let source = if source == FrameSource::Assumed { detect_frame_source(master)? } else { source };
     let station = master.station();
     station.source = Some(source);
     Ok(Identity {
@@ -166,7 +166,7 @@ pub(super) fn identify_with(
 
 /// Determines an unknown frame: that of the kit encoder if its checksum matches, otherwise the result of a search.
 /// Frames cannot be observed over the configuration pin.
-fn look_at_frames(master: &mut Master<'_>) -> Result<FrameSource, Error> {
+fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     if master.station().transport == Transport::ConfigPin {
         return Ok(FrameSource::Assumed);
     }

@@ -14,10 +14,10 @@ use std::time::Duration;
 
 use bus::NoFrame;
 
-use super::error::{Damage, RequestedItem, asked_register};
+use super::error::{Damage, RequestedItem, requested_register};
 use super::position::PositionReading;
 use super::{Error, Station, Transport};
-use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, order_told_by};
+use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, byte_order_from_reply};
 use crate::devices::biss::protocol::{Description, RegisterAddress};
 use crate::link::Ctx;
 use crate::link::line::{SerialLine, TRIES};
@@ -121,10 +121,10 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Every attempt failed, the register does not exist, or the user cancelled.
     pub fn read(&mut self, address: RegisterAddress) -> Result<u8, Error> {
-        self.be_ready()?;
+        self.ensure_ready()?;
         let requested = RequestedItem::Read(address);
         match self.read_confirmed(requested, |master| master.read_once(address)) {
-            Err(Error::NoReply { .. }) if self.is_silent_only_there(address)? => Err(Error::NoSuchRegister { address }),
+            Err(Error::NoReply { .. }) if self.is_silent_only_at(address)? => Err(Error::NoSuchRegister { address }),
             Err(failed) if self.station.transport == Transport::Adapter => Err(self.diagnose(failed)),
             result => result,
         }
@@ -150,7 +150,7 @@ impl<'a> Master<'a> {
     /// [`Error::Refused`]; [`Error::Unclear`] if nothing shows whether the value was accepted, as with a command, or it
     /// was not accepted after five attempts. After [`Error::Cancelled`] nothing was written.
     pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
-        self.be_ready()?;
+        self.ensure_ready()?;
         let requested = RequestedItem::Write(address, value);
         let unclear = |cause| Error::Unclear { address, value, cause: Box::new(cause) };
         let mut tries = 0;
@@ -196,10 +196,10 @@ impl<'a> Master<'a> {
     /// Every attempt failed, or the user cancelled; [`Error::TooWide`] if the position does not fit the widths.
     pub fn position(&mut self) -> Result<PositionReading, Error> {
         if self.station.transport == Transport::ConfigPin {
-            return self.ask(RequestedItem::Position, |master| master.pin_position_once());
+            return self.ask(RequestedItem::Position, |master| master.read_pin_position_once());
         }
-        self.be_ready()?;
-        match self.ask(RequestedItem::Position, |master| master.bus_position_once()) {
+        self.ensure_ready()?;
+        match self.ask(RequestedItem::Position, |master| master.read_bus_position_once()) {
             Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.look_at_more_frames(failed),
             result => result,
         }
@@ -207,37 +207,37 @@ impl<'a> Master<'a> {
 
     /// Reads a frame of the given widths over an adapter, unchecked and right-justified.
     pub(super) fn frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
-        self.be_ready_for(data_bits, crc_bits)?;
-        self.ask(RequestedItem::Position, |master| master.frame_once()).map(|(raw, _)| raw)
+        self.ensure_bus_ready_for(data_bits, crc_bits)?;
+        self.ask(RequestedItem::Position, |master| master.read_frame_once()).map(|(raw, _)| raw)
     }
 
     fn read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
         match self.station.transport {
-            Transport::ConfigPin => self.pin_read_once(address),
-            Transport::Adapter => self.bus_read_once(address),
+            Transport::ConfigPin => self.read_pin_once(address),
+            Transport::Adapter => self.read_bus_once(address),
         }
     }
 
     fn write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
         match self.station.transport {
-            Transport::ConfigPin => self.pin_write_once(address, value),
-            Transport::Adapter => self.bus_write_once(address, value),
+            Transport::ConfigPin => self.write_pin_once(address, value),
+            Transport::Adapter => self.write_bus_once(address, value),
         }
     }
 
     /// Prepares the first access: determines the byte order of register numbers, or configures the bus.
-    fn be_ready(&mut self) -> Result<(), Error> {
+    fn ensure_ready(&mut self) -> Result<(), Error> {
         match self.station.transport {
-            Transport::Adapter => self.be_ready_on_bus(),
+            Transport::Adapter => self.ensure_bus_ready(),
             Transport::ConfigPin if self.station.order.is_some() => Ok(()),
             Transport::ConfigPin => self.probe_order(),
         }
     }
 
     fn probe_order(&mut self) -> Result<(), Error> {
-        let requested = RequestedItem::Read(asked_register(Request::PROBE_REGISTER));
+        let requested = RequestedItem::Read(requested_register(Request::PROBE_REGISTER));
         let answer = self.read_confirmed(requested, |master| master.probe_once())?;
-        let order = order_told_by(answer).ok_or(Error::OrderUnknown { answer })?;
+        let order = byte_order_from_reply(answer).ok_or(Error::OrderUnknown { answer })?;
         self.station.order = Some(order);
         Ok(())
     }
@@ -318,7 +318,7 @@ impl<'a> Master<'a> {
 
     /// Checks, after a register gave no reply, whether another one replies repeatedly, so that only this one is
     /// missing. Skipped if the encoder may be silent for long.
-    fn is_silent_only_there(&mut self, address: RegisterAddress) -> Result<bool, Error> {
+    fn is_silent_only_at(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
             return Ok(false);
         }

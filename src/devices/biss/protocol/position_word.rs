@@ -13,7 +13,7 @@ impl Layout {
 
     /// Returns the position in a word, split by the widths of the frame, or `None` if higher bits are set. The position
     /// has no error or warning bit.
-    pub fn reading_of(&self, word: PositionWord) -> Option<PositionData> {
+    pub fn decode_position(&self, word: PositionWord) -> Option<PositionData> {
         let split = |value: u64, bits: u8| (value & ((1 << bits) - 1), value >> bits);
         let (singleturn, above) = split(word.word(), self.singleturn_bits());
         let (multiturn, rest) = split(above, self.multiturn_bits());
@@ -44,7 +44,7 @@ mod tests {
         ] {
             let reading = PositionData { multiturn, singleturn, error: false, warning: false };
             let word = PositionWord::parse(bytes);
-            assert_eq!(layout.reading_of(word), Some(reading), "{bytes:02X?}");
+            assert_eq!(layout.decode_position(word), Some(reading), "{bytes:02X?}");
             assert_eq!(layout.position_word(&reading), word);
         }
     }
@@ -52,15 +52,15 @@ mod tests {
     #[test]
     fn a_word_too_wide_for_the_encoder_is_refused() {
         let word = PositionWord::parse([0, 0, 0, 0, 2]);
-        assert_eq!(Layout::default().reading_of(word), None);
+        assert_eq!(Layout::default().decode_position(word), None);
         let wide = Layout::new(32, 17, true, true, None).unwrap();
-        assert_eq!(wide.reading_of(word).map(|reading| reading.multiturn), Some(0x1_0000));
+        assert_eq!(wide.decode_position(word).map(|reading| reading.multiturn), Some(0x1_0000));
     }
 
     proptest! {
         #[test]
         fn no_word_panics(bytes: [u8; 5]) {
-            let _ = Layout::default().reading_of(PositionWord::parse(bytes));
+            let _ = Layout::default().decode_position(PositionWord::parse(bytes));
         }
     }
 }

@@ -30,7 +30,7 @@ impl BissDevice for Encoder {
     }
 
     fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
-        self.reading(at).map(|_| self.shaft_place(at))
+        self.reading(at).map(|_| self.shaft_position(at))
     }
 
     fn motor(&self) -> Motor {

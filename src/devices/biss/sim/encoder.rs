@@ -183,7 +183,7 @@ impl Encoder {
 
     /// Returns the true shaft position at `now`, independent of the reported position, as steps and steps per
     /// revolution.
-    pub fn shaft_place(&mut self, now: Moment) -> (u64, u64) {
+    pub fn shaft_position(&mut self, now: Moment) -> (u64, u64) {
         self.settle(now);
         (self.shaft.fine(now), 1 << (self.shaft.layout().singleturn_bits() + FINE))
     }

@@ -122,7 +122,7 @@ impl Encoder {
         }
         let Some(description) = self.description.clone() else { return };
         if let Err(error) = self.memory.put(&description, start, bytes) {
-            self.session.refuse(words::not_edited(error), services);
+            self.session.refuse(words::edit_error_text(error), services);
         }
     }
 

@@ -133,7 +133,7 @@ impl BissForm {
             return self.leave_supply;
         }
         match name {
-            "bridge" if self.may_say_what_is_between() => {
+            "bridge" if self.leads_to_pin_or_bus() => {
                 self.behind_adapter = value == BRIDGE.1;
                 self.behind_adapter
             }
@@ -154,33 +154,33 @@ impl BissForm {
         chosen(&sim::Config::entries(), &["rpm", "fault"])
     }
 
-    pub fn of_the_bus() -> Vec<Entry> {
+    pub fn bus_entries() -> Vec<Entry> {
         BusParameters::entries()
     }
 
     /// Returns the baud rate field of the configuration pin, and the pin's remaining fields.
-    pub fn of_the_pin() -> (Vec<Entry>, Vec<Entry>) {
+    pub fn pin_entries() -> (Vec<Entry>, Vec<Entry>) {
         PinParameters::entries().into_iter().partition(|own| own.key == "baud")
     }
 
     /// Returns the fields for the frame and those for the line, which apply to every kind of connection.
-    pub fn of_every_way() -> (Vec<Entry>, Vec<Entry>) {
+    pub fn common_entries() -> (Vec<Entry>, Vec<Entry>) {
         (FrameParameters::entries(), LineParameters::entries())
     }
 
     fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == BissLinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
-        let (frame, line) = Self::of_every_way();
-        [own, Self::of_the_bus(), PinParameters::entries(), frame, line].concat()
+        let (frame, line) = Self::common_entries();
+        [own, Self::bus_entries(), PinParameters::entries(), frame, line].concat()
     }
 
     /// Returns whether the encoder is connected by its bus, through a real or virtual adapter.
     pub fn is_on_the_bus(&self) -> bool {
-        self.kind == BissLinkKind::Bus || (self.may_say_what_is_between() && self.behind_adapter)
+        self.kind == BissLinkKind::Bus || (self.leads_to_pin_or_bus() && self.behind_adapter)
     }
 
     /// Returns whether this kind of link can lead to either the configuration pin or the bus.
-    pub fn may_say_what_is_between(&self) -> bool {
+    pub fn leads_to_pin_or_bus(&self) -> bool {
         matches!(self.kind, BissLinkKind::Virtual | BissLinkKind::Replay)
     }
 
@@ -198,14 +198,14 @@ impl BissForm {
 
     fn parameters(&self) -> Parameters {
         let mut parameters = Parameters::default();
-        if self.may_say_what_is_between() && self.behind_adapter {
+        if self.leads_to_pin_or_bus() && self.behind_adapter {
             parameters.set(BRIDGE.0, BRIDGE.1);
         }
         if self.kind == BissLinkKind::Virtual {
             parameters.typed(&Self::of_the_virtual(), &self.typed);
         }
         if self.is_on_the_bus() {
-            parameters.typed(&Self::of_the_bus(), &self.typed);
+            parameters.typed(&Self::bus_entries(), &self.typed);
             if self.leave_supply {
                 parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
             }
@@ -221,7 +221,7 @@ impl BissForm {
                 parameters.set("echo", &Echo::WORDS.print(&self.echo));
             }
         }
-        let (frame, line) = Self::of_every_way();
+        let (frame, line) = Self::common_entries();
         parameters.typed(&[frame, line].concat(), &self.typed);
         parameters.rest(&self.rest, |name| self.belongs(name));
         parameters

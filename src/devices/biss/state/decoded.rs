@@ -75,7 +75,7 @@ impl Encoder {
         let field = bank.fields().iter().find(|field| field.offset == offset)?;
         let mut own = [0; 64];
         own.get_mut(usize::from(offset)..usize::from(offset) + bytes.len())?.copy_from_slice(bytes);
-        words::beyond_number(field.value(&own))
+        words::non_numeric_text(field.value(&own))
     }
 }
 

@@ -64,7 +64,7 @@ impl Kind for Biss {
 
 impl Encoder {
     /// Reads back the next bank that has been written.
-    fn read_written(&mut self, services: &mut Services) {
+    fn read_back_changes(&mut self, services: &mut Services) {
         if let Some(bank) = self.read_after.pop_first() {
             self.submit(BissJob::ReadBank(bank), services);
         }
@@ -98,7 +98,7 @@ impl SessionEvents for Encoder {
         match output {
             BissOutput::Surveyed(survey) => {
                 self.take_survey(*survey, services);
-                self.read_written(services);
+                self.read_back_changes(services);
             }
             BissOutput::Status(status) => {
                 if let Some(position) = status.position {
@@ -113,7 +113,7 @@ impl SessionEvents for Encoder {
                 if read.start.bank().is_some() {
                     self.see_mode(read.unsaved);
                 }
-                self.read_written(services);
+                self.read_back_changes(services);
             }
             BissOutput::Area { banks, unsaved } => {
                 self.see_mode(unsaved);

@@ -80,12 +80,12 @@ impl Meaning {
     fn packet(&mut self, bytes: &[u8]) -> Option<Text> {
         let packet = adapter::packet(bytes)?;
         match bridge::Request::parse(&packet) {
-            Ok(request) => Some(self.asked_of_adapter(&request)),
+            Ok(request) => Some(self.adapter_request_text(&request)),
             Err(_) => adapter::message_text(&packet),
         }
     }
 
-    fn asked_of_adapter(&mut self, request: &bridge::Request) -> Text {
+    fn adapter_request_text(&mut self, request: &bridge::Request) -> Text {
         let place = |address| {
             let at = if address < RegisterAddress::BANK_SIZE {
                 self.bank.and_then(|bank| RegisterAddress::banked(bank, address))

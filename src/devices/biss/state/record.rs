@@ -86,7 +86,7 @@ impl Record {
                     self.add_crc_errors(crc_errors);
                     batch.sightings.push(PositionSample { at, position: None, is_bad: true, is_warned: false });
                 }
-                Sample::Frames(run) => self.see_frames(&run, &mut batch),
+                Sample::Frames(run) => self.add_frames(&run, &mut batch),
                 Sample::Watched(reading) => self.add_watched(&reading),
             }
         }
@@ -112,7 +112,7 @@ impl Record {
     }
 
     /// Records streamed frames. Missing frames are counted and leave a gap in the recording.
-    fn see_frames(&mut self, run: &FrameRun, batch: &mut Batch) {
+    fn add_frames(&mut self, run: &FrameRun, batch: &mut Batch) {
         let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
         if run.is_stream_start() || missing > 0 {

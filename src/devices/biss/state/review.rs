@@ -52,7 +52,7 @@ impl Reviewed for Biss {
         }
         warnings.extend(prepared.unsaved.map(words::profile_unsaved_in));
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
-        warnings.extend(review::left_alone(
+        warnings.extend(review::skipped_texts(
             TEXTS.text("biss_review.missing"),
             prepared.missing.iter().map(plain).collect(),
             mounting,

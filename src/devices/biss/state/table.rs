@@ -108,7 +108,7 @@ impl Group {
 impl RegisterEntry<'_> {
     /// Returns whether the value differs from the factory default; `false` if the description gives no default or the
     /// register was not read.
-    pub fn is_not_as_delivered(&self) -> bool {
+    pub fn differs_from_delivery(&self) -> bool {
         let default = &self.row.register.default;
         !default.is_empty() && self.bytes.as_ref().is_some_and(|own| own != default)
     }

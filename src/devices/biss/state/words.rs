@@ -29,7 +29,7 @@ pub(super) fn job(job: &BissJob) -> Text {
     }
 }
 
-pub(super) fn not_edited(error: MemoryError) -> Text {
+pub(super) fn edit_error_text(error: MemoryError) -> Text {
     match error {
         MemoryError::NotRead(at) => TEXTS.text("registers.unread").with("address", at),
         MemoryError::NoData(at) => TEXTS.text("registers.no_data").with("address", at),
@@ -84,7 +84,7 @@ pub fn eds(value: EdsValue) -> Text {
 }
 
 /// Returns the meaning of a data sheet field beyond its raw number, or `None` if it has no further meaning.
-pub(super) fn beyond_number(value: EdsValue) -> Option<Text> {
+pub(super) fn non_numeric_text(value: EdsValue) -> Option<Text> {
     match value {
         EdsValue::Number(_, "") => None,
         EdsValue::Ticks(_) => Some(TEXTS.text("eds.no_unit")),

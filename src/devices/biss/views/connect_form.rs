@@ -60,11 +60,11 @@ impl TypedConnectForm for BissConnectForm {
             }
         }
         if form.is_on_the_bus() {
-            typed(ui, theme, say, BissForm::of_the_bus(), &mut form.typed);
+            typed(ui, theme, say, BissForm::bus_entries(), &mut form.typed);
         }
         if form.kind != BissLinkKind::Replay && unfolded(ui, theme, more) {
             if !form.is_on_the_bus() {
-                let (baud, others) = BissForm::of_the_pin();
+                let (baud, others) = BissForm::pin_entries();
                 for own in baud {
                     let word = say(theme, own.label);
                     entry(ui, theme, &word, |ui| {
@@ -84,7 +84,7 @@ impl TypedConnectForm for BissConnectForm {
                 });
                 echo(ui, theme, &mut form.echo);
             }
-            let (frame, line) = BissForm::of_every_way();
+            let (frame, line) = BissForm::common_entries();
             entry(ui, theme, &say(theme, "connect.biss_frame"), |ui| {
                 typed_in_a_row(ui, theme, say, frame, &mut form.typed);
             });

@@ -49,7 +49,7 @@ pub(super) fn page_ui(
         empty(ui, theme, &say(theme, "procedures.none"), None);
         return;
     }
-    left_behind(ui, theme, encoder, actions);
+    left_state_ui(ui, theme, encoder, actions);
     let form = view.preset.get_or_insert_with(|| stored(encoder));
     let mut mounting = Mounting {
         motor: &mut view.motor,
@@ -96,7 +96,7 @@ fn stored(encoder: &Encoder) -> PresetForm {
 }
 
 /// Draws a warning that the encoder was left in a device mode or with its password set.
-fn left_behind(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn left_state_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(status) = &encoder.status else { return };
     let elsewhere = status.mode.is_some_and(|mode| mode != DeviceMode::OPERATION);
     if !elsewhere && status.protection.is_none_or(|protection| protection == 0) {

@@ -224,7 +224,7 @@ fn row_of(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere
         }
         .to_owned(),
         default: crate::bits::hex(&register.default),
-        differs: shown.is_not_as_delivered(),
+        differs: shown.differs_from_delivery(),
         changed: shown.has_changed,
         edited: shown.is_edited,
         cost: (!register.saves.is_empty()).then(|| say(theme, "registers.cost")),

@@ -19,8 +19,8 @@ pub(super) fn of_bytes(bytes: &[u8], known: &BytesContext) -> Result<Vec<WordMea
     let words = parameter_word(bytes, known);
     for layout in layouts(bytes.len(), known) {
         // An implausible status word is shown only if no other meaning fits.
-        let from = || from_drives(bytes, layout).filter(|_| words.is_empty() || is_of_drives(bytes, layout));
-        match (to_drives(bytes, layout), known.direction) {
+        let from = || decode_input_image(bytes, layout).filter(|_| words.is_empty() || is_input_image(bytes, layout));
+        match (decode_output_image(bytes, layout), known.direction) {
             (Err(why), Some(Direction::Out)) if words.is_empty() => return Err(why),
             (Err(_), Some(Direction::Out)) => {}
             (Ok(reading), Some(Direction::Out)) => readings.push(reading),
@@ -45,7 +45,7 @@ fn is_anything(bytes: &[u8], layout: Layout) -> bool {
 }
 
 /// Returns whether every status word is one that a drive can send.
-fn is_of_drives(bytes: &[u8], layout: Layout) -> bool {
+fn is_input_image(bytes: &[u8], layout: Layout) -> bool {
     InImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().all(|drive| drive.status.is_plausible()))
 }
 
@@ -55,15 +55,15 @@ pub(super) fn cyclic(data: &[u8], to_target: bool, known: &BytesContext) -> Vec<
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {
         if !to_target {
-            return from_drives(data, layout);
+            return decode_input_image(data, layout);
         }
         let refused = |why: String| WordMeaning { direction: "OUT", lines: vec![why], json: json!({"legal": false}) };
-        Some(to_drives(data, layout).unwrap_or_else(refused))
+        Some(decode_output_image(data, layout).unwrap_or_else(refused))
     };
     layouts(data.len(), known).filter_map(reading).collect()
 }
 
-fn to_drives(bytes: &[u8], layout: Layout) -> Result<WordMeaning, String> {
+fn decode_output_image(bytes: &[u8], layout: Layout) -> Result<WordMeaning, String> {
     let image = OutImage::parse(bytes, layout).map_err(|why| why.to_string())?;
     let mut lines = Vec::new();
     let mut list = Vec::new();
@@ -82,7 +82,7 @@ fn to_drives(bytes: &[u8], layout: Layout) -> Result<WordMeaning, String> {
     Ok(WordMeaning { direction: "OUT", lines, json: json!({"drives": list}) })
 }
 
-fn from_drives(bytes: &[u8], layout: Layout) -> Option<WordMeaning> {
+fn decode_input_image(bytes: &[u8], layout: Layout) -> Option<WordMeaning> {
     let image = InImage::parse(bytes, layout).ok()?;
     let mut lines = Vec::new();
     let mut list = Vec::new();
@@ -186,20 +186,20 @@ fn answer_words(pkw: Pkw) -> String {
 /// Returns whether the answer's width matches the parameter type.
 fn answer_fits(pkw: Pkw, row: &ParameterRow) -> bool {
     match pkw.answer() {
-        Answer::Word(_) => is_of_width(row, true),
-        Answer::Double(_) => is_of_width(row, false),
+        Answer::Word(_) => matches_width(row, true),
+        Answer::Double(_) => matches_width(row, false),
         _ => true,
     }
 }
 
 /// Returns whether a value of the given width, a word or else a double word, can belong to the parameter. Four
 /// characters of a string form a double word.
-fn is_of_width(row: &ParameterRow, word: bool) -> bool {
+fn matches_width(row: &ParameterRow, word: bool) -> bool {
     row.kind.length().map_or(!word, |bytes| (bytes < 4) == word)
 }
 
 fn written_words(pkw: Pkw, raw: u32, word: bool) -> String {
-    let own = row(pkw).filter(|row| is_of_width(row, word));
+    let own = row(pkw).filter(|row| matches_width(row, word));
     let warning = own.map_or(String::new(), |row| meaning::warning(row, number(row, raw)));
     format!("write {} to {}{warning}", value_words(pkw, raw, word), parameter_name(pkw.number()))
 }
@@ -208,7 +208,7 @@ fn written_words(pkw: Pkw, raw: u32, word: bool) -> String {
 fn value_words(pkw: Pkw, raw: u32, word: bool) -> String {
     match row(pkw) {
         None => raw.to_string(),
-        Some(row) if !is_of_width(row, word) => {
+        Some(row) if !matches_width(row, word) => {
             let (got, expected) = if word { (2, 4) } else { (4, row.kind.length().unwrap_or(2).max(2)) };
             format!("no value ({got} bytes where its type has {expected}: 0x{raw:X})")
         }

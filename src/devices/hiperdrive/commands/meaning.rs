@@ -48,29 +48,29 @@ pub(super) fn of_word(word: u16, known: &BytesContext) -> Result<Vec<WordMeaning
     let (control, status) = (ControlWord::parse(word), StatusWord::new(word));
     match (known.direction, control) {
         (Some(Direction::Out), Err(why)) => Err(why.to_string()),
-        (Some(Direction::Out), Ok(control)) => Ok(vec![of_control(control)]),
-        (Some(Direction::In), _) => Ok(vec![of_status(status)]),
-        (None, Ok(control)) if word == 0 => Ok(vec![of_control(control), of_status(status)]),
-        (None, Ok(control)) => Ok(vec![of_control(control)]),
-        (None, Err(_)) if status.is_plausible() => Ok(vec![of_status(status)]),
+        (Some(Direction::Out), Ok(control)) => Ok(vec![control_meaning(control)]),
+        (Some(Direction::In), _) => Ok(vec![status_meaning(status)]),
+        (None, Ok(control)) if word == 0 => Ok(vec![control_meaning(control), status_meaning(status)]),
+        (None, Ok(control)) => Ok(vec![control_meaning(control)]),
+        (None, Err(_)) if status.is_plausible() => Ok(vec![status_meaning(status)]),
         (None, Err(why)) => {
             let refused = WordMeaning {
                 direction: "OUT",
                 lines: vec![format!("not to be sent, {why}")],
                 json: json!({"bits": [], "legal": false}),
             };
-            Ok(vec![refused, of_status(status)])
+            Ok(vec![refused, status_meaning(status)])
         }
     }
 }
 
-fn of_control(control: ControlWord) -> WordMeaning {
+fn control_meaning(control: ControlWord) -> WordMeaning {
     let names: Vec<&str> = control.set().map(|(_, name)| name).collect();
     let lines = vec![format!("control word, {}", control_words(control))];
     WordMeaning { direction: "OUT", lines, json: json!({"bits": names, "legal": true}) }
 }
 
-fn of_status(status: StatusWord) -> WordMeaning {
+fn status_meaning(status: StatusWord) -> WordMeaning {
     let names: Vec<&str> = status.set().map(StatusBit::name).collect();
     let lines = vec![format!("status word, {}", status_words(status))];
     WordMeaning { direction: "IN", lines, json: json!({"bits": names, "state": status.state().name()}) }
@@ -122,7 +122,7 @@ pub(super) fn status_words(status: StatusWord) -> String {
 /// Returns the parameter that an attribute belongs to, along with the value to be written, or the reason why the data
 /// does not match the parameter type.
 pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option<(String, Result<String, String>)> {
-    let number = ParameterNumber::of_attribute(class, attribute)?;
+    let number = ParameterNumber::from_attribute(class, attribute)?;
     let row = number.row();
     let value = match row.map(|row| (row, row.kind.parse(data))) {
         Some((row, Ok(Value::Number(value)))) => Ok(format!("{}{}", number_words(row, value), warning(row, value))),

@@ -119,7 +119,7 @@ impl OwnCommand for MoveCommand {
     }
 
     fn run(&self, common: &Common, output: &Output, matches: &ArgMatches) -> Result {
-        r#move::drive_to(common, output, &parse(matches)?)
+        r#move::execute_move(common, output, &parse(matches)?)
     }
 }
 

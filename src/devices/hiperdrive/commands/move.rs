@@ -40,7 +40,7 @@ enum MotionOutcome {
     Late,
 }
 
-pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Result {
+pub(crate) fn execute_move(common: &Common, output: &Output, wanted: &Move) -> Result {
     let target = parse_number(&wanted.target)
         .ok_or_else(|| Failure::Usage(format!("{} is not a position: enter a number of steps", wanted.target)))?;
     if !wanted.yes {

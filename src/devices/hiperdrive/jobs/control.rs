@@ -73,7 +73,7 @@ impl Control {
     }
 
     /// Stops the drives after explicit messaging was lost.
-    pub(super) fn lose_session(&self) {
+    pub(super) fn mark_session_lost(&self) {
         if let Some(open) = &self.open {
             open.cyclic.lose(CyclicLost::Session);
         }
@@ -163,17 +163,17 @@ impl Hiperdrive {
     }
 
     /// Returns whether the program is shutting down while drives are still under control.
-    pub(super) fn is_to_end(&self) -> bool {
+    pub(super) fn should_end(&self) -> bool {
         self.control.open.is_some() && self.control.motion.is_shutting_down()
     }
 
     /// Closes a lost cyclic connection at the target as well, and reports the loss once. Losing explicit messaging also
     /// counts as a loss, since motion is not allowed without access to parameters.
-    pub(super) fn let_go_of_lost(&mut self, context: &mut SessionContext) {
+    pub(super) fn release_lost_control(&mut self, context: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check().is_err() {
-            self.control.lose_session();
+            self.control.mark_session_lost();
         }
-        if self.is_to_end() {
+        if self.should_end() {
             return self.end(context);
         }
         if self.control.open.as_ref().is_none_or(|open| open.cyclic.lost().is_none()) {

@@ -115,7 +115,7 @@ impl Device for Hiperdrive {
         tell: ProgressSink<'_>,
     ) -> Result<HiperdriveOutput, JobError> {
         use HiperdriveOutput as Out;
-        self.let_go_of_lost(context);
+        self.release_lost_control(context);
         let mut step = |done, total, what| tell(JobReport::Progress(Progress { done, total, step: what }));
         let mut parameter = |done, total, number| step(done, total, JobStep::Parameter(number));
         Ok(match job {
@@ -148,14 +148,14 @@ impl Device for Hiperdrive {
             }
             HiperdriveJob::Watch(drive) => {
                 self.watched = drive;
-                self.look_anew(context, drive);
+                self.restart_refresh(context, drive);
                 Out::Watched(drive)
             }
         })
     }
 
     fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
-        self.let_go_of_lost(context);
+        self.release_lost_control(context);
         let drive = self.watched;
         if let Some(actual) = self.control.actual(drive) {
             return Ok(Sample::Position(DriveReading { at: context.clock.now(), drive, actual }));
@@ -164,7 +164,7 @@ impl Device for Hiperdrive {
     }
 
     fn watch(&mut self, desk: &mut SessionContext, what: &Temperature) -> Result<Watched<Sample>, JobError> {
-        self.let_go_of_lost(desk);
+        self.release_lost_control(desk);
         let reading = match self.control.temperature(*what)? {
             Some(reading) => reading,
             None => temperature(&mut self.master(desk), *what)?,
@@ -178,7 +178,7 @@ impl Device for Hiperdrive {
     }
 
     fn check(&mut self) -> Result<(), LinkError> {
-        self.wire.check().inspect_err(|_| self.control.lose_session())
+        self.wire.check().inspect_err(|_| self.control.mark_session_lost())
     }
 
     fn idle_interval(&self) -> Duration {
@@ -186,8 +186,8 @@ impl Device for Hiperdrive {
     }
 
     fn idle(&mut self, context: &mut SessionContext) -> Option<DeviceMessage> {
-        self.let_go_of_lost(context);
-        self.look_at_rules(context);
+        self.release_lost_control(context);
+        self.refresh_rules(context);
         self.remark.take()
     }
 
@@ -197,6 +197,6 @@ impl Device for Hiperdrive {
     }
 
     fn is_urgent(&self) -> bool {
-        self.is_to_end()
+        self.should_end()
     }
 }

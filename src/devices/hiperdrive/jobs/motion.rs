@@ -167,7 +167,7 @@ impl Motion {
     }
 
     /// Requires the limits of a drive to be confirmed before it moves.
-    pub fn unconfirm_limits(&self, drive: DriveNumber) {
+    pub fn revoke_limits_confirmation(&self, drive: DriveNumber) {
         self.with_limits(drive, DriveLimits::unconfirm);
     }
 
@@ -247,7 +247,7 @@ impl Motion {
             act: man.act(),
             ended: man.ended(),
         };
-        let mut views: Vec<DriveView> = drives.dead_men().map(of).collect();
+        let mut views: Vec<DriveView> = drives.dead_man_switches().map(of).collect();
         views.sort_by_key(|view| view.number);
         let view = MotionSnapshot {
             open: !drives.is_ending(),

@@ -11,7 +11,7 @@ use crate::link::{
     Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, SimPort, TcpLink, TraceEntry, UdpPort, Wire,
 };
 use crate::store::Store;
-use crate::worker::open::{inside, leads_elsewhere, margin, read_recording, simulated};
+use crate::worker::open::{inside, margin, read_recording, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to an adapter or a hub without opening it.
@@ -41,13 +41,13 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenErro
             let port = Box::new(UdpPort::new(target, clock.clone()));
             DeviceConnection { wire, port: Some(port), station, target: None }
         }
-        Wire::Inside => virtually(&config, station, clock.clone()),
+        Wire::Inside => open_virtual(&config, station, clock.clone()),
     };
     Ok(Session::to_target(way, clock, store))
 }
 
 /// Returns the connection to a virtual device in this process.
-fn virtually(config: &Config, station: Station, clock: Arc<dyn Clock>) -> DeviceConnection {
+fn open_virtual(config: &Config, station: Station, clock: Arc<dyn Clock>) -> DeviceConnection {
     let target = Target::new(config);
     let connection = target.connection(Ipv4Addr::UNSPECIFIED);
     let wire = inside(connection, &clock);
@@ -58,7 +58,7 @@ fn virtually(config: &Config, station: Station, clock: Arc<dyn Clock>) -> Device
 /// Parses the settings of the station and of the virtual device, which only apply to a link to one.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Enip | Scheme::Replay) {
-        return Err(leads_elsewhere(url.scheme, "sim:, enip:, replay:"));
+        return Err(wrong_target_error(url.scheme, "sim:, enip:, replay:"));
     }
     let config = Config::from_pairs(&simulated(url, LinkParameters::KEYS, Config::KEYS)?)?;
     let tcp = match url.wire() {

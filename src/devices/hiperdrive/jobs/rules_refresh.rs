@@ -42,7 +42,7 @@ fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
 impl Hiperdrive {
     /// Reads the limit parameters if due while drives may be moved. If they cannot be read, nothing moves until they
     /// can, which is reported once.
-    pub(super) fn look_at_rules(&mut self, context: &mut SessionContext) {
+    pub(super) fn refresh_rules(&mut self, context: &mut SessionContext) {
         let Some(identity) = self.control.controlled_device() else { return };
         if self.control.rules_refresh.rests.is_some_and(|until| context.clock.now() < until) {
             return;
@@ -56,7 +56,7 @@ impl Hiperdrive {
                 Ok(()) => {}
                 // A job takes precedence, or a newer request has arrived.
                 Err(error) if error.is_cancelled() => return,
-                Err(error) => return self.cannot_look(context, drive, error),
+                Err(error) => return self.handle_refresh_failure(context, drive, error),
             }
         }
         if self.control.rules_refresh.rests.take().is_some() {
@@ -89,13 +89,13 @@ impl Hiperdrive {
         Ok(())
     }
 
-    fn cannot_look(&mut self, context: &mut SessionContext, drive: DriveNumber, error: Error) {
+    fn handle_refresh_failure(&mut self, context: &mut SessionContext, drive: DriveNumber, error: Error) {
         tracing::warn!("{error}");
         // All limits are read before anything moves again.
         self.control.motion().doubt_limits(drive);
         if matches!(error, Error::Link(_)) || self.wire.check().is_err() {
             // Nothing can be queried any more: this is reported as a loss.
-            return self.control.lose_session();
+            return self.control.mark_session_lost();
         }
         if self.control.rules_refresh.rests.replace(context.clock.now() + REST).is_none() {
             self.control.motion().stop();
@@ -104,9 +104,9 @@ impl Hiperdrive {
     }
 
     /// Reads the limits of a drive before anything else, because it has been selected.
-    pub(super) fn look_anew(&mut self, context: &mut SessionContext, drive: DriveNumber) {
+    pub(super) fn restart_refresh(&mut self, context: &mut SessionContext, drive: DriveNumber) {
         self.control.motion().doubt_limits(drive);
-        self.look_at_rules(context);
+        self.refresh_rules(context);
     }
 
     /// Reads the limits of all drives. Cancellation is ignored, since the new state must be known after a change.

@@ -204,7 +204,7 @@ fn named(number: ParameterNumber) -> &'static str {
 
 impl From<LineError> for Error {
     fn from(error: LineError) -> Self {
-        error.at_device(Error::Cancelled, Error::NeverSilent, Error::Link)
+        error.into_device_error(Error::Cancelled, Error::NeverSilent, Error::Link)
     }
 }
 

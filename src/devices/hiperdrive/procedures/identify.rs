@@ -138,7 +138,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
     const DRIVE: u64 = 6;
     const DEVICE: u64 = 5;
     let category = category(master)?;
-    let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { product: category.clone() })?;
+    let topology = Topology::from_category(&category).ok_or(Error::NotHiperdrive { product: category.clone() })?;
     let mut steps = Steps { done: 0, total: DRIVE * u64::from(topology.drives()) + DEVICE, progress };
     let mut drives = Vec::new();
     for number in DriveNumber::of(topology) {
@@ -285,7 +285,7 @@ pub(super) fn topology(master: &mut Master<'_>) -> Result<Topology, Error> {
         return Ok(topology);
     }
     let category = category(master)?;
-    let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { product: category })?;
+    let topology = Topology::from_category(&category).ok_or(Error::NotHiperdrive { product: category })?;
     master.learn(topology);
     Ok(topology)
 }

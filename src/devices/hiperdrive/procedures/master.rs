@@ -114,7 +114,7 @@ impl<'a> Master<'a> {
         let requested = RequestedItem::Parameter(number);
         let request = Request::get(number.class(), 1, number.attribute());
         let data = match self.request(requested, &request, Repeats::Always) {
-            Err(Error::Refused { refusal, .. }) => return Err(self.why_refused(requested, number, refusal)?),
+            Err(Error::Refused { refusal, .. }) => return Err(self.refusal_reason(requested, number, refusal)?),
             ended => ended?.data,
         };
         row.kind.parse(&data).map_err(|cause| match cause {
@@ -164,10 +164,10 @@ impl<'a> Master<'a> {
             tries += 1;
             match self.request(requested, &request, once) {
                 Ok(_) => return Ok(()),
-                Err(Error::Refused { refusal, .. }) => return Err(self.why_not_set(number, wanted, refusal)?),
+                Err(Error::Refused { refusal, .. }) => return Err(self.write_refusal_reason(number, wanted, refusal)?),
                 Err(error @ (Error::NoReply { .. } | Error::Damaged { .. })) => {
-                    if does_something(row) || self.shielded(|master| master.read_number(number))? == wanted {
-                        return if does_something(row) { Err(error) } else { Ok(()) };
+                    if triggers_action(row) || self.shielded(|master| master.read_number(number))? == wanted {
+                        return if triggers_action(row) { Err(error) } else { Ok(()) };
                     }
                     if tries >= TRIES {
                         return Err(error);
@@ -404,7 +404,7 @@ fn settable(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
 }
 
 /// Returns whether setting the parameter triggers an action, so that reading it back proves nothing.
-const fn does_something(row: &ParameterRow) -> bool {
+const fn triggers_action(row: &ParameterRow) -> bool {
     matches!(row.number, SERVICE | ACKNOWLEDGE | REFERENCE | RESET)
 }
 

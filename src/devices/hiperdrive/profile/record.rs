@@ -107,7 +107,7 @@ impl HiperdriveProfile {
 
 impl ProfileIdentity {
     /// Returns whether nothing is known about the adapter or hub itself.
-    pub fn is_of_no_device(&self) -> bool {
+    pub fn has_no_device(&self) -> bool {
         *self == ProfileIdentity { drives: self.drives.clone(), ..ProfileIdentity::default() }
     }
 }

@@ -53,7 +53,7 @@ pub fn plan_restore(
             Some(from) if from == to => unchanged += 1,
             Some(_) if stays(profile, &device.identity, item, options) => mounting_left.push(item),
             Some(_) => {
-                if is_of_another_mounting(profile, &device.identity, item) {
+                if is_from_different_mounting(profile, &device.identity, item) {
                     mounting_written.push(item);
                 }
                 wanted.values.insert(number, to);
@@ -110,11 +110,11 @@ fn check_allowed(
 }
 
 fn stays(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item, options: RestoreOptions) -> bool {
-    item.0.base() == REFERENCE || !options.with_mounting && is_of_another_mounting(profile, device, item)
+    item.0.base() == REFERENCE || !options.with_mounting && is_from_different_mounting(profile, device, item)
 }
 
 /// Returns whether an item belongs to the mounting of another device or drive.
-fn is_of_another_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
+fn is_from_different_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     profile.is_mounting(item) && !is_same_place(profile, device, item)
 }
 

@@ -41,7 +41,7 @@ impl Profile for HiperdriveProfile {
 
     fn write(&self, writer: &mut Writer) {
         // A profile made by hand belongs to no device.
-        if !self.identity.is_of_no_device() {
+        if !self.identity.has_no_device() {
             self.identity.write(writer);
         }
         MountingMark::write_all(
@@ -161,7 +161,7 @@ fn read_identity(mut entries: Entries) -> Result<ProfileIdentity, ProfileError> 
     let path = entries.path_of("category");
     let category = entries.optional::<String>("category", CATEGORY)?;
     let topology = category
-        .map(|category| Topology::of_category(&category).ok_or(ProfileError::Shape { path, expected: CATEGORY }));
+        .map(|category| Topology::from_category(&category).ok_or(ProfileError::Shape { path, expected: CATEGORY }));
     let topology = topology.transpose()?;
     let mut text = |name: &str| entries.optional::<String>(name, Expected::Text).map(Option::unwrap_or_default);
     let (name, article_number) = (text("name")?, text("article_number")?);

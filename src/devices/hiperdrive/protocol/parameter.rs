@@ -188,7 +188,7 @@ impl ParameterNumber {
     }
 
     /// Returns the parameter number for a class and attribute, or `None` if they address no parameter.
-    pub fn of_attribute(class: u16, attribute: u16) -> Option<Self> {
+    pub fn from_attribute(class: u16, attribute: u16) -> Option<Self> {
         match class.checked_sub(CLASS)? {
             0 if attribute < 100 => ParameterNumber::new(attribute),
             drive => ParameterNumber::of_drive(attribute, DriveNumber::new(u8::try_from(drive).ok()?)?),

@@ -168,7 +168,7 @@ impl Topology {
     }
 
     /// Returns the topology for a value of parameter 13.
-    pub fn of_category(category: &str) -> Option<Self> {
+    pub fn from_category(category: &str) -> Option<Self> {
         Topology::ALL.into_iter().find(|topology| topology.category() == category.trim())
     }
 }

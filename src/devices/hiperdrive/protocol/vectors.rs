@@ -317,7 +317,7 @@ fn published_lengths_match() {
             let layout = layout(topology, pkw);
             assert_eq!(Layout::of_length(layout.length()).collect::<Vec<_>>(), [layout]);
         }
-        assert_eq!(Topology::of_category(topology.category()), Some(topology));
+        assert_eq!(Topology::from_category(topology.category()), Some(topology));
     }
     assert_eq!(Layout::of_length(24).count(), 0);
     // Drive 3 of a hub at 16, the parameter words after the drives; unset values are zero.

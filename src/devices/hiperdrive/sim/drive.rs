@@ -149,7 +149,7 @@ impl Drive {
     pub(super) fn reset(&mut self, now: Moment) {
         self.advance(now);
         self.axis.halt();
-        self.forgive();
+        self.clear_faults();
         self.out = OutData { speed: 100, torque: 100, ..OutData::default() };
         (self.control, self.state, self.motion) = (ControlWord::OFF, State::NotReady, Motion::Rest);
         (self.target_reached, self.acknowledged) = (false, false);
@@ -218,7 +218,7 @@ impl Drive {
         }
     }
 
-    pub(super) const fn forgive(&mut self) {
+    pub(super) const fn clear_faults(&mut self) {
         self.faults = 0;
         self.over_current = false;
     }
@@ -324,7 +324,7 @@ impl Drive {
 
     fn enter(&mut self, state: State) {
         if self.state == State::Fault && state == State::Locked {
-            self.forgive();
+            self.clear_faults();
         }
         if matches!(state, State::NotReady | State::Ready) {
             (self.target_reached, self.acknowledged) = (false, false);

@@ -67,7 +67,7 @@ impl Memory {
     }
 
     /// 47 = −1: restores the factory settings of the values that the adapter or hub stores itself, without saving.
-    pub(super) fn forget_own(&mut self) {
+    pub(super) fn reset_device_values(&mut self) {
         copy_own(&self.factory, &mut self.now);
     }
 

@@ -93,14 +93,14 @@ impl Drive {
             TARGET => out.target = i32::try_from(value).map_err(|_| Refused::Value)?,
             LOWER | UPPER => return self.write_limit(number, value),
             ACKNOWLEDGE => {
-                self.forgive();
+                self.clear_faults();
                 return Ok(());
             }
             REFERENCE => return self.write_position(value),
             RESET => {
                 if value == 1 {
                     self.memory.forget();
-                    self.forget_place();
+                    self.invalidate_position();
                 } else {
                     self.memory.restart();
                 }
@@ -146,7 +146,7 @@ impl Drive {
     }
 
     /// Sets the position to that of the shaft, between 0 and 1 turn (manual, 198).
-    pub(super) fn forget_place(&mut self) {
+    pub(super) fn invalidate_position(&mut self) {
         self.offset = -(self.axis.place() / TURN).floor() * TURN;
     }
 

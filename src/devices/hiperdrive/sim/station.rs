@@ -234,7 +234,7 @@ impl Station {
         self.advance(now);
         self.answers_at = None;
         let row = number.row().ok_or(Refused::Unknown)?;
-        let Some(drive) = number.drive() else { return self.read_own(now, row).ok_or(Refused::Unknown) };
+        let Some(drive) = number.drive() else { return self.read_device_value(now, row).ok_or(Refused::Unknown) };
         if drive.get() > self.setup.topology.drives() {
             return Err(Refused::Unknown);
         }
@@ -316,7 +316,7 @@ impl Station {
         }
         let each = |memory: &mut Memory| match value {
             1 => save(memory),
-            -1 => memory.forget_own(),
+            -1 => memory.reset_device_values(),
             -2 => memory.recall(),
             -3 => {
                 memory.forget();
@@ -327,7 +327,7 @@ impl Station {
         self.present().for_each(|drive| {
             each(&mut drive.memory);
             if value == -3 {
-                drive.forget_place();
+                drive.invalidate_position();
             }
         });
         each(&mut self.memory);
@@ -341,7 +341,7 @@ impl Station {
         });
     }
 
-    fn read_own(&self, now: Moment, row: &ParameterRow) -> Option<Value> {
+    fn read_device_value(&self, now: Moment, row: &ParameterRow) -> Option<Value> {
         let text = |text: &str| Some(Value::Text(text.to_owned()));
         let number = match row.number {
             9 => self.plate.supply_tenths.into(),

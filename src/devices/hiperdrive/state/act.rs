@@ -117,7 +117,7 @@ impl Unit {
         };
         if let Err(why) = self.may(drive, request) {
             // The present act continues: nothing else has started.
-            return self.tell_of(drive, Severity::Warning, vec![why], services);
+            return self.report_drive_message(drive, Severity::Warning, vec![why], services);
         }
         match request {
             MotionRequest::Jog { .. } => self.moves.press(drive, request),
@@ -129,7 +129,7 @@ impl Unit {
 
     /// Opens the cyclic connection; from then on the selected drive is read continuously.
     fn take_control(&mut self, services: &mut Services) {
-        if let Err(why) = self.can_take() {
+        if let Err(why) = self.check_can_take_control() {
             services.notify(Severity::Warning, vec![why], Some(&self.session.name()));
             return;
         }

@@ -4,7 +4,7 @@ use super::discovery::DiscoveryFinder;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{Parameters, Typed, without_entry};
-use crate::app::connect::target::{checked, entered, host_and_usual_port, parted_from_usual};
+use crate::app::connect::target::{checked, entered, host_and_default_port, split_host_default_port};
 use crate::devices::hiperdrive::jobs::check;
 use crate::devices::hiperdrive::procedures::LinkParameters;
 use crate::devices::hiperdrive::sim::Config;
@@ -81,7 +81,7 @@ impl FormModel for HiperdriveForm {
         let mut form = HiperdriveForm { kind: way, ..HiperdriveForm::default() };
         match form.kind {
             HiperdriveLinkKind::Replay => form.file = url.target.clone(),
-            HiperdriveLinkKind::Network => (form.host, form.tcp_port) = parted_from_usual(&url.target, PORT),
+            HiperdriveLinkKind::Network => (form.host, form.tcp_port) = split_host_default_port(&url.target, PORT),
             HiperdriveLinkKind::Virtual => {}
         }
         form.rest = without_entry(&url.query, |name, value| form.take(name, value));
@@ -135,7 +135,7 @@ impl HiperdriveForm {
         Ok(match self.kind {
             HiperdriveLinkKind::Virtual => (Scheme::Sim, String::new()),
             HiperdriveLinkKind::Network => {
-                (Scheme::Enip, host_and_usual_port(&self.host, "form.device_missing", &self.tcp_port, PORT)?)
+                (Scheme::Enip, host_and_default_port(&self.host, "form.device_missing", &self.tcp_port, PORT)?)
             }
             HiperdriveLinkKind::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })

@@ -86,7 +86,7 @@ impl Kind for Hiperdrive {
 
 impl Unit {
     /// Requests missing data as soon as the line is free: the cause of a fault, and the position of the selected drive.
-    fn ask_on(&mut self, services: &mut Services) {
+    fn request_next(&mut self, services: &mut Services) {
         if self.survey.is_none() || !self.session.is_ready() {
             return;
         }
@@ -128,13 +128,13 @@ impl Unit {
         }
     }
 
-    fn tell_end(&self, drive: DriveNumber, ended: Ended, services: &mut Services) {
+    fn report_motion_end(&self, drive: DriveNumber, ended: Ended, services: &mut Services) {
         let weight = words::weight(ended);
         if weight == Severity::Note {
             return;
         }
         let words = words::ended(ended, |steps| self.place(drive, steps));
-        self.tell_of(drive, weight, vec![words], services);
+        self.report_drive_message(drive, weight, vec![words], services);
     }
 
     /// Processes the position of a drive, and records it for the selected drive.
@@ -185,11 +185,11 @@ impl SessionEvents for Unit {
             }
         }
         if let Some((drive, ended)) = self.moves.take_end() {
-            self.tell_end(drive, ended, services);
+            self.report_motion_end(drive, ended, services);
         }
         self.poll_line(services);
         self.follow_axes();
-        self.ask_on(services);
+        self.request_next(services);
     }
 
     fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {

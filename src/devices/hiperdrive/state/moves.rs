@@ -81,7 +81,7 @@ impl Moves {
     /// ([`Effort::JOG`]).
     pub(super) fn begin(&mut self, motion: Motion) {
         for drive in self.unconfirmed() {
-            motion.unconfirm_limits(drive);
+            motion.revoke_limits_confirmation(drive);
         }
         (self.experts, self.act) = (BTreeSet::new(), None);
         // Every session begins slowly, whatever was set in the one before.
@@ -141,7 +141,7 @@ impl Moves {
     }
 
     /// Returns whether the cyclic connection was opened since the last query.
-    pub(super) fn take_taken(&mut self) -> bool {
+    pub(super) fn take_control_taken(&mut self) -> bool {
         std::mem::take(&mut self.taken)
     }
 
@@ -240,7 +240,7 @@ impl Moves {
     pub(super) fn unconfirm(&mut self, drive: DriveNumber) {
         self.limits.entry(drive).or_default().unconfirm();
         if let Some(motion) = &self.motion {
-            motion.unconfirm_limits(drive);
+            motion.revoke_limits_confirmation(drive);
         }
     }
 

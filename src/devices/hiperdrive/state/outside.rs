@@ -68,7 +68,7 @@ impl Unit {
             return self.moves.free(drive, direction);
         }
         let why = self.may_move(drive).err().unwrap_or_else(|| TEXTS.text("hd_outside.inside"));
-        self.tell_of(drive, Severity::Warning, vec![why], services);
+        self.report_drive_message(drive, Severity::Warning, vec![why], services);
     }
 
     /// Returns the change that assigns a position in scaled steps to the present location of a drive, and saves it.

@@ -32,7 +32,7 @@ impl RemembersDrives for Unit {
             None => self.take_remembered(kept),
         };
         let mut next = kept.clone();
-        let now = self.to_remember();
+        let now = self.remembered_values();
         let (pitches, measure, unsaved) = (before.pitches, before.measure, before.unsaved);
         let known = RememberedDrives::confirmed(pitches, measure, unsaved);
         let (pitches, measure, unsaved) = (now.pitches.clone(), now.measure, now.unsaved.clone());
@@ -49,15 +49,15 @@ impl RemembersDrives for Unit {
                 next.set_unconfirmed(drive, false);
             }
         }
-        let elsewhere = kept.marked_since(&before.kept);
+        let elsewhere = kept.newly_marked(&before.kept);
         elsewhere.into_iter().filter_map(DriveNumber::new).for_each(|drive| self.moves.unconfirm(drive));
-        self.exchanged = Some(Exchanged { kept: next.clone(), ..self.to_remember() });
+        self.exchanged = Some(Exchanged { kept: next.clone(), ..self.remembered_values() });
         (next != *kept).then_some(next)
     }
 
     fn lock_by(&mut self, found: &RememberedDrives) {
         let Some(before) = &mut self.exchanged else { return };
-        for drive in found.marked_since(&before.kept).into_iter().filter_map(DriveNumber::new) {
+        for drive in found.newly_marked(&before.kept).into_iter().filter_map(DriveNumber::new) {
             self.moves.unconfirm(drive);
             // It is not a mark of this session.
             before.unconfirmed.insert(drive);
@@ -90,7 +90,7 @@ impl Unit {
         }
     }
 
-    fn to_remember(&self) -> Exchanged {
+    fn remembered_values(&self) -> Exchanged {
         let unconfirmed = self.moves.unconfirmed();
         let scale = |drive: &DriveNumber| Some((*drive, self.drive_limits(*drive)?.seen()?.scale));
         Exchanged {

@@ -26,7 +26,7 @@ impl Unit {
     ///
     /// # Errors
     /// Explains why it cannot.
-    pub fn can_take(&self) -> Result<(), Text> {
+    pub fn check_can_take_control(&self) -> Result<(), Text> {
         match self.session.why_not_ready() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
@@ -40,7 +40,7 @@ impl Unit {
     ///
     /// # Errors
     /// Explains why it cannot.
-    pub fn can_give(&self) -> Result<(), Text> {
+    pub fn check_can_release_control(&self) -> Result<(), Text> {
         // Also while the device does not answer.
         match self.session.line() {
             _ if !self.moves.is_open() => Err(TEXTS.text("hd_refused.not_taken")),
@@ -55,7 +55,7 @@ impl Unit {
     /// # Errors
     /// Explains why it may not.
     pub fn may_move(&self, drive: DriveNumber) -> Result<(), Text> {
-        self.may_be_led()?;
+        self.check_controllable()?;
         if let Phase::Silent(why) = &self.session.phase {
             return Err(why.clone());
         }
@@ -91,7 +91,7 @@ impl Unit {
         if could { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
 
-    fn may_be_led(&self) -> Result<(), Text> {
+    fn check_controllable(&self) -> Result<(), Text> {
         if !self.moves.is_open() {
             return Err(TEXTS.text("hd_refused.not_taken"));
         }
@@ -110,7 +110,7 @@ impl Unit {
         match request {
             MotionRequest::Run { end: RunEnd::Endless, .. } => self.may_run_endlessly(drive)?,
             _ if request.moves() => self.may_move(drive)?,
-            _ => self.may_be_led()?,
+            _ => self.check_controllable()?,
         }
         let Some(permit) = self.moves.permit(drive) else { return Err(TEXTS.text("hd_refused.not_taken")) };
         let place = |steps| self.place(drive, steps);
@@ -138,7 +138,13 @@ impl Unit {
     }
 
     /// Reports a message about a drive, which is named if there are several.
-    pub(super) fn tell_of(&self, drive: DriveNumber, severity: Severity, texts: Vec<Text>, services: &mut Services) {
+    pub(super) fn report_drive_message(
+        &self,
+        drive: DriveNumber,
+        severity: Severity,
+        texts: Vec<Text>,
+        services: &mut Services,
+    ) {
         services.notify_part(severity, texts, (Some(&self.session.name()), self.name_of(drive)));
     }
 
@@ -160,7 +166,7 @@ impl Unit {
 
     /// Formats a position in all units, since under another scale the same number of steps may be another position.
     /// Degrees are only included if selected.
-    pub fn in_all_units(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
+    pub fn position_texts(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
         let ruler = self.ruler(drive);
         let wanted = |own: &Measure| *own != Measure::Degrees || *own == self.measure;
         let place = |own: Measure| {
@@ -189,7 +195,7 @@ impl Unit {
 
     /// Returns the states to which a single word leads from the present one; none without control.
     pub fn reachable(&self, drive: DriveNumber) -> Vec<State> {
-        let Some(state) = self.state(drive).filter(|_| self.may_be_led().is_ok()) else { return Vec::new() };
+        let Some(state) = self.state(drive).filter(|_| self.check_controllable().is_ok()) else { return Vec::new() };
         let mut reachable = Vec::new();
         for row in state.transitions().filter(|row| row.word.is_some()) {
             if !reachable.contains(&row.to) {
@@ -221,7 +227,7 @@ impl Unit {
 
     /// Describes the running act of a drive, or the end of the last one; `None` without a cyclic connection, and before
     /// the first.
-    pub fn running_or_last(&self, drive: DriveNumber) -> Option<RequestState> {
+    pub fn current_or_last_request(&self, drive: DriveNumber) -> Option<RequestState> {
         let view = self.moves.drive(drive)?;
         if view.phase != Doing::Idle {
             return Some(RequestState { words: words::phase(view.phase), is_well: true });

@@ -55,7 +55,7 @@ impl Reviewed for Hiperdrive {
         }
         texts.extend(power_up(&prepared.plan));
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
-        texts.extend(review::left_alone(
+        texts.extend(review::skipped_texts(
             TEXTS.text("hd_review.missing"),
             prepared.missing.iter().map(plain).collect(),
             mounting,

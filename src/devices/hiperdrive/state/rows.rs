@@ -78,7 +78,7 @@ impl Unit {
 
     fn row(&self, number: ParameterNumber, kind: &'static ParameterRow) -> Row {
         let own = || self.staged.base().and_then(|image| image.get(number)).map(Value::Number);
-        let value = self.said_since(number).or_else(|| self.value(number).cloned()).or_else(own);
+        let value = self.cyclic_value(number).or_else(|| self.value(number).cloned()).or_else(own);
         let travel = self.travel(number);
         let is_editable = is_editable(kind) && (self.profile().is_none() || Image::holds(kind));
         let staged = self.staged.value(number).filter(|_| is_editable);
@@ -105,7 +105,7 @@ impl Unit {
     }
 
     /// Returns cyclic data of a drive that are newer than the reading: words, measurements and errors.
-    fn said_since(&self, number: ParameterNumber) -> Option<Value> {
+    fn cyclic_value(&self, number: ParameterNumber) -> Option<Value> {
         let drive = number.drive()?;
         let value = match number.base() {
             CONTROL => self.moves.sent(drive)?.control.word().into(),

@@ -114,7 +114,7 @@ impl Unit {
             AxisAction::Edit(entries) => axis.edit(*entries),
             AxisAction::Press(button) => match axis.ask(button, &seen) {
                 Ok(ask) => self.carry_out(drive, button, ask, &seen, services),
-                Err(why) => self.tell_of(drive, Severity::Warning, vec![why], services),
+                Err(why) => self.report_drive_message(drive, Severity::Warning, vec![why], services),
             },
             AxisAction::TakePlace => axis.take_limit(&seen),
             AxisAction::Next => {
@@ -139,7 +139,7 @@ impl Unit {
                 let suggested = PathBuf::from(format!("{stem}-axis-{}.txt", drive.get()));
                 let words = (TEXTS.text("file.report_title"), TEXTS.text("file.reports"));
                 let save = |path, language| super::HiperdriveAction::Axis(AxisAction::SaveReport(path, language));
-                let file = DeviceFile::to_write(self.session.id, words, &["txt"], suggested, save);
+                let file = DeviceFile::write_question(self.session.id, words, &["txt"], suggested, save);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
             AxisAction::SaveReport(path, language) => {
@@ -154,7 +154,7 @@ impl Unit {
 
     fn begin_axis(&mut self, drive: DriveNumber, services: &mut Services) {
         if let Err(why) = self.may_set_up() {
-            return self.tell_of(drive, Severity::Warning, vec![why], services);
+            return self.report_drive_message(drive, Severity::Warning, vec![why], services);
         }
         self.axes.insert(drive, Axis::new(drive, Some(self.ruler(drive))));
     }
@@ -193,7 +193,7 @@ impl Unit {
             DriveRequest::BelieveRestart => {}
             DriveRequest::Acknowledge => {
                 if let Err(why) = self.may(drive, MotionRequest::Acknowledge) {
-                    return self.tell_of(drive, Severity::Warning, vec![why], services);
+                    return self.report_drive_message(drive, Severity::Warning, vec![why], services);
                 }
                 self.moves.want(drive, MotionRequest::Acknowledge);
             }
@@ -207,7 +207,7 @@ impl Unit {
             DriveRequest::Move(target) => {
                 let request = MotionRequest::Move { target: *target, effort: Effort::JOG };
                 if let Err(why) = self.may(drive, request) {
-                    return self.tell_of(drive, Severity::Warning, vec![why], services);
+                    return self.report_drive_message(drive, Severity::Warning, vec![why], services);
                 }
                 let act = self.moves.want(drive, request);
                 if let (Some(act), Button::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {
@@ -256,9 +256,9 @@ impl Unit {
             if axis.is_writing() {
                 match write {
                     Some(Some(Ok(()))) => axis.written(),
-                    Some(Some(Err(begun))) => axis.not_written(begun),
+                    Some(Some(Err(begun))) => axis.handle_write_failure(begun),
                     Some(None) => {}
-                    None => axis.not_written(false),
+                    None => axis.handle_write_failure(false),
                 }
             }
             axis.look(&seen);
@@ -266,7 +266,7 @@ impl Unit {
     }
 
     /// Notes that all parameters were read, which shows whether the saved values have survived.
-    pub(super) fn axes_surveyed(&mut self) {
+    pub(super) fn handle_axes_survey(&mut self) {
         let switched = std::mem::take(&mut self.switched);
         let seen: Vec<(DriveNumber, DriveFacts)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
         for (drive, seen) in seen {

@@ -36,7 +36,7 @@ impl Unit {
         self.survey = Some(survey);
         self.readings.clear();
         // Values read under control may be newer than the survey.
-        let differs = self.drives().into_iter().any(|drive| self.is_limited_otherwise(drive));
+        let differs = self.drives().into_iter().any(|drive| self.has_different_limits(drive));
         (self.is_stale, self.looks_at_all) = (differs, differs);
         if !self.drives().contains(&self.drive)
             && let Some(drive) = self.drives().first().copied()
@@ -48,7 +48,7 @@ impl Unit {
             self.log_answer(services);
         }
         self.list_backups(services);
-        self.axes_surveyed();
+        self.handle_axes_survey();
     }
 
     /// Marks limits as unconfirmed after a change of scale.
@@ -66,18 +66,18 @@ impl Unit {
     /// Reads everything again if the limits that the worker reads under control differ from the table of parameters; also
     /// when control is taken.
     pub(super) fn notice_limits(&mut self) {
-        if self.moves.take_taken() {
+        if self.moves.take_control_taken() {
             (self.is_stale, self.marks) = (true, SettingsReadState::Unread);
         }
         for drive in self.moves.take_limits_changed() {
-            if self.is_limited_otherwise(drive) {
+            if self.has_different_limits(drive) {
                 (self.is_stale, self.looks_at_all) = (true, true);
             }
         }
     }
 
     /// Returns whether limits, scale or reference of the drive differ from the displayed parameters.
-    fn is_limited_otherwise(&self, drive: DriveNumber) -> bool {
+    fn has_different_limits(&self, drive: DriveNumber) -> bool {
         let held = self.drive_limits(drive).filter(|_| self.moves.is_open());
         held.and_then(DriveLimits::seen).is_some_and(|own| {
             let shown = self.staged.base();
@@ -130,7 +130,7 @@ impl Unit {
             counts.then_some(()).ok_or_else(|| words::lock(Lock::Unread))
         });
         if let Err(why) = &counts {
-            self.tell_of(drive, Severity::Warning, vec![why.clone()], services);
+            self.report_drive_message(drive, Severity::Warning, vec![why.clone()], services);
         }
         counts.is_ok()
     }

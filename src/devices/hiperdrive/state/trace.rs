@@ -50,7 +50,7 @@ fn reported(text: Text) -> Explained {
 
 fn item_text(request: &Request) -> Text {
     let attribute = request.path.number(LogicalKind::Attribute);
-    let number = request.class().zip(attribute).and_then(|(class, own)| ParameterNumber::of_attribute(class, own));
+    let number = request.class().zip(attribute).and_then(|(class, own)| ParameterNumber::from_attribute(class, own));
     match number {
         Some(number) => {
             let is_set = request.service == Service::SET;

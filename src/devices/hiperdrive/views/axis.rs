@@ -153,7 +153,7 @@ fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
             title: theme.words(&words::title(step)),
             state,
             word: theme.words(&words::reached(reached)),
-            note: found.map(|text| unbroken(theme.words(&text))).unwrap_or_default(),
+            note: found.map(|text| with_nonbreaking_spaces(theme.words(&text))).unwrap_or_default(),
             ..Line::default()
         }
     };
@@ -179,7 +179,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
         }
     };
     card_with(ui, theme, words::title(step), aside, |ui| {
-        paragraph(ui, unbroken(theme.words(&words::todo(step, seen))));
+        paragraph(ui, with_nonbreaking_spaces(theme.words(&words::step_instructions(step, seen))));
         ui.add_space(theme.space.between);
         live(ui, theme, shown);
         ui.add_space(theme.space.between);
@@ -215,7 +215,7 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entri
     // The limits to be checked are shown large above.
     if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != AxisStep::Confirm) {
         ui.add_space(theme.space.inside);
-        row(ui, theme, &say(theme, "hd_axis.now"), unbroken(theme.words(&found)));
+        row(ui, theme, &say(theme, "hd_axis.now"), with_nonbreaking_spaces(theme.words(&found)));
     }
     if let (AxisStep::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
         warning(ui, theme, &differences);
@@ -280,7 +280,7 @@ fn skip(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
 }
 
 /// Returns the string with every number and its unit kept on one line.
-fn unbroken(words: String) -> String {
+fn with_nonbreaking_spaces(words: String) -> String {
     words.replace(" mm", "\u{a0}mm").replace(" %", "\u{a0}%")
 }
 

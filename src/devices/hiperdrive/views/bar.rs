@@ -24,8 +24,8 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, a
             ui.horizontal(|ui| {
                 drives(ui, theme, unit, actions);
                 let (word, allowed, act) = match unit.moves.is_open() {
-                    true => ("hd_bar.give", unit.can_give(), Hiperdrive::Give),
-                    false => ("hd_bar.take", unit.can_take(), Hiperdrive::Take),
+                    true => ("hd_bar.give", unit.check_can_release_control(), Hiperdrive::Give),
+                    false => ("hd_bar.take", unit.check_can_take_control(), Hiperdrive::Take),
                 };
                 let icon = if unit.moves.is_open() { icons::PLUGS } else { icons::PLUGS_CONNECTED };
                 if allowed_button(ui, theme, &allowed, icon, &say(theme, word)).clicked() {

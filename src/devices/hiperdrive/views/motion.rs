@@ -76,7 +76,9 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
             |ui, (allowed, view, actions)| {
                 jog::step_card_ui(ui, theme, unit, allowed, view, actions);
                 theme.gap(ui);
-                folding_card(ui, theme, TEXTS.text("hd_run.title"), |ui| at_speed(ui, theme, unit, allowed, actions));
+                folding_card(ui, theme, TEXTS.text("hd_run.title"), |ui| {
+                    speed_control_ui(ui, theme, unit, allowed, actions)
+                });
             },
         );
         // Below: nothing that can be clicked moves away when it comes.
@@ -99,7 +101,7 @@ fn locks(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
                 && let Some((low, high)) = unit.limits_to_confirm(drive)
             {
                 let [low, high] = [low, high].map(|steps| {
-                    let places = unit.in_all_units(drive, steps);
+                    let places = unit.position_texts(drive, steps);
                     places.iter().map(|place| theme.words(place)).collect::<Vec<_>>().join("   ")
                 });
                 row(ui, theme, &say(theme, "hd_limits.lower"), theme.mono(low));
@@ -164,7 +166,7 @@ fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
             return;
         }
     }
-    if let Some(status) = unit.running_or_last(drive) {
+    if let Some(status) = unit.current_or_last_request(drive) {
         let ink = if status.is_well { theme.palette.good } else { theme.palette.warn };
         two_lines(ui, theme, theme.words(&status.words), ink.into());
     }
@@ -226,7 +228,7 @@ fn to_position(
 }
 
 /// Draws the run at a speed, to the end of the range or, for experts, without an end.
-fn at_speed(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
+fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     let mut expert = unit.moves.is_expert(unit.drive());
     let end = if expert { RunEnd::Endless } else { RunEnd::RangeEnd };

@@ -67,7 +67,7 @@ fn settings(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, 
         }
         ui.add_space(theme.space.between);
         let wanted = form.settings(&now);
-        outlook(ui, theme, unit, &now, &wanted);
+        change_preview_ui(ui, theme, unit, &now, &wanted);
         ui.add_space(theme.space.inside);
         let allowed = match (&wanted, unit.may_plan()) {
             (_, Err(why)) => Err(why),
@@ -131,7 +131,13 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
     }
 }
 
-fn outlook(ui: &mut Ui, theme: &Theme, unit: &Unit, now: &NetworkSettings, wanted: &Result<NetworkSettings, Text>) {
+fn change_preview_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &Unit,
+    now: &NetworkSettings,
+    wanted: &Result<NetworkSettings, Text>,
+) {
     ui.label(theme.label(say(theme, "hd_net.at_power_up")));
     match wanted {
         Err(why) => problem(ui, theme, Some(why)),

@@ -88,7 +88,7 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
     let named = |id: &'static str, steps| theme.words(&TEXTS.text(id).with("place", place(steps)));
     let position = named("hd_travel.position", shown.position);
     let target = named("hd_travel.target", shown.target);
-    let warning = shown.outside.map(|own| theme.words(&way_back(own)));
+    let warning = shown.outside.map(|own| theme.words(&return_instructions(own)));
     let limits = shown.limits.map(|(low, high)| [place(Some(low)), place(Some(high))]);
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, say(theme, "hd_travel.title"));
@@ -119,7 +119,7 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
 }
 
 /// Describes the way back for a drive outside its limits.
-fn way_back(outside: Outside) -> Text {
+fn return_instructions(outside: Outside) -> Text {
     TEXTS.text(match outside {
         Outside::At(Side::Above) => "hd_travel.back_down",
         Outside::At(Side::Below) => "hd_travel.back_up",

@@ -222,7 +222,7 @@ fn show(
 ) -> Result<()> {
     match came {
         Ok(HiperfaceOutput::Position(mut reading)) => {
-            reading.valid &= !codes_before.iter().any(|code| code.spoils_position());
+            reading.valid &= !codes_before.iter().any(|code| code.invalidates_position());
             reading.codes = codes_before.drain(..).chain(reading.codes).collect();
             match table {
                 Some(table) => output.print(&table.row(&reading)),

@@ -78,7 +78,7 @@ impl Hiperface {
 
     /// Stores the codes of samples, in which a persistent code is repeated.
     fn keep_sampled_codes(&mut self, context: &mut SessionContext) {
-        let codes = self.station.take_codes_read();
+        let codes = self.station.take_read_codes();
         if !codes.is_empty() && self.status.record_new(&codes, context.clock.now()) {
             self.keep_codes(context, &codes);
         }
@@ -127,7 +127,7 @@ impl Device for Hiperface {
         tell: &mut dyn FnMut(JobReport<DeviceMessage, JobStep>),
     ) -> Result<HiperfaceOutput, JobError> {
         let result = self.carry_out(context, job, tell);
-        let codes = self.station.take_codes_read();
+        let codes = self.station.take_read_codes();
         self.keep_codes(context, &codes);
         result
     }
@@ -181,7 +181,7 @@ impl Device for Hiperface {
 
 impl Hiperface {
     fn unheard(&mut self) -> Option<DeviceMessage> {
-        Some(self.station.take_codes_unheard()).filter(|count| *count > 0).map(DeviceMessage::CodesUnheard)
+        Some(self.station.take_unheard_code_count()).filter(|count| *count > 0).map(DeviceMessage::CodesUnheard)
     }
 
     fn carry_out(
@@ -239,7 +239,7 @@ impl Hiperface {
                 HiperfaceOutput::Found(find::find(&mut self.master(context), &options, watch)?)
             }
             HiperfaceJob::ConfigureForNow(settings) => {
-                procedures::change_line_for_now(&mut self.master(context), settings)?;
+                procedures::set_temporary_line_settings(&mut self.master(context), settings)?;
                 HiperfaceOutput::Configured
             }
         })

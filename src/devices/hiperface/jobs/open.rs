@@ -7,7 +7,7 @@ use crate::devices::hiperface::procedures::{Echo, LinkParameters, Station};
 use crate::devices::hiperface::sim::{Bus, Config};
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::store::Store;
-use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes, simulated};
+use crate::worker::open::{check_parameters, inside, margin, open_bytes, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to a HIPERFACE encoder without opening it.
@@ -43,7 +43,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
 /// Parses the line settings and the virtual encoder, which is only relevant for a link to one.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if matches!(url.scheme, Scheme::Bridge | Scheme::Modbus | Scheme::Enip) {
-        return Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, replay:"));
+        return Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, replay:"));
     }
     let mut station = Station::from_query(&url.query, margin(url.scheme))?;
     let settings = simulated(url, LinkParameters::KEYS, Config::KEYS)?;

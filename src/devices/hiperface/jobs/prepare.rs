@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Change, Hiperface, JobError, JobStep, OtherType, Prepared, device_key};
-use crate::devices::hiperface::procedures::write::{ensure_free, read_guarded_fields, read_memory};
+use crate::devices::hiperface::procedures::write::{ensure_address_free, read_guarded_fields, read_memory};
 use crate::devices::hiperface::procedures::{
     Error, Master, ensure_standstill, identify, read_all_fields, read_counter, read_field, read_settings,
 };
@@ -88,7 +88,7 @@ pub(super) fn prepare(
             let from = master.station().address;
             // Broadcast: one encoder is connected, which may have this address itself.
             if from != to.byte() && from != BROADCAST {
-                ensure_free(&mut master, to)?;
+                ensure_address_free(&mut master, to)?;
             }
             let op = (from != to.byte()).then_some(Op::SetAddress { from, to });
             plan_scalar(memory.fields, Scalar::Address(from), op)

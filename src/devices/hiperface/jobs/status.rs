@@ -36,7 +36,7 @@ pub(super) fn record_codes(store: &Store, device: &DeviceKey, codes: &[StatusCod
     let words = codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     tracing::info!("{} {}: status codes read: {words}", device.kind, device.serial_number);
     let noted = Logbook::open(&store.logbook_path())
-        .and_then(|mut logbook| logbook.note_status(Timestamp::now(), device, &words));
+        .and_then(|mut logbook| logbook.record_status(Timestamp::now(), device, &words));
     if let Err(error) = noted {
         tracing::warn!("{error}");
     }

@@ -118,7 +118,7 @@ pub enum Damage {
 
 impl From<LineError> for Error {
     fn from(error: LineError) -> Self {
-        error.at_device(Error::Cancelled, Error::NeverSilent, Error::Link)
+        error.into_device_error(Error::Cancelled, Error::NeverSilent, Error::Link)
     }
 }
 
@@ -140,7 +140,7 @@ impl Error {
 
     /// Returns whether the encoder is present but has no position to return at the moment.
     pub fn means_no_position(&self) -> bool {
-        matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.spoils_position()))
+        matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.invalidates_position()))
     }
 
     pub fn is_rejection(&self, code: StatusCode) -> bool {

@@ -26,7 +26,7 @@ pub use position::{
     PositionReading, Sample, Watch, WatchedReading, ensure_standstill, read_analogue, read_analogue_limit,
     read_counter, read_position, read_sample, read_watched,
 };
-pub use reset::{change_line_for_now, reset};
+pub use reset::{reset, set_temporary_line_settings};
 pub use rest_reading::{Rest, Signals, read_at_rest};
 pub use save::{SaveOptions, profile_of, save};
 pub use station::{AccessCodes, Codes, LinkParameters, MOST_PERIODS, Station};

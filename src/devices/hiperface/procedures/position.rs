@@ -34,7 +34,7 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
     let codes = master.station().codes_met.get(met_before..).unwrap_or_default().to_vec();
     let position = geometry.map(|geometry| geometry.position(raw));
     let in_range = position.is_none_or(|position| position.in_range);
-    let valid = in_range && !codes.iter().any(|code| code.spoils_position());
+    let valid = in_range && !codes.iter().any(|code| code.invalidates_position());
     Ok(PositionReading { at: timed.at, raw, position, valid, codes })
 }
 

@@ -42,7 +42,7 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
 ///
 /// # Errors
 /// A refusal, or no reply at the new settings; both sides then have the old ones, as far as the encoder can be reached.
-pub fn change_line_for_now(master: &mut Master<'_>, settings: LineSettings) -> Result<(), Error> {
+pub fn set_temporary_line_settings(master: &mut Master<'_>, settings: LineSettings) -> Result<(), Error> {
     let format = settings.format().ok_or(Error::ReservedFormat { settings })?;
     let (old_format, old_timeout) = (master.station().format, master.station().long_timeout);
     let request = Request::ConfigureLineTemporarily { settings };

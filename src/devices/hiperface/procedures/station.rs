@@ -138,20 +138,20 @@ impl Station {
         self.thorough || self.line.damaged > 0
     }
 
-    pub(super) fn meet_codes(&mut self, codes: impl IntoIterator<Item = StatusCode>) {
+    pub(super) fn add_codes(&mut self, codes: impl IntoIterator<Item = StatusCode>) {
         let codes: Vec<StatusCode> = codes.into_iter().filter(|code| *code != StatusCode::OK).collect();
         self.codes_read.extend(&codes);
         self.codes_met.extend(codes);
     }
 
     /// Takes the codes to be written to the logbook, before any of them is displayed.
-    pub fn take_codes_read(&mut self) -> Vec<StatusCode> {
+    pub fn take_read_codes(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_read)
     }
 
     /// Takes the number of status codes that may have been lost since the last call, in missing or damaged replies to
     /// 50h.
-    pub fn take_codes_unheard(&mut self) -> u32 {
+    pub fn take_unheard_code_count(&mut self) -> u32 {
         std::mem::take(&mut self.codes_unheard)
     }
 

@@ -38,7 +38,7 @@ pub fn survey(
     let mut survey = read_survey(master, types, progress, Reading::AsFarAsPossible)?;
     survey.codes = master.station().take_codes();
     // A code that the encoder announced before applies to this position too.
-    let spoilt = survey.codes.iter().any(|code| code.spoils_position());
+    let spoilt = survey.codes.iter().any(|code| code.invalidates_position());
     if let Some(Sample::Position(reading)) = &mut survey.position {
         reading.valid &= !spoilt;
     }

@@ -71,7 +71,7 @@ impl Write for EncoderWrite<'_, '_> {
         // A change that was not sent, or was refused, was not carried out; any other may have been.
         done.write_cycles += match &sent {
             Ok(sent) => u64::from(*sent),
-            Err(cause) => u64::from(may_be_carried_out(cause)),
+            Err(cause) => u64::from(may_have_been_executed(cause)),
         };
         sent?;
         done.carried_out(op.weight());
@@ -94,7 +94,7 @@ impl Write for EncoderWrite<'_, '_> {
         let Err(cause) = &ended else { return Ok(()) };
         let ops = &confirmed.plan().ops;
         let (before, after) = ops.split_at(done.ops.min(ops.len()));
-        let begun = before.iter().chain(after.first().filter(|_| may_be_carried_out(cause)));
+        let begun = before.iter().chain(after.first().filter(|_| may_have_been_executed(cause)));
         let unlocked: Vec<u8> = begun.filter(|op| op.unlocks()).filter_map(Op::field).collect();
         let range = range_of(self.identity.geometry);
         for field in unlocked {
@@ -112,7 +112,7 @@ impl Write for EncoderWrite<'_, '_> {
     }
 }
 
-fn may_be_carried_out(cause: &Error) -> bool {
+fn may_have_been_executed(cause: &Error) -> bool {
     !matches!(cause, Error::Cancelled | Error::Rejected { .. })
 }
 
@@ -204,7 +204,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
             match master.send_until_done(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
                 // Some types report the overflow this way (manual, "Zähler erhöhen"): it was carried out.
                 Err(Error::Rejected { codes, .. }) if codes == [StatusCode::COUNTER_OVERFLOW] => {
-                    master.station().meet_codes(codes);
+                    master.station().add_codes(codes);
                     Ok(1)
                 }
                 result => result,
@@ -331,7 +331,7 @@ fn mismatch(op: &Op, expected: String, got: String) -> Error {
 ///
 /// # Errors
 /// [`Error::AddressTaken`] if anything is received; errors of the connection, or cancellation.
-pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
+pub fn ensure_address_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
     let before = std::mem::replace(&mut master.station().address, address.byte());
     let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
     master.station().address = before;

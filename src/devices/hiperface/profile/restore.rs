@@ -16,7 +16,7 @@ pub use undo::created_by;
 pub use unknown::UnknownField;
 
 use planner::Planner;
-use undo::{delete, undo_created, without};
+use undo::{created_fields_to_undo, delete, without};
 use unknown::unknown_fields;
 
 use super::{FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile};
@@ -95,7 +95,8 @@ pub fn plan_restore(
     let is_other = check_device(profile, &device.serial_number, device.encoder_type).is_err();
     let unknown_fields = if is_other { unknown_fields(profile, device, &options) } else { Vec::new() };
     let left: Vec<u8> = unknown_fields.iter().filter(|own| !own.is_copied()).map(|own| own.field).collect();
-    let (undone, created_left) = if is_other { (Vec::new(), Vec::new()) } else { undo_created(profile, device) };
+    let (undone, created_left) =
+        if is_other { (Vec::new(), Vec::new()) } else { created_fields_to_undo(profile, device) };
     let now = without(device, &undone);
     let mut planner = Planner {
         profile,
@@ -111,7 +112,7 @@ pub fn plan_restore(
         mounting_written: Vec::new(),
         touched: Vec::new(),
     };
-    planner.leave_unknown();
+    planner.skip_unknown_fields();
     planner.check_order()?;
     let recreated = planner.first_to_recreate(options.recreate)?;
     planner.check_memory(recreated)?;

@@ -114,7 +114,7 @@ impl StatusCode {
 
     /// Returns whether a position read at the same time is unreliable: true for 01h…06h and 1Fh…23h. Codes 09h…12h
     /// concern a frame or a data field and never invalidate a position.
-    pub fn spoils_position(self) -> bool {
+    pub fn invalidates_position(self) -> bool {
         matches!(self.0, 0x01..=0x06 | 0x1F..=0x23)
     }
 
@@ -152,7 +152,7 @@ mod tests {
     fn warnings_and_invalid_positions_are_classified() {
         let warnings: Vec<u8> = (0..=255).filter(|b| StatusCode::new(*b).is_warning()).collect();
         assert_eq!(warnings, [0x08, 0x1C, 0x1D, 0x1E]);
-        let spoiling: Vec<u8> = (0..=255).filter(|b| StatusCode::new(*b).spoils_position()).collect();
+        let spoiling: Vec<u8> = (0..=255).filter(|b| StatusCode::new(*b).invalidates_position()).collect();
         assert_eq!(spoiling, [1, 2, 3, 4, 5, 6, 0x1F, 0x20, 0x21, 0x22, 0x23]);
     }
 }

@@ -104,14 +104,14 @@ impl Bus {
         self.to_host.retain(is_sent);
     }
 
-    fn let_encoder_act(&mut self, index: usize, at: Moment) {
+    fn run_encoder_action(&mut self, index: usize, at: Moment) {
         let Some(transmission) = self.encoders.get_mut(index).and_then(|encoder| encoder.act(at)) else { return };
         if let Some(format) = transmission.settings.format() {
             self.drive(Talker::Encoder(index), transmission.start, format, &transmission.bytes);
         }
     }
 
-    fn let_encoders_hear(&mut self) {
+    fn deliver_to_encoders(&mut self) {
         let Some((_, travelling)) = self.to_encoders.pop() else { return };
         let collides = self.collides(&travelling);
         let Character { start, end, byte, flipped } = travelling.character;
@@ -184,7 +184,8 @@ impl VirtualLine for Bus {
     }
 
     fn next_event(&self) -> Option<(Moment, Event)> {
-        let acting = |(index, encoder): (usize, &Encoder)| Some((encoder.acts_at()?, Event::EncoderActs(index)));
+        let acting =
+            |(index, encoder): (usize, &Encoder)| Some((encoder.next_action_time()?, Event::EncoderActs(index)));
         let hearing = self.to_encoders.due().map(|at| (at, Event::EncodersHear));
         let receiving = self.to_host.due().map(|at| (at, Event::HostReceives));
         self.encoders.iter().enumerate().filter_map(acting).chain(hearing).chain(receiving).min()
@@ -192,8 +193,8 @@ impl VirtualLine for Bus {
 
     fn happen(&mut self, at: Moment, event: Event) {
         match event {
-            Event::EncoderActs(index) => self.let_encoder_act(index, at),
-            Event::EncodersHear => self.let_encoders_hear(),
+            Event::EncoderActs(index) => self.run_encoder_action(index, at),
+            Event::EncodersHear => self.deliver_to_encoders(),
             Event::HostReceives => self.deliver_to_host(),
         }
     }

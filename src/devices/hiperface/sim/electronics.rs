@@ -91,7 +91,7 @@ impl Electronics {
             serial_number: config.serial_number_of(index),
             address: config.address_of(index),
             stored_settings: config.settings,
-            memory: delivered_memory(&model, config.codes),
+            memory: factory_memory(&model, config.codes),
             shaft: Shaft::new(config.geometry(&types), position, config.rpm),
             queue: StatusQueue::default(),
             wear: Wear::default(),
@@ -258,7 +258,7 @@ impl Electronics {
 }
 
 /// Returns the memory as delivered by the motor manufacturer: field 0 with the name plate, the rest free.
-fn delivered_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
+fn factory_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
     let mut memory = Memory::new(model.user_blocks);
     if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {
         let status = DataFieldStatus::new(size, CodeNumber::ZERO, true);

@@ -247,7 +247,7 @@ impl Encoder {
     }
 
     /// Returns when [`act`](Self::act) must be called next.
-    pub(super) fn acts_at(&self) -> Option<Moment> {
+    pub(super) fn next_action_time(&self) -> Option<Moment> {
         match &self.activity {
             Activity::Listening(reception) => reception.as_ref().map(|reception| reception.ends),
             Activity::Executing { until, .. } | Activity::Talking { until } => Some(*until),
@@ -275,7 +275,7 @@ impl Encoder {
         }
     }
 
-    /// Executes what is due at `at`, the time returned by [`acts_at`](Self::acts_at).
+    /// Executes what is due at `at`, the time returned by [`next_action_time`](Self::next_action_time).
     pub(super) fn act(&mut self, at: Moment) -> Option<Transmission> {
         match std::mem::replace(&mut self.activity, Activity::Listening(None)) {
             Activity::Listening(Some(reception)) => {

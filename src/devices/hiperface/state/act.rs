@@ -29,11 +29,11 @@ impl Encoder {
             HiperfaceAction::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
             HiperfaceAction::Check { restart } => {
                 let then = self.stored_settings().filter(|_| restart);
-                self.submit_to_settings(HiperfaceJob::Check { restart }, then, services);
+                self.submit_settings_job(HiperfaceJob::Check { restart }, then, services);
             }
-            HiperfaceAction::Reset => self.submit_to_settings(HiperfaceJob::Reset, self.stored_settings(), services),
+            HiperfaceAction::Reset => self.submit_settings_job(HiperfaceJob::Reset, self.stored_settings(), services),
             HiperfaceAction::ConfigureForNow(settings) => {
-                self.submit_to_settings(HiperfaceJob::ConfigureForNow(settings), Some(settings), services);
+                self.submit_settings_job(HiperfaceJob::ConfigureForNow(settings), Some(settings), services);
             }
             HiperfaceAction::UseCode { number, code } => {
                 if self.try_submit(HiperfaceJob::UseCode { number, code }, services) {
@@ -53,7 +53,7 @@ impl Encoder {
             HiperfaceAction::Write(plan) => self.write(plan, services),
             HiperfaceAction::CloseReview => self.close_review(),
             HiperfaceAction::Save(path) => self.save(path, services),
-            HiperfaceAction::Commutation(action) => self.act_commutation(action, services),
+            HiperfaceAction::Commutation(action) => self.handle_commutation_action(action, services),
         }
     }
 
@@ -79,7 +79,7 @@ impl Encoder {
     }
 
     /// Starts a job after which the encoder uses other settings.
-    fn submit_to_settings(&mut self, job: HiperfaceJob, then: Option<LineSettings>, services: &mut Services) {
+    fn submit_settings_job(&mut self, job: HiperfaceJob, then: Option<LineSettings>, services: &mut Services) {
         if self.try_submit(job, services) {
             self.settings_then = then;
         }
@@ -90,7 +90,7 @@ impl Encoder {
             _ if self.session.is_writing() => Err(Text::new("session.busy")),
             // A profile is a text: the protection that it records does not protect it.
             (Phase::Offline, _) | (_, None) => Ok(()),
-            (_, Some(image)) => self.why_not_edited(image).map_or(Ok(()), Err),
+            (_, Some(image)) => self.reason_not_editable(image).map_or(Ok(()), Err),
         };
         let allowed = allowed.and_then(|()| {
             let put = self.staged.put(field, address, bytes);

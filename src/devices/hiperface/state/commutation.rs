@@ -134,7 +134,7 @@ impl Commutation {
         self.asked = None;
     }
 
-    fn use_typed(&mut self, slot: Slot) {
+    fn apply_typed_value(&mut self, slot: Slot) {
         match self.form.fine(slot) {
             Ok(fine_periods) => self.note(slot, RestReading { fine_periods, kind: Kind::Typed, raw: None }),
             Err(why) => self.problem = Some(why),

@@ -126,7 +126,7 @@ impl Encoder {
         self.counter = counter;
         self.codes = Some(codes);
         self.line_quality = line;
-        self.take_unreadable(&unreadable, services);
+        self.record_unreadable_fields(&unreadable, services);
         if let Some(position) = position {
             self.add_samples(vec![position], 0);
         }
@@ -140,7 +140,7 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    fn take_unreadable(&mut self, fields: &[UnreadableField], services: &mut Services) {
+    fn record_unreadable_fields(&mut self, fields: &[UnreadableField], services: &mut Services) {
         let why = |own: &UnreadableField| {
             let text = Text::new("session.field_unreadable").with("field", own.number);
             text.with_text("why", words::encoder(&own.why))
@@ -154,7 +154,7 @@ impl Encoder {
     }
 
     /// Explains why the bytes of a field cannot be edited, or returns `None` if they can.
-    pub fn why_not_edited(&self, field: &FieldImage) -> Option<Text> {
+    pub fn reason_not_editable(&self, field: &FieldImage) -> Option<Text> {
         self.unreadable.get(&field.number).cloned().or_else(|| rules::edit(field).err())
     }
 

@@ -76,7 +76,7 @@ impl Encoder {
     }
 
     /// Passes the next access code of a reconnected encoder to the session; after the last one the encoder is read.
-    fn give_codes(&mut self, services: &mut Services) {
+    fn submit_access_codes(&mut self, services: &mut Services) {
         match self.codes_due.pop() {
             Some((number, code)) => self.submit(HiperfaceJob::UseCode { number, code }, services),
             None => self.submit(HiperfaceJob::Survey, services),
@@ -118,7 +118,7 @@ impl Encoder {
     }
 
     /// Adopts the settings that the job has changed, so that the next session begins with them.
-    fn follow_settings(&mut self) {
+    fn adopt_line_settings(&mut self) {
         let Some(settings) = self.settings_then.take() else { return };
         let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.format()) else { return };
         let Ok(now) = Station::from_query(&url.query, std::time::Duration::ZERO) else { return };
@@ -159,7 +159,7 @@ impl Encoder {
         self.session.write_read(Body::new(saved.profile), edits, remarks, services);
     }
 
-    fn follow_what_was_done(&mut self, error: &JobError, services: &mut Services) {
+    fn apply_completed_steps(&mut self, error: &JobError, services: &mut Services) {
         let JobError::Interrupted { interrupted, .. } = error else { return };
         let Some(prepared) = self.review().and_then(Review::writing) else { return };
         let done: Vec<Op> = prepared.plan.ops.iter().take(interrupted.done.ops).cloned().collect();
@@ -202,7 +202,7 @@ impl SessionEvents for Encoder {
                 } else {
                     self.access_codes.clear();
                 }
-                self.give_codes(services);
+                self.submit_access_codes(services);
             }
             HiperfaceOutput::Status(codes) => self.codes = Some(codes),
             HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
@@ -210,20 +210,20 @@ impl SessionEvents for Encoder {
             HiperfaceOutput::Value(value) => self.take_value(value),
             HiperfaceOutput::Check(lines) => {
                 self.check = Some(lines);
-                self.follow_settings();
+                self.adopt_line_settings();
             }
             HiperfaceOutput::Reset(codes) => {
                 self.codes = Some(codes);
-                self.follow_settings();
+                self.adopt_line_settings();
                 services.notify(Severity::Good, vec![Text::new("session.restarted")], Some(&self.session.name()));
                 self.submit(HiperfaceJob::Survey, services);
             }
             HiperfaceOutput::Configured => {
-                self.follow_settings();
+                self.adopt_line_settings();
                 services.notify(Severity::Good, vec![Text::new("session.configured")], Some(&self.session.name()));
                 self.submit(HiperfaceJob::Survey, services);
             }
-            HiperfaceOutput::CodeNoted => self.give_codes(services),
+            HiperfaceOutput::CodeNoted => self.submit_access_codes(services),
             HiperfaceOutput::Saved(saved) => self.saved(*saved, services),
             HiperfaceOutput::Prepared(prepared) => self.planned(prepared, services),
             HiperfaceOutput::Committed(committed) => self.committed(committed, services),
@@ -245,15 +245,15 @@ impl SessionEvents for Encoder {
 
     fn forget_requests(&mut self) {
         self.asked = None;
-        self.give_up_rest();
+        self.cancel_rest_reading();
         self.forget_plan();
     }
 
     fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], services: &mut Services) -> bool {
         if let EarlyEnd::Cancelled(error) = how {
-            self.follow_what_was_done(error, services);
+            self.apply_completed_steps(error, services);
             self.asked = None;
-            self.give_up_rest();
+            self.cancel_rest_reading();
         }
         self.cut_write(how, texts);
         // It is reported as well.
@@ -277,8 +277,8 @@ impl SessionEvents for Encoder {
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);
-        services.job_ends(self.session.id, id, JobEnd::Failed(why.clone()));
-        let stands_there = self.rest_failed(&why);
+        services.end_job(self.session.id, id, JobEnd::Failed(why.clone()));
+        let stands_there = self.handle_rest_failure(&why);
         if let (Some(Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) = (self.asked.take(), error) {
             // The encoder has no such channel: this is a result, and shown where it was requested.
             self.analogue.insert(channel, Err(why));
@@ -287,7 +287,7 @@ impl SessionEvents for Encoder {
         }
         self.session.save_to = None;
         let gone = Hiperface::connection_error(error);
-        self.follow_what_was_done(error, services);
+        self.apply_completed_steps(error, services);
         let silent = gone.is_none() && self.is_silence(error);
         let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
         if gone.is_none() && !silent && !garbled {

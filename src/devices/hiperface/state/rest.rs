@@ -35,7 +35,7 @@ impl Encoder {
     }
 
     /// Handles a failed job; returns whether it is such a reading, whose error is shown where it was requested.
-    pub(super) fn rest_failed(&mut self, why: &Text) -> bool {
+    pub(super) fn handle_rest_failure(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Err(why.clone()));
             return true;
@@ -43,7 +43,7 @@ impl Encoder {
         self.commutation.failed(why)
     }
 
-    pub(super) fn give_up_rest(&mut self) {
+    pub(super) fn cancel_rest_reading(&mut self) {
         self.rest.is_under_way = false;
         self.commutation.give_up();
     }

@@ -78,7 +78,7 @@ impl Reviewed for Hiperface {
         }
         let missing = prepared.missing.iter().map(words::field_range).collect();
         let mounting = prepared.mounting_left.iter().map(words::field_range).collect();
-        warnings.extend(review::left_alone(TEXTS.text("review.missing"), missing, mounting));
+        warnings.extend(review::skipped_texts(TEXTS.text("review.missing"), missing, mounting));
         if prepared.plan.ops.iter().any(|op| matches!(op, Op::IncrementCounter { .. })) {
             warnings.push(TEXTS.text("review.counter"));
         }

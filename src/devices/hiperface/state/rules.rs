@@ -21,7 +21,7 @@ pub fn create(memory: FreeMemory, size: FieldSize, code: CodeNumber, code_requir
 
 pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &Staged) -> Allowed {
     status(field)?;
-    edits_stay(staged, field.number, size.bytes())?;
+    check_edits_preserved(staged, field.number, size.bytes())?;
     allowed(plan_redefine(memory, field, field.status.with_size(size)))
 }
 
@@ -33,7 +33,7 @@ pub fn resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
 
 pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &Staged) -> Allowed {
     resizable(memory, field)?;
-    edits_stay(staged, field.number, 0)
+    check_edits_preserved(staged, field.number, 0)
 }
 
 /// Checks that protection and access code of the field can be changed, for which the encoder requires its access code.
@@ -59,9 +59,9 @@ pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
         _ => {}
     }
     match change {
-        Change::DeleteField { number } => edits_stay(staged, *number, 0),
-        Change::ResizeField { number, size } => edits_stay(staged, *number, size.bytes()),
-        Change::Redefine { number, status } => edits_stay(staged, *number, status.size().bytes()),
+        Change::DeleteField { number } => check_edits_preserved(staged, *number, 0),
+        Change::ResizeField { number, size } => check_edits_preserved(staged, *number, size.bytes()),
+        Change::Redefine { number, status } => check_edits_preserved(staged, *number, status.size().bytes()),
         _ => Ok(()),
     }
 }
@@ -70,14 +70,14 @@ pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
 pub(super) fn keeps_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
     plan.ops.iter().try_for_each(|op| match op {
         Op::Define { field, from: Some(_), to } => {
-            edits_stay(staged, *field, if to.exists() { to.size().bytes() } else { 0 })
+            check_edits_preserved(staged, *field, if to.exists() { to.size().bytes() } else { 0 })
         }
         _ => Ok(()),
     })
 }
 
 /// Checks that no edit of the field is beyond its first `bytes` bytes.
-fn edits_stay(staged: &Staged, field: u8, bytes: usize) -> Allowed {
+fn check_edits_preserved(staged: &Staged, field: u8, bytes: usize) -> Allowed {
     match staged.edits().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
         0 => Ok(()),
         count => Err(TEXTS.text("rules.edits").with("field", field).with("count", count)),

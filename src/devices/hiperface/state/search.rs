@@ -141,7 +141,7 @@ impl Finder for SearchFinder {
             SearchAction::Search(options) => {
                 self.asked = Some(options);
                 match context.link() {
-                    Ok(url) if may_have_other_master(&url) => context.ask_other_master(&url),
+                    Ok(url) if may_have_other_master(&url) => context.confirm_other_master(&url),
                     _ => self.confirmed(context),
                 }
             }
@@ -200,7 +200,7 @@ impl Finder for SearchFinder {
     fn end(&mut self, services: &mut Services) -> Option<Receiver<()>> {
         let search = self.search.take()?;
         if let Some(line) = search.line {
-            let (session, about) = (SessionId(search.number), services.world.kinds.shown_link(&search.url));
+            let (session, about) = (SessionId(search.number), services.world.kinds.display_link(&search.url));
             let who = ClosingSessionInfo { session, about, url: search.url, write: None };
             services.leave(line.into_worker(), who, None);
         }

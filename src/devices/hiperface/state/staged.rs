@@ -117,7 +117,7 @@ impl Staged {
     }
 
     pub fn revert_range(&mut self, range: FieldRange) {
-        self.take_back(|(field, address)| range.contains(field, address));
+        self.undo_matching(|(field, address)| range.contains(field, address));
     }
 
     pub fn edits(&self) -> impl Iterator<Item = (u8, usize, u8)> {

@@ -156,12 +156,12 @@ fn field_ui(
     view: &mut MemoryUiState,
     actions: &mut Vec<Action>,
 ) {
-    field_head(ui, theme, encoder, field, memory, actions);
+    field_header_ui(ui, theme, encoder, field, memory, actions);
     let Some(bytes) = &field.bytes else {
         ui.add_space(theme.space.between);
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::KEY).color(theme.palette.warn));
-            let why = encoder.why_not_edited(field);
+            let why = encoder.reason_not_editable(field);
             paragraph(ui, why.map(|why| theme.words(&why)).unwrap_or_default());
         });
         return;
@@ -169,7 +169,7 @@ fn field_ui(
     let read_only = match encoder.session.phase {
         Phase::Offline => None,
         _ if encoder.session.is_writing() => Some(Text::new("session.busy")),
-        _ => encoder.why_not_edited(field),
+        _ => encoder.reason_not_editable(field),
     };
     let device = encoder.field(field.number).and_then(|own| own.bytes.clone()).unwrap_or_default();
     let mounting = encoder.mounting(field.number);
@@ -215,7 +215,7 @@ fn field_ui(
 }
 
 /// Draws the selected field and its actions; disabled ones show the reason.
-fn field_head(
+fn field_header_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,

@@ -187,7 +187,7 @@ fn settings(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiSta
         };
         let stored_words = theme.words(&words::line_settings(stored));
         row(ui, theme, &say(theme, "settings_card.stored"), stored_words);
-        let mut chosen = view.settings.unwrap_or_else(|| chosen_of(stored));
+        let mut chosen = view.settings.unwrap_or_else(|| chosen_settings(stored));
         entry(ui, theme, &theme.say("settings_card.baud"), |ui| {
             let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
             choice(ui, &theme.say("settings_card.baud"), &mut chosen.format.baud, bauds);
@@ -203,7 +203,7 @@ fn settings(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiSta
             choice(ui, &say(theme, "settings_card.timeout"), &mut chosen.long_timeout, times);
         });
         ui.checkbox(&mut chosen.bus, say(theme, "settings_card.bus"));
-        view.settings = Some(chosen).filter(|chosen| *chosen != chosen_of(stored));
+        view.settings = Some(chosen).filter(|chosen| *chosen != chosen_settings(stored));
         let ready = encoder.session.is_ready();
         ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
@@ -224,7 +224,7 @@ fn settings(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiSta
     });
 }
 
-fn chosen_of(stored: LineSettings) -> Chosen {
+fn chosen_settings(stored: LineSettings) -> Chosen {
     Chosen {
         format: stored.format().unwrap_or(CharacterFormat::FACTORY),
         long_timeout: stored.long_timeout(),

@@ -70,7 +70,7 @@ fn read_out(text: &str) -> Result<ReadOut> {
 
 fn explain(word: Captured, direction: Option<Direction>, known: &WordContext) -> Explained {
     let (shown, meanings) = match word {
-        Captured::K1(word) => (format!("{word:04X}"), Ok(vec![meaning::of_k1(Single::parse_k1(word))])),
+        Captured::K1(word) => (format!("{word:04X}"), Ok(vec![meaning::k1_word_meaning(Single::parse_k1(word))])),
         Captured::Long(word) => (format!("{word:08X}"), long(word, direction, known)),
     };
     let mut more = Map::from_iter([("device".to_owned(), json!(KIND))]);
@@ -83,13 +83,13 @@ fn explain(word: Captured, direction: Option<Direction>, known: &WordContext) ->
 
 fn long(word: u32, direction: Option<Direction>, known: &WordContext) -> std::result::Result<Vec<WordMeaning>, String> {
     match direction {
-        Some(Direction::In) => Ok(meaning::of_in(word, known)),
-        Some(Direction::Out) => meaning::of_out(word, known),
+        Some(Direction::In) => Ok(meaning::in_word_meanings(word, known)),
+        Some(Direction::Out) => meaning::out_word_meanings(word, known),
         // Any word can come from the encoder; one without a meaning in any OUT mode can only be an IN word.
-        None => Ok(meaning::of_out(word, known)
+        None => Ok(meaning::out_word_meanings(word, known)
             .unwrap_or_else(|_| meaning::refused(word, known))
             .into_iter()
-            .chain(meaning::of_in(word, known))
+            .chain(meaning::in_word_meanings(word, known))
             .collect()),
     }
 }

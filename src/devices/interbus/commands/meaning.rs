@@ -40,14 +40,14 @@ impl WordMeaning {
     }
 }
 
-pub(super) fn of_k1(word: Single) -> WordMeaning {
+pub(super) fn k1_word_meaning(word: Single) -> WordMeaning {
     let position = word.position().get();
     let words = format!("position {position} of a K1 encoder{}", stray(word.stray(), "above bit 11"));
     WordMeaning { direction: "IN", modes: Vec::new(), words, value: Some(position), legal: true }
 }
 
 /// Returns the request of an OUT word, or the reason why it must not be sent.
-pub(super) fn of_out(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>, String> {
+pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>, String> {
     let readings = Command::readings(word);
     if let [Command::Unknown(_)] = readings.as_slice() {
         return Err("nothing that an encoder is asked in any mode".to_owned());
@@ -95,7 +95,7 @@ fn elsewhere(command: Command) -> String {
 }
 
 /// Returns the meaning of an IN word in the known mode, or in each mode in which it may occur.
-pub(super) fn of_in(word: u32, known: &WordContext) -> Vec<WordMeaning> {
+pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
     let meaning = |modes: &[Mode], words: String, value: Option<u32>| WordMeaning {
         direction: "IN",

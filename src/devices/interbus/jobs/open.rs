@@ -9,7 +9,7 @@ use crate::devices::interbus::procedures::{LinkParameters, Station};
 use crate::devices::interbus::sim::{Config, Gateway};
 use crate::link::{Clock, Direction, LinkUrl, RealClock, ReplayLink, Scheme, TraceEntry, Wire};
 use crate::store::Store;
-use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, read_recording, simulated};
+use crate::worker::open::{inside, margin, open_bytes, read_recording, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link URL for an INTERBUS encoder without opening the link.
@@ -46,7 +46,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
 /// Reads the settings of the gateway and of the virtual encoder. The latter apply only to a link to a virtual encoder.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Modbus | Scheme::Replay) {
-        return Err(leads_elsewhere(url.scheme, "sim:, modbus:, replay:"));
+        return Err(wrong_target_error(url.scheme, "sim:, modbus:, replay:"));
     }
     let config = Config::from_pairs(&simulated(url, LinkParameters::KEYS, Config::KEYS)?)?;
     let mut station = Station::from_query(&url.query, margin(url.scheme))?;

@@ -34,7 +34,7 @@ pub(super) fn prepare(
             plan_restore(profile, &device, *options)?
         }
         Change::Write(wanted) => {
-            device = state(&programs_touched(wanted))?;
+            device = state(&affected_programs(wanted))?;
             only(plan_edits(&device.image, wanted)?)
         }
         Change::Item(item, value) => {
@@ -78,7 +78,7 @@ pub(super) fn prepare(
 }
 
 /// Returns the programs that an image contains; the window shift can be read with any of them.
-fn programs_touched(wanted: &Image) -> Vec<ProgramNumber> {
+fn affected_programs(wanted: &Image) -> Vec<ProgramNumber> {
     let known: Vec<ProgramNumber> = wanted.known().map(|(number, _)| number).collect();
     match wanted.shift {
         Some(_) if known.is_empty() => ProgramNumber::all().take(1).collect(),

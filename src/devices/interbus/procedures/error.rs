@@ -237,7 +237,7 @@ fn other_echo(input: u32) -> &'static str {
 
 impl From<LineError> for Error {
     fn from(error: LineError) -> Self {
-        error.at_device(Error::Cancelled, Error::NeverSilent, Error::Link)
+        error.into_device_error(Error::Cancelled, Error::NeverSilent, Error::Link)
     }
 }
 

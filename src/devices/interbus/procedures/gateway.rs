@@ -137,7 +137,7 @@ impl<'a> Gateway<'a> {
                             let judged = judge(&request, requested, frame);
                             if !matches!(judged, Err(ExchangeError::Damage(_))) {
                                 self.state.line.answered();
-                                self.state.line.answer_began(now);
+                                self.state.line.record_answer_start(now);
                             }
                             return Ok(judged);
                         }

@@ -155,7 +155,7 @@ pub(super) fn read_identity(master: &mut Master<'_>, values: &mut Vec<(ReadOut, 
         mode,
         flags: Flags::new(Value::of_word(flags)),
     };
-    master.learn_gear(identity.gear().ok());
+    master.remember_gear(identity.gear().ok());
     Ok(identity)
 }
 
@@ -195,7 +195,7 @@ pub(super) fn read_survey(
 }
 
 fn read_mode(master: &mut Master<'_>) -> Result<StartupMode, Error> {
-    match master.said_mode() {
+    match master.reported_mode() {
         Some(mode) => Ok(mode),
         None => Ok(StartupMode::parse(master.read_out(ReadOut::STARTUP_MODE)?)),
     }
@@ -205,7 +205,7 @@ fn read_mode(master: &mut Master<'_>) -> Result<StartupMode, Error> {
 pub(super) fn refresh_gear(master: &mut Master<'_>) -> Result<(), Error> {
     let mut read = |number: u16| master.read_out(ReadOut::new(number));
     let [steps, revolutions, flags] = [read(1)?, read(2)?, read(0xA)?];
-    master.learn_gear(gear(steps.get(), revolutions.get(), Flags::new(flags)).ok());
+    master.remember_gear(gear(steps.get(), revolutions.get(), Flags::new(flags)).ok());
     Ok(())
 }
 
@@ -292,7 +292,7 @@ pub(super) fn read_shift(master: &mut Master<'_>) -> Result<WindowShift, Error> 
     let value = master.ask(Command::ReadShift)?.get();
     let read = Command::ReadShift.emit();
     let shift = u8::try_from(value).ok().and_then(WindowShift::new).ok_or(Implausible::Value { read, value })?;
-    master.learn_shift(shift);
+    master.remember_window_shift(shift);
     Ok(shift)
 }
 

@@ -14,7 +14,7 @@ use stability::{CycleResult, Held, LEAST_PATIENCE};
 use super::data::ProcessData;
 use super::error::{Awaited, RequestedItem};
 use super::handshake::{Handshake, LeftState, WordReply, is_echo};
-use super::reading::{swapped, swapped_unexplained};
+use super::reading::{swapped, unexplained_swapped_word};
 use super::{Error, Gateway, KnownState, Station, WordReading};
 use crate::devices::interbus::protocol::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
 use crate::link::Ctx;
@@ -103,12 +103,12 @@ impl<'a> Master<'a> {
     }
 
     /// Returns the mode as read in this job, or `None` if not read or not confirmed.
-    pub(super) const fn said_mode(&self) -> Option<StartupMode> {
+    pub(super) const fn reported_mode(&self) -> Option<StartupMode> {
         if self.unsure { None } else { self.is }
     }
 
     /// Sets the gear now in force, as far as this session knows.
-    pub(super) fn learn_gear(&mut self, gear: Option<Gear>) {
+    pub(super) fn remember_gear(&mut self, gear: Option<Gear>) {
         self.known.gear = gear;
     }
 
@@ -117,7 +117,7 @@ impl<'a> Master<'a> {
         self.known.gear
     }
 
-    pub(super) fn learn_shift(&mut self, shift: WindowShift) {
+    pub(super) fn remember_window_shift(&mut self, shift: WindowShift) {
         self.known.shift = Some(shift);
     }
 
@@ -175,7 +175,7 @@ impl<'a> Master<'a> {
     pub(super) fn read_out(&mut self, read_out: ReadOut) -> Result<Value, Error> {
         let value = self.ask(Command::ReadOut(read_out))?;
         if read_out == ReadOut::SERIAL_NUMBER {
-            self.said_serial_number(value.get());
+            self.note_serial_number(value.get());
         }
         Ok(value)
     }
@@ -252,7 +252,7 @@ impl<'a> Master<'a> {
                 return ended;
             }
             if cycles >= least && now.since(begun) >= patience {
-                return Err(self.too_late(command, awaited, word, patience));
+                return Err(self.timeout_error(command, awaited, word, patience));
             }
         }
     }
@@ -285,22 +285,22 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Errors of the exchange.
-    pub(super) fn suspected_order(&mut self, input: u32) -> Result<Option<u32>, Error> {
+    pub(super) fn detect_word_order(&mut self, input: u32) -> Result<Option<u32>, Error> {
         if !matches!(Reply::parse(input), Reply::Run { .. }) && self.data.output()? != Some(0) {
             return Ok(None);
         }
-        Ok(swapped_unexplained(input))
+        Ok(unexplained_swapped_word(input))
     }
 
     /// Returns the most likely reason for a missing reply.
-    fn too_late(&mut self, command: Command, awaited: Awaited, input: u32, patience: Duration) -> Error {
+    fn timeout_error(&mut self, command: Command, awaited: Awaited, input: u32, patience: Duration) -> Error {
         let sent = command.emit();
         match self.shielded(|master| master.data.output()) {
             Ok(Some(word)) if word != sent => return Error::OtherMaster { sent, output: word },
             Err(error) => return error,
             Ok(_) => {}
         }
-        let suspected = if self.is.is_none() { swapped_unexplained(input) } else { swapped(input) };
+        let suspected = if self.is.is_none() { unexplained_swapped_word(input) } else { swapped(input) };
         if let Some(swapped) = suspected {
             return Error::WordOrder { input, swapped };
         }

@@ -107,7 +107,7 @@ pub(super) fn swapped(word: u32) -> Option<u32> {
 
 /// Returns the word with its halves exchanged if only the exchanged word is a valid position, including for words other
 /// than positions that have no other explanation. An error word without other bits is just an error.
-pub(super) fn swapped_unexplained(word: u32) -> Option<u32> {
+pub(super) fn unexplained_swapped_word(word: u32) -> Option<u32> {
     match Reply::parse(word) {
         Reply::Run { .. } => swapped(word),
         Reply::Error(error) if error.data.get() == 0 => None,
@@ -162,7 +162,7 @@ mod tests {
         // Stray bits in both orders prove nothing.
         assert_eq!(swapped(0x3456_3456), None);
         // 2DC6C0h; and parameters lost, which is not a position.
-        assert_eq!((swapped(0xC6C0_002D), swapped_unexplained(0xC6C0_002D)), (None, Some(0x002D_C6C0)));
-        assert_eq!(swapped_unexplained(0x8600_0000), None);
+        assert_eq!((swapped(0xC6C0_002D), unexplained_swapped_word(0xC6C0_002D)), (None, Some(0x002D_C6C0)));
+        assert_eq!(unexplained_swapped_word(0x8600_0000), None);
     }
 }

@@ -100,7 +100,8 @@ impl Command {
     /// Returns the meanings of a word in any mode: one or two, or [`Command::Unknown`] if the manual does not define
     /// the word.
     pub fn readings(word: u32) -> Vec<Command> {
-        let both: Vec<Command> = [Command::outside_cams(word), Command::of_cams(word)].into_iter().flatten().collect();
+        let both: Vec<Command> =
+            [Command::decode_non_cam_command(word), Command::of_cams(word)].into_iter().flatten().collect();
         // Both contain the selection of a program, with the same meaning.
         match both.as_slice() {
             [] => vec![Command::Unknown(word)],
@@ -179,7 +180,7 @@ impl Command {
     }
 
     /// Parses an OUT word received while no cam program is selected.
-    fn outside_cams(word: u32) -> Option<Command> {
+    fn decode_non_cam_command(word: u32) -> Option<Command> {
         let low = word as u16;
         match word {
             0 => Some(Command::Normal),

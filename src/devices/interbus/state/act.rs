@@ -37,13 +37,13 @@ impl Encoder {
                 let suggested = self.session.suggested_file().with_extension("csv");
                 let words = (TEXTS.text("file.cams_title"), TEXTS.text("file.tables"));
                 let save = move |path, _| InterbusAction::SaveTable { path, decimal_comma };
-                let file = DeviceFile::to_write(self.session.id, words, &["csv"], suggested, save);
+                let file = DeviceFile::write_question(self.session.id, words, &["csv"], suggested, save);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
             InterbusAction::SaveTable { path, decimal_comma } => self.save_table(path, decimal_comma, services),
             InterbusAction::SetScale(scale) => {
                 self.scale = scale;
-                self.read_table_anew();
+                self.reload_table();
             }
             InterbusAction::Turn(rpm) => {
                 if let Some(motor) = &self.motor {

@@ -3,7 +3,7 @@
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{Parameters, Typed, without_entry};
-use crate::app::connect::target::{checked, entered, host_and_usual_port, parted_from_usual};
+use crate::app::connect::target::{checked, entered, host_and_default_port, split_host_default_port};
 use crate::devices::interbus::jobs::check;
 use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::sim::Config;
@@ -61,7 +61,7 @@ impl FormModel for InterbusForm {
         let mut form = InterbusForm { kind: way, ..InterbusForm::default() };
         match form.kind {
             InterbusLinkKind::Replay => form.file = url.target.clone(),
-            InterbusLinkKind::Gateway => (form.host, form.tcp_port) = parted_from_usual(&url.target, PORT),
+            InterbusLinkKind::Gateway => (form.host, form.tcp_port) = split_host_default_port(&url.target, PORT),
             InterbusLinkKind::Virtual => {}
         }
         form.rest = without_entry(&url.query, |name, value| form.take(name, value));
@@ -108,7 +108,7 @@ impl InterbusForm {
         Ok(match self.kind {
             InterbusLinkKind::Virtual => (Scheme::Sim, String::new()),
             InterbusLinkKind::Gateway => {
-                (Scheme::Modbus, host_and_usual_port(&self.host, "form.gateway_missing", &self.tcp_port, PORT)?)
+                (Scheme::Modbus, host_and_default_port(&self.host, "form.gateway_missing", &self.tcp_port, PORT)?)
             }
             InterbusLinkKind::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })

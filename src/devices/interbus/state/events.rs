@@ -98,7 +98,7 @@ impl SessionEvents for Encoder {
                     let word = TEXTS.text("log.interbus_word").with("word", format!("0x{:08X}", reading.word));
                     self.session.log_answer(vec![word], services);
                 }
-                self.record.glimpse(reading);
+                self.record.observe_reading(reading);
                 self.read_on(services);
             }
             InterbusOutput::Surveyed(survey) => {

@@ -41,7 +41,7 @@ impl Record {
     }
 
     /// Keeps the first word without adding it to a trace, since the word may not be a position.
-    pub(super) fn glimpse(&mut self, reading: WordReading) {
+    pub(super) fn observe_reading(&mut self, reading: WordReading) {
         self.last = Some(reading);
     }
 

@@ -46,7 +46,7 @@ impl Reviewed for Interbus {
             warnings.push(TEXTS.text("ib_review.experimental"));
         }
         let mounting = prepared.mounting_left.iter().map(explain::plain).collect();
-        warnings.extend(review::left_alone(
+        warnings.extend(review::skipped_texts(
             TEXTS.text("ib_review.missing"),
             prepared.missing.iter().map(plain).collect(),
             mounting,

@@ -43,7 +43,7 @@ impl Encoder {
     }
 
     /// Reparses the table after a change of the units or the measuring range.
-    pub(super) fn read_table_anew(&mut self) {
+    pub(super) fn reload_table(&mut self) {
         let Some(program) = self.import.as_ref().map(|import| import.program) else { return };
         let options = self.options(program);
         if let Some(import) = &mut self.import {

@@ -81,7 +81,7 @@ impl Meaning {
             Command::Cams(Some(_)) => self.mode = Mode::Cam,
             Command::Cams(None) | Command::Velocity(false) => self.mode = Mode::Position,
             Command::Velocity(true) => self.mode = Mode::Velocity,
-            _ if word_meaning::mode_of(command) == Mode::Cam => self.mode = Mode::Cam,
+            _ if word_meaning::mode_of_command(command) == Mode::Cam => self.mode = Mode::Cam,
             _ => {}
         }
         self.read_out = if let Command::ReadOut(read_out) = command { Some(read_out) } else { None };

@@ -21,7 +21,7 @@ impl WordContext {
     /// Returns the facts about the encoder that a command is meant for.
     pub fn of(command: Command, shift: Option<WindowShift>) -> Self {
         let read_out = if let Command::ReadOut(what) = command { Some(what) } else { None };
-        WordContext { mode: mode_of(command), read_out, shift }
+        WordContext { mode: mode_of_command(command), read_out, shift }
     }
 }
 
@@ -67,7 +67,7 @@ pub fn command_text(command: Command) -> Text {
 }
 
 /// Returns the mode in which an encoder accepts a command, preferring position mode over cam mode.
-pub fn mode_of(command: Command) -> Mode {
+pub fn mode_of_command(command: Command) -> Mode {
     if command.is_legal_in(Mode::Position) || !command.is_legal_in(Mode::Cam) { Mode::Position } else { Mode::Cam }
 }
 

@@ -33,7 +33,7 @@ pub(crate) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<
         return Ok(Chosen { profile, layout, times: None, title: spec.clone() });
     }
     if let Some(frame) = Descriptor::parse(spec) {
-        return of_frame(spec, frame);
+        return choose_frame_layout(spec, frame);
     }
     let families = families(output)?;
     if is_file(spec, &families) { in_file(output, spec, &families) } else { of_family(output, spec, &families) }
@@ -58,7 +58,7 @@ fn is_file(spec: &str, families: &Families) -> bool {
     is_path || ends || (families.named(&key.to_ascii_lowercase()).is_none() && Path::new(spec).is_file())
 }
 
-fn of_frame(spec: &str, frame: std::result::Result<Descriptor, SpecError>) -> Result<Chosen> {
+fn choose_frame_layout(spec: &str, frame: std::result::Result<Descriptor, SpecError>) -> Result<Chosen> {
     let frame = frame.map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
     let profile = SsiProfile::new(layout.descriptor().clone());
@@ -90,7 +90,7 @@ fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
 fn beside_family(output: &Output, family: &Family, profile: &SsiProfile) {
     let settings = family.settings_of(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {
-        Some(resolved) => advise(output, &resolved),
+        Some(resolved) => print_advice(output, &resolved),
         None => output.remark(&format!(
             "No settings of {} result in this frame; only the times of the family are used.",
             family.name
@@ -98,7 +98,7 @@ fn beside_family(output: &Output, family: &Family, profile: &SsiProfile) {
     }
 }
 
-fn advise(output: &Output, resolved: &Resolved) {
+fn print_advice(output: &Output, resolved: &Resolved) {
     for advice in &resolved.advice {
         output.remark(&words::advice(advice).terminal());
     }
@@ -112,7 +112,7 @@ fn of_family(output: &Output, spec: &str, families: &Families) -> Result<Chosen>
         return Err(Failure::Usage(format!("--layout: {key:?} is neither a file nor a family; families: {known}")));
     };
     let resolved = settings.resolve(family).map_err(|error| Failure::Failed(vec![format!("{error}.")]))?;
-    advise(output, &resolved);
+    print_advice(output, &resolved);
     let profile = SsiProfile::of_family(family, &resolved);
     Ok(Chosen { profile, layout: resolved.layout, times: Some(family.times), title: spec.to_owned() })
 }

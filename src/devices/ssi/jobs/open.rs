@@ -9,7 +9,7 @@ use crate::devices::ssi::procedures::{LinkParameters, Station};
 use crate::kinds::at_adapter;
 use crate::link::{Clock, LinkUrl, RealClock, Scheme};
 use crate::store::Store;
-use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, simulated};
+use crate::worker::open::{inside, margin, open_bytes, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
 /// Checks a link to an SSI encoder without opening it.
@@ -40,7 +40,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
 /// Parses the line settings and the virtual adapter, which matters only for `sim:` links.
 fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Bridge | Scheme::Replay) {
-        return Err(leads_elsewhere(url.scheme, "sim:, bridge:, replay:"));
+        return Err(wrong_target_error(url.scheme, "sim:, bridge:, replay:"));
     }
     let adapter = Adapter::from_pairs(&simulated(url, LinkParameters::KEYS, &[])?, at_adapter())?;
     Ok((Station::from_query(&url.query, margin(url.scheme))?, adapter))

@@ -146,7 +146,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Errors of the adapter.
     pub fn leave_supply(&mut self) -> Result<(), Error> {
-        if !self.station.adapter.supply_goes_off() {
+        if !self.station.adapter.switches_supply_off() {
             return Ok(());
         }
         self.line.shield(true);
@@ -190,12 +190,12 @@ impl<'a> Master<'a> {
 
     fn word_as_set(&mut self) -> Result<Words, Error> {
         let Identity { asking, clock_hz, .. } = self.hello()?;
-        let taken = self.repeated(Self::word_once);
+        let taken = self.repeated(Self::read_single_word);
         let (word, at) = taken.map_err(|error| self.may_be_reset(error))?;
         Ok(Words::one(at, word, asking, clock_hz))
     }
 
-    fn word_once(&mut self) -> Result<(u64, Moment), Failure> {
+    fn read_single_word(&mut self) -> Result<(u64, Moment), Failure> {
         let answered = self.adapter().ask(&Request::SsiRead)?;
         let Reply::SsiRead { t_us, raw } = answered.reply else {
             return Err(AdapterError::other(Request::SsiRead.operation(), &answered.reply).into());

@@ -48,12 +48,12 @@ impl Attachable for AtAdapter {
         let Settings { encoder, troubles } = Settings::read(pairs)?;
         let own = encoder.or_else(|| self.encoder.clone()).or_else(|| Encoder::named(DELIVERED));
         let Some(encoder) = own else { return Ok(None) };
-        let troubles = read_troubles(&troubles, &encoder)?;
+        let troubles = parse_faults(&troubles, &encoder)?;
         Ok(Some(Attached::Ssi(Box::new(Sending { encoder, troubles, transferred: None }))))
     }
 }
 
-fn read_troubles(value: &str, encoder: &Encoder) -> Result<Vec<InjectedFault>, Refused> {
+fn parse_faults(value: &str, encoder: &Encoder) -> Result<Vec<InjectedFault>, Refused> {
     let allowed = || match InjectedFault::names(&encoder.layout) {
         own if own.is_empty() => Expected::NoErrorBits,
         own => Expected::ErrorBits(own),

@@ -50,7 +50,7 @@ impl Encoder {
                 let frame = self.designer.without_error_bit(index);
                 self.edit(Edit::Frame(Box::new(frame)));
             }
-            SsiAction::Try(with) => self.try_with(with),
+            SsiAction::Try(with) => self.start_trial(with),
             SsiAction::SetClocks(clocks) => {
                 self.clocks = clocks
                     .map(|clocks| clocks.clamp(1, 64))
@@ -64,13 +64,13 @@ impl Encoder {
             }
             SsiAction::FindIn(path) => self.find_in(path, services),
             SsiAction::ForgetSearch => self.hunt = SearchState::Nothing,
-            SsiAction::Take(class, member) => self.take_found(class, member),
+            SsiAction::Take(class, member) => self.apply_search_result(class, member),
             SsiAction::ForgetErrors => self.record.forget_tally(),
             SsiAction::AskExport(format, language) => {
                 let suggested = self.suggested(format.endings().first().copied().unwrap_or("txt"));
                 let words = (TEXTS.text("file.export_title"), TEXTS.text(format.word()));
                 let export = move |path, _| SsiAction::Export(format, language, path);
-                let file = DeviceFile::to_write(self.session.id, words, format.endings(), suggested, export);
+                let file = DeviceFile::write_question(self.session.id, words, format.endings(), suggested, export);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
             SsiAction::Export(format, language, path) => match self.designer.export(format, language) {
@@ -81,7 +81,7 @@ impl Encoder {
                 let suggested = self.suggested("txt");
                 let words = (TEXTS.text("file.frames_title"), TEXTS.text("file.frames"));
                 let save = |path, _| SsiAction::SaveFrames(path);
-                let file = DeviceFile::to_write(self.session.id, words, &["txt"], suggested, save);
+                let file = DeviceFile::write_question(self.session.id, words, &["txt"], suggested, save);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
             SsiAction::SaveFrames(path) => {
@@ -101,7 +101,7 @@ impl Encoder {
         }
     }
 
-    fn try_with(&mut self, with: Try) {
+    fn start_trial(&mut self, with: Try) {
         let layout = self.designer.layout();
         // The trial starts from the word that was read, if one is shown.
         if self.is_following()
@@ -166,7 +166,7 @@ impl Encoder {
         });
     }
 
-    fn take_found(&mut self, class: usize, member: usize) {
+    fn apply_search_result(&mut self, class: usize, member: usize) {
         let SearchState::Found { search, .. } = &self.hunt else { return };
         let Some(proposal) = search.classes.get(class).and_then(|class| class.members.get(member)) else { return };
         let mut profile = self.wanted_profile();

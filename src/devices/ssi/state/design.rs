@@ -99,27 +99,27 @@ impl Designer {
 
     /// Creates the design of a family's layout as delivered.
     pub(super) fn delivered(families: Arc<Families>) -> Self {
-        let profile = of_text(TO_BEGIN_WITH, &families);
+        let profile = parse_profile(TO_BEGIN_WITH, &families);
         Designer::with(profile, families)
     }
 
     /// Creates the design for a link. The layout is known only if the link leads to a virtual encoder.
     pub(super) fn at_link(url: &LinkUrl, families: Arc<Families>) -> Self {
         let sent = url.query.get("ssi").filter(|_| url.scheme == Scheme::Sim);
-        let mut profile = of_text(sent.unwrap_or(DELIVERED), &families);
-        profile.reading = read_over(profile.reading, url, |_| true);
+        let mut profile = parse_profile(sent.unwrap_or(DELIVERED), &families);
+        profile.reading = reading_for_link(profile.reading, url, |_| true);
         Designer::with(profile, families)
     }
 
     /// Returns the reading settings for a new link to the same encoder. Parameters that differ between the links are
     /// taken from the new one; settings made by the user stay.
-    pub(super) fn reading_over(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
-        read_over(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
+    pub(super) fn reading_after_link_change(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
+        reading_for_link(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }
 
     /// Returns the frame that the virtual encoder at the given link sends.
     pub(super) fn sent_by(&self, url: &LinkUrl) -> Descriptor {
-        of_text(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
+        parse_profile(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
     }
 
     pub(super) fn open(&mut self, profile: SsiProfile) {
@@ -253,7 +253,7 @@ impl Designer {
     }
 
     /// Marks the profile as saved. Undo steps are kept.
-    pub(super) fn saved_as(&mut self, profile: SsiProfile) {
+    pub(super) fn mark_saved(&mut self, profile: SsiProfile) {
         self.saved = profile;
     }
 }
@@ -293,7 +293,7 @@ impl PendingEdits for Designer {
 }
 
 /// Returns the reading settings for a link, with the link's parameters applied.
-fn read_over(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> bool) -> ReadingSettings {
+fn reading_for_link(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> bool) -> ReadingSettings {
     let number = |name: &str| url.query.get(name).filter(|_| counts(name)).and_then(|text| text.parse::<u32>().ok());
     let pause_us = number("pause").and_then(|pause| u16::try_from(pause).ok());
     ReadingSettings {
@@ -304,7 +304,7 @@ fn read_over(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> b
 }
 
 /// Parses a layout, falling back to a minimal one if the string is invalid.
-fn of_text(text: &str, families: &Families) -> SsiProfile {
+fn parse_profile(text: &str, families: &Families) -> SsiProfile {
     let resolved = Settings::parse(text).ok().and_then(|(key, settings)| {
         let family = families.named(&key)?;
         Some(SsiProfile::of_family(family, &settings.resolve(family).ok()?))

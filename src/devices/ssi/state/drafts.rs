@@ -85,7 +85,7 @@ impl Drafted for Encoder {
         let before = self.designer.layout().clone();
         // Undo steps are kept unless the file has changed: then the edits remain edits.
         if self.designer.design().profile == *profile {
-            self.designer.saved_as(profile.clone());
+            self.designer.mark_saved(profile.clone());
         } else {
             let edits = self.edited();
             self.designer.open(profile.clone());
@@ -97,7 +97,7 @@ impl Drafted for Encoder {
 
     fn written_beside(&mut self, document: Document) {
         if let Ok(profile) = document.body.into_profile() {
-            self.designer.saved_as(profile);
+            self.designer.mark_saved(profile);
         }
     }
 }

@@ -124,7 +124,7 @@ impl Encoder {
             return;
         }
         self.trial.follow(before, now);
-        self.record.read_as(now);
+        self.record.reinterpret(now);
     }
 
     pub(super) fn name_after_family(&mut self) {

@@ -58,7 +58,7 @@ impl Kind for Ssi {
 
 impl Encoder {
     /// Sends the reading settings to the adapter if they differ from those last sent.
-    fn tell_asking(&mut self, services: &mut Services) {
+    fn send_reading_settings(&mut self, services: &mut Services) {
         let asking = self.asking();
         // Once it is identified, and nothing else runs; a refused setting is not sent again.
         if self.identity.is_some() && self.session.is_ready() && self.requested != Some(asking) {
@@ -74,7 +74,7 @@ impl Encoder {
         }
     }
 
-    fn take_identity(&mut self, identity: Identity, services: &mut Services) {
+    fn accept_identity(&mut self, identity: Identity, services: &mut Services) {
         let fresh = std::mem::take(&mut self.session.just_connected);
         self.name_after_family();
         if fresh {
@@ -100,7 +100,7 @@ impl SessionEvents for Encoder {
 
     fn pump(&mut self, services: &mut Services) {
         self.poll_line(services);
-        self.tell_asking(services);
+        self.send_reading_settings(services);
     }
 
     fn message_received(&mut self, remark: Infallible, _: &mut Services) {
@@ -111,7 +111,7 @@ impl SessionEvents for Encoder {
         match output {
             SsiOutput::Hello(identity) => {
                 self.requested = Some(identity.asking);
-                self.take_identity(*identity, services);
+                self.accept_identity(*identity, services);
                 self.see_a_word(services);
             }
             SsiOutput::Set(identity) => {
@@ -132,7 +132,7 @@ impl SessionEvents for Encoder {
     }
 
     fn cancelled(&mut self, id: JobId, error: &JobError, services: &mut Services) {
-        services.job_ends(self.session.id, id, JobEnd::Cancelled);
+        services.end_job(self.session.id, id, JobEnd::Cancelled);
         services.notify(Severity::Warning, Ssi::error_texts(error), Some(&self.session.name()));
     }
 }

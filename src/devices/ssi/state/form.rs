@@ -138,7 +138,7 @@ impl Row {
         Row { field, name: TEXTS.text(name), entry: Entry::Choice { options, chosen }, hint: None }
     }
 
-    fn hinted(self, hint: &'static str) -> Self {
+    fn with_hint(self, hint: &'static str) -> Self {
         Row { hint: Some(hint), ..self }
     }
 }
@@ -162,14 +162,14 @@ impl Designer {
                 entry: Entry::Frequency(reading.clock_hz),
                 hint: None,
             },
-            Row::number(Field::Pause, "ssi_form.pause", reading.pause_us, "µs").hinted("ssi_form.pause_hint"),
+            Row::number(Field::Pause, "ssi_form.pause", reading.pause_us, "µs").with_hint("ssi_form.pause_hint"),
             Row::number(Field::Cable, "ssi_form.cable", reading.cable_metres.unwrap_or(0), "m")
-                .hinted("ssi_form.cable_hint"),
+                .with_hint("ssi_form.cable_hint"),
         ];
         if reading.synchronous || self.times().is_some_and(|times| times.synchronous.is_some()) {
             rows.push(
                 Row::switch(Field::Synchronous, "ssi_form.synchronous", reading.synchronous)
-                    .hinted("ssi_form.synchronous_hint"),
+                    .with_hint("ssi_form.synchronous_hint"),
             );
         }
         rows
@@ -186,7 +186,7 @@ impl Designer {
             (Field::Direction, Input::Choice(_)) => return Ok(Edit::Direction(Direction::CounterClockwise)),
             (Field::Preset, Input::Number(preset)) => return Ok(Edit::Preset(*preset)),
             (Field::ClockRate | Field::Pause | Field::Cable | Field::Synchronous, input) => {
-                return self.reading_entered(field, input).ok_or_else(wrong);
+                return self.apply_reading_input(field, input).ok_or_else(wrong);
             }
             _ => {}
         }
@@ -199,7 +199,7 @@ impl Designer {
         }
     }
 
-    fn reading_entered(&self, field: Field, input: &Input) -> Option<Edit> {
+    fn apply_reading_input(&self, field: Field, input: &Input) -> Option<Edit> {
         let mut reading = self.design().profile.reading;
         match (field, input) {
             (Field::ClockRate, Input::Number(hz)) => {
@@ -232,8 +232,8 @@ fn counting(designer: &Designer) -> Group {
         title: "ssi_form.counting",
         rows: vec![
             Row::choice(Field::Direction, "ssi_form.direction", &all, &profile.direction)
-                .hinted("ssi_form.direction_hint"),
-            Row::number(Field::Preset, "ssi_form.preset", profile.preset, "").hinted("ssi_form.preset_hint"),
+                .with_hint("ssi_form.direction_hint"),
+            Row::number(Field::Preset, "ssi_form.preset", profile.preset, "").with_hint("ssi_form.preset_hint"),
         ],
     }
 }
@@ -255,7 +255,7 @@ fn over_row(own: Coded) -> Row {
         })
     };
     Row::choice(Field::Over, "ssi_form.over", &OVER.map(|coded| (coded, words(coded))), &own)
-        .hinted("ssi_form.over_hint")
+        .with_hint("ssi_form.over_hint")
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -305,7 +305,7 @@ fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &Descriptor) 
             rows.push(Row::number(Field::Steps, "ssi_form.steps_around", steps, ""));
             rows.push(
                 Row::number(Field::RevolutionsAbove, "ssi_form.revolutions", numerator, "")
-                    .hinted("ssi_form.revolutions_hint"),
+                    .with_hint("ssi_form.revolutions_hint"),
             );
             rows.push(Row::number(Field::RevolutionsBelow, "ssi_form.revolutions_below", denominator, ""));
         }

@@ -128,7 +128,7 @@ impl DeviceModel for Encoder {
 
     fn take_link(&mut self, url: &LinkUrl) {
         if let Source::Link(before) = &self.session.source {
-            self.edit(Edit::Reading(self.designer.reading_over(before, url)));
+            self.edit(Edit::Reading(self.designer.reading_after_link_change(before, url)));
         }
     }
 }

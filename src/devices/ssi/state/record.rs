@@ -147,7 +147,7 @@ impl Record {
     }
 
     /// Changes the layout. Stored words are decoded again and earlier recordings are dropped, unless only names differ.
-    pub(super) fn read_as(&mut self, layout: &Layout) {
+    pub(super) fn reinterpret(&mut self, layout: &Layout) {
         if self.layout == *layout {
             return;
         }

@@ -25,7 +25,7 @@ pub(super) struct Grid {
 }
 
 /// Rounds a length up to the next multiple of four points.
-fn on_grid(length: f32) -> f32 {
+fn snap_to_grid(length: f32) -> f32 {
     (length / 4.0).ceil() * 4.0
 }
 
@@ -35,9 +35,9 @@ impl Grid {
         let font = FontId::monospace(theme.sizes.body);
         let (glyph, row) = ui.fonts_mut(|fonts| (fonts.glyph_width(&font, '0'), fonts.row_height(&font)));
         let characters = model.addresses.width(len);
-        let (byte, letter) = (on_grid(glyph * 2.0 + theme.space.between - 1.0), glyph.ceil());
+        let (byte, letter) = (snap_to_grid(glyph * 2.0 + theme.space.between - 1.0), glyph.ceil());
         let places = |gap: f32| {
-            let hex_left = on_grid(glyph * characters as f32) + gap + theme.space.inside;
+            let hex_left = snap_to_grid(glyph * characters as f32) + gap + theme.space.inside;
             let text_left = hex_left + byte * WIDTH as f32 + gap * 3.0;
             (gap, hex_left, text_left, text_left + letter * WIDTH as f32 + theme.space.inside)
         };
@@ -45,7 +45,7 @@ impl Grid {
         let wide = places(theme.space.between);
         let fits = wide.3 + theme.space.between * 2.0 <= ui.available_width();
         let (gap, hex_left, text_left, width) = if fits { wide } else { places(theme.space.inside) };
-        let row = on_grid(row + 2.0);
+        let row = snap_to_grid(row + 2.0);
         Grid { font, glyph, row, width, gap, text_left, hex_left, byte, letter, len }
     }
 

@@ -18,7 +18,7 @@ pub(super) fn editor_ui(
 ) {
     let Some(mut edit) = view.edit.take() else { return };
     if !edit.begins && ui.memory(|memory| memory.has_focus(keys::entry_id(table_id))) {
-        keys::hold_back(ui, view);
+        keys::defer_keys(ui, view);
     }
     let before = edit.text.clone();
     ui.spacing_mut().interact_size.y = cell.height();

@@ -27,7 +27,7 @@ pub(super) fn entry_id(table: Id) -> Id {
 
 /// Holds back whatever is typed in the current frame after a key that ends an edit: Enter, or an up or down arrow,
 /// which acts as Enter and then moves to another line.
-pub(super) fn hold_back(ui: &Ui, view: &mut RegisterView) {
+pub(super) fn defer_keys(ui: &Ui, view: &mut RegisterView) {
     ui.input_mut(|input| {
         let mut ended = false;
         let mut kept = Vec::with_capacity(input.events.len());
@@ -130,7 +130,7 @@ fn walk(key: Key, modifiers: Modifiers, lines: &Lines, view: &mut RegisterView) 
         (Key::End, _) => last,
         _ => return false,
     };
-    if let Some(own) = lines.select_at(to) {
+    if let Some(own) = lines.selection_at(to) {
         view.go(own);
     }
     true
@@ -141,7 +141,7 @@ fn step(at: usize, lines: &Lines, view: &mut RegisterView, next: impl Fn(usize) 
     let mut line = at;
     while let Some(to) = next(line) {
         line = to;
-        let own = lines.select_at(line);
+        let own = lines.selection_at(line);
         if own.is_some() && own != view.selected {
             own.into_iter().for_each(|own| view.go(own));
             break;

@@ -83,7 +83,7 @@ impl Lines {
     }
 
     /// Returns the selectable item of a line: the item itself, or the register of a bit field.
-    pub(super) fn select_at(&self, line: usize) -> Option<Selected> {
+    pub(super) fn selection_at(&self, line: usize) -> Option<Selected> {
         Some(match self.at(line)? {
             LineKind::Group(group) => Selected::Group(group),
             LineKind::Row(place) | LineKind::Bits(place, _) => Selected::Row(place),
@@ -148,7 +148,7 @@ mod tests {
         }
         assert_eq!(lines.at(expected.len()), None);
         assert_eq!(lines.line_of(Selected::Row(place(2, 0))), None, "its group is folded");
-        assert_eq!(lines.select_at(4), Some(Selected::Row(place(0, 1))));
+        assert_eq!(lines.selection_at(4), Some(Selected::Row(place(0, 1))));
         assert_eq!(Lines::new(&RegisterTable { groups: &[], ..table }, &view).at(0), None);
     }
 }

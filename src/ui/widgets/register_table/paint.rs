@@ -97,7 +97,7 @@ pub(super) fn row(
         && row.read_only.is_none()
         && let Some(range) = columns.range(Column::Value)
     {
-        ui.painter().rect_filled(box_of(theme, rect, range), 2.0, palette.raised);
+        ui.painter().rect_filled(value_box(theme, rect, range), 2.0, palette.raised);
     }
     for (column, range) in columns.iter() {
         let (words, ink) = match column {
@@ -140,7 +140,7 @@ pub(super) fn row(
 }
 
 /// Returns the clickable area that starts editing a line's value.
-pub(super) fn box_of(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
+pub(super) fn value_box(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
     let inset = theme.space.inside;
     let x = rect.left() + value.min - inset..=rect.left() + value.max - theme.space.between;
     Rect::from_x_y_ranges(x, rect.top() + 0.5..=rect.bottom() - 0.5)

@@ -33,7 +33,7 @@ pub(super) fn explain_word(raw: u64, shown: String) -> Explained {
     let layout = Layout::default();
     let mut more = form("position word");
     let bits = layout.multiturn_bits() + layout.singleturn_bits();
-    let meaning = match PositionWord::new(raw).and_then(|word| layout.reading_of(word)) {
+    let meaning = match PositionWord::new(raw).and_then(|word| layout.decode_position(word)) {
         Some(reading) => Ok(vec![place(&layout, &reading, raw, &mut more)]),
         None => Err(format!("the position word of this encoder has {bits} bits, this one more")),
     };

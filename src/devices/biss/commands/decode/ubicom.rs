@@ -91,7 +91,7 @@ fn value_words(register: u16, value: u8) -> String {
 
 fn position_words(word: PositionWord) -> String {
     let layout = Layout::default();
-    match layout.reading_of(word) {
+    match layout.decode_position(word) {
         None => format!("position 0x{:X}, which has more than 33 bits", word.word()),
         Some(reading) => {
             let (turns, steps) = (reading.multiturn, reading.singleturn);

@@ -34,14 +34,14 @@ impl<'a> Master<'a> {
         Adapter { line: &mut self.line, state: &mut self.station.line, adapter: &mut self.station.adapter }
     }
 
-    /// Prepares the bus like [`be_ready_for`](Self::be_ready_for), with the known widths.
-    pub(super) fn be_ready_on_bus(&mut self) -> Result<(), Error> {
+    /// Prepares the bus like [`ensure_bus_ready_for`](Self::ensure_bus_ready_for), with the known widths.
+    pub(super) fn ensure_bus_ready(&mut self) -> Result<(), Error> {
         let layout = self.station.frame();
-        self.be_ready_for(layout.data_bits(), layout.crc_bits())
+        self.ensure_bus_ready_for(layout.data_bits(), layout.crc_bits())
     }
 
     /// Identifies the adapter, switches the encoder's supply on if requested, and configures the bus.
-    pub(super) fn be_ready_for(&mut self, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
+    pub(super) fn ensure_bus_ready_for(&mut self, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
         self.end_frames()?;
         self.adapter().hello()?;
         let Some(hello) = self.station.adapter.hello() else { return Err(AdapterError::Silent.into()) };
@@ -92,7 +92,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    pub(super) fn bus_read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
+    pub(super) fn read_bus_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
         if let Err(trouble) = self.select_once(address)? {
             return Ok(Err(trouble));
         }
@@ -109,7 +109,7 @@ impl<'a> Master<'a> {
         Ok(Ok(value))
     }
 
-    pub(super) fn bus_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
+    pub(super) fn write_bus_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
         Ok(match self.register_write(address, value)? {
             Ok(reads) if reads == value => Ok(WriteReaction::Yes),
             // A command register may be cleared as soon as the command is carried out (`U`); the status shows the result.
@@ -167,9 +167,9 @@ impl<'a> Master<'a> {
         }
     }
 
-    pub(super) fn bus_position_once(&mut self) -> Attempt<PositionReading> {
+    pub(super) fn read_bus_position_once(&mut self) -> Attempt<PositionReading> {
         let layout = self.station.frame();
-        let (raw, at) = match self.frame_once()? {
+        let (raw, at) = match self.read_frame_once()? {
             Ok(frame) => frame,
             Err(trouble) => return Ok(Err(trouble)),
         };
@@ -189,7 +189,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    pub(super) fn frame_once(&mut self) -> Attempt<(u64, Moment)> {
+    pub(super) fn read_frame_once(&mut self) -> Attempt<(u64, Moment)> {
         let answered = self.adapter().ask(&Request::BissRead);
         let answered = answered.inspect_err(|failure| self.may_be_reset(failure))?;
         let Reply::BissRead { t_us, status, raw } = answered.reply else {
@@ -216,7 +216,7 @@ impl<'a> Master<'a> {
             return Err(failed);
         }
         for _ in 0..WRONG_FRAMES {
-            match self.bus_position_once()? {
+            match self.read_bus_position_once()? {
                 Ok(reading) => return Ok(reading),
                 Err(ExchangeError::Damage(Damage::Frame(_))) => {}
                 Err(_) => return Err(failed),
@@ -233,7 +233,7 @@ impl<'a> Master<'a> {
     /// Reads a frame after a register gave no reply, to find out whether the line itself is at fault.
     pub(super) fn diagnose(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
-        match self.frame_once() {
+        match self.read_frame_once() {
             Ok(Err(ExchangeError::NoFrame(cause))) => self.no_frame(cause, tries),
             _ => failed,
         }

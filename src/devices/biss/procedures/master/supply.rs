@@ -29,7 +29,7 @@ impl Master<'_> {
     fn has_power(&mut self) -> bool {
         let bits = self.station.frame().bits();
         let ones = u64::MAX >> (64 - u32::from(bits.clamp(1, 64)));
-        matches!(self.frame_once(), Ok(Ok((raw, _))) if raw != 0 && raw != ones)
+        matches!(self.read_frame_once(), Ok(Ok((raw, _))) if raw != 0 && raw != ones)
     }
 
     /// Switches the supply off at the end of a session, unless it was on before or is to remain on. It also remains on
@@ -39,7 +39,7 @@ impl Master<'_> {
     /// # Errors
     /// Errors of the adapter.
     pub fn leave_supply(&mut self) -> Result<(), Error> {
-        if self.station.transport != Transport::Adapter || !self.station.adapter.supply_goes_off() {
+        if self.station.transport != Transport::Adapter || !self.station.adapter.switches_supply_off() {
             return Ok(());
         }
         self.shielded(|master| {

@@ -9,7 +9,7 @@ use crate::bits::{ByteOrder, MaskedBytes};
 use crate::buses::ubicom::protocol::{
     BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
 };
-use crate::devices::biss::procedures::error::{Damage, RequestedItem, asked_register};
+use crate::devices::biss::procedures::error::{Damage, RequestedItem, requested_register};
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::{Echo, Error};
 use crate::devices::biss::protocol::RegisterAddress;
@@ -37,27 +37,27 @@ struct ReceivedBytes {
 }
 
 impl Master<'_> {
-    pub(super) fn pin_read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
+    pub(super) fn read_pin_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
-        self.register_once(address.global(), order)
+        self.read_register_once(address.global(), order)
     }
 
     /// Sends a request that reveals the byte order of register numbers.
     pub(super) fn probe_once(&mut self) -> Attempt<u8> {
-        self.register_once(Request::PROBE_REGISTER, ByteOrder::LowFirst)
+        self.read_register_once(Request::PROBE_REGISTER, ByteOrder::LowFirst)
     }
 
-    fn register_once(&mut self, register: u16, order: ByteOrder) -> Attempt<u8> {
+    fn read_register_once(&mut self, register: u16, order: ByteOrder) -> Attempt<u8> {
         Ok(match self.exchange(Request::Read { register }, order)? {
             Ok(Timed { reply: Reply::Value(value), .. }) => Ok(value),
             Ok(Timed { reply, .. }) => {
-                return Err(Error::other_reply(RequestedItem::Read(asked_register(register)), &reply));
+                return Err(Error::other_reply(RequestedItem::Read(requested_register(register)), &reply));
             }
             Err(trouble) => Err(trouble),
         })
     }
 
-    pub(super) fn pin_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
+    pub(super) fn write_pin_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
         Ok(match self.exchange(Request::Write { register: address.global(), value }, order)? {
             Ok(Timed { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(WriteReaction::Yes),
@@ -67,14 +67,14 @@ impl Master<'_> {
         })
     }
 
-    pub(super) fn pin_position_once(&mut self) -> Attempt<PositionReading> {
+    pub(super) fn read_pin_position_once(&mut self) -> Attempt<PositionReading> {
         let (word, at) = match self.exchange(Request::POSITION, ByteOrder::LowFirst)? {
             Ok(Timed { reply: Reply::Position(word), at }) => (word, at),
             Ok(Timed { reply, .. }) => return Err(Error::other_reply(RequestedItem::Position, &reply)),
             Err(trouble) => return Ok(Err(trouble)),
         };
         let layout = self.station.frame();
-        let Some(reading) = layout.reading_of(word) else {
+        let Some(reading) = layout.decode_position(word) else {
             let (multiturn, singleturn) = (layout.multiturn_bits(), layout.singleturn_bits());
             return Err(Error::TooWide { word: word.word(), multiturn, singleturn });
         };
@@ -162,7 +162,7 @@ impl Master<'_> {
     fn understood(&mut self, received: &ReceivedBytes, reply: &[u8], at: Moment) {
         let state = &mut self.station.line;
         state.answered();
-        state.answer_began(at);
+        state.record_answer_start(at);
         state.echo.learn(received.echo_heard);
         if received.receiver.skipped() > 0 || received.damage.is_some() {
             // The checksum of this reply is right, but the line has damaged other bytes.

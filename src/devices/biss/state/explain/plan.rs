@@ -30,11 +30,11 @@ pub fn plan(error: &PlanError) -> Text {
         }
         PlanError::UnknownFilter { code } => TEXTS.text("biss_plan.no_filter").with("code", format!("0x{code:02X}")),
         PlanError::NoProcedure { kind, description } => {
-            TEXTS.text("biss_plan.no_procedure").with_text("what", kind_of(*kind)).with("name", description)
+            TEXTS.text("biss_plan.no_procedure").with_text("what", procedure_kind_text(*kind)).with("name", description)
         }
         PlanError::FirmwareTooOld { kind, needed, found } => TEXTS
             .text("biss_plan.old_firmware")
-            .with_text("what", kind_of(*kind))
+            .with_text("what", procedure_kind_text(*kind))
             .with("needed", needed)
             .with("found", found),
         PlanError::ReadOnly { address } => TEXTS.text("biss_plan.read_only").with("address", address),
@@ -47,7 +47,7 @@ pub fn plan(error: &PlanError) -> Text {
     }
 }
 
-pub(super) fn kind_of(kind: ProcedureKind) -> Text {
+pub(super) fn procedure_kind_text(kind: ProcedureKind) -> Text {
     TEXTS.text(match kind {
         ProcedureKind::WiegandTest => "guide.wiegand",
         ProcedureKind::Calibration => "guide.calibration",

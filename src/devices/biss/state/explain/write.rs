@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::encoder;
 use super::guide::{blocker, mode, speeds, step, task, temperatures};
-use super::plan::kind_of;
+use super::plan::procedure_kind_text;
 use crate::app::explain::plain;
 use crate::app::review::{ChangeWords, OpWords};
 use crate::app::{Severity, Text};
@@ -192,7 +192,7 @@ pub fn failure(failure: &Failure) -> Text {
         }
         Failure::Status { kind, expected, found } => TEXTS
             .text("biss_failure.status")
-            .with_text("what", kind_of(*kind))
+            .with_text("what", procedure_kind_text(*kind))
             .with("expected", format!("0x{expected:02X}"))
             .with("found", format!("0x{found:02X}")),
         Failure::TooLong { seconds, .. } => TEXTS.text("biss_failure.too_long").with("seconds", seconds),
@@ -206,7 +206,9 @@ pub fn failure(failure: &Failure) -> Text {
         Failure::NotVerified { item, expected, got } => {
             TEXTS.text("biss_failure.not_verified").with("item", item).with("expected", expected).with("got", got)
         }
-        Failure::NotDescribed { kind } => TEXTS.text("biss_failure.not_described").with_text("what", kind_of(*kind)),
+        Failure::NotDescribed { kind } => {
+            TEXTS.text("biss_failure.not_described").with_text("what", procedure_kind_text(*kind))
+        }
     }
 }
 

@@ -55,7 +55,7 @@ impl Drives {
         }
     }
 
-    pub fn dead_men(&self) -> impl Iterator<Item = &DeadMan> {
+    pub fn dead_man_switches(&self) -> impl Iterator<Item = &DeadMan> {
         self.controlled.iter().map(|man| &man.dead_man)
     }
 
@@ -127,7 +127,7 @@ impl Drives {
         if now < self.poll_at() || self.is_over() {
             return None;
         }
-        let moves = self.dead_men().any(|man| !man.is_idle());
+        let moves = self.dead_man_switches().any(|man| !man.is_idle());
         if let Some(after) = self.connection.silent(now, moves) {
             self.connection_lost(now, CyclicLost::Silent { after });
         }
@@ -145,7 +145,7 @@ impl Drives {
             }
         }
         self.look_whether_it_ends(now, &mut drives);
-        let moving_on = self.dead_men().find(|man| man.gives_up()).map(DeadMan::drive);
+        let moving_on = self.dead_man_switches().find(|man| man.gives_up()).map(DeadMan::drive);
         if let Some(number) = moving_on {
             self.lost.get_or_insert(CyclicLost::DoesNotStand(number));
             self.close(now);
@@ -156,7 +156,7 @@ impl Drives {
     }
 
     fn look_whether_it_ends(&mut self, now: Moment, drives: &mut [OutData]) {
-        let idle = self.dead_men().all(DeadMan::is_idle);
+        let idle = self.dead_man_switches().all(DeadMan::is_idle);
         let Some(ending) = &mut self.ending else { return };
         if idle || ending.off > 0 || now.since(ending.since) >= LADDER {
             ending.off += 1;

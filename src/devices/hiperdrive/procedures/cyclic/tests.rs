@@ -180,7 +180,7 @@ fn a_lost_connection_stops_and_stays_lost() {
     assert!(bench.drives.lost().is_none());
     assert_eq!(bench.cycles(1).join(" "), "1419");
     assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(40) }));
-    assert_eq!(bench.drives.dead_men().next().unwrap().ended(), Some((1, Ended::Lost)));
+    assert_eq!(bench.drives.dead_man_switches().next().unwrap().ended(), Some((1, Ended::Lost)));
     bench.act(MotionRequest::Lead(Goal::Enabled));
     assert_eq!(bench.cycles(100).join(" "), "1419 0401 0000");
     assert!(bench.drives.is_over());
@@ -204,7 +204,7 @@ fn a_delayed_thread_reads_pending_packets_before_giving_up() {
         assert_eq!(bench.drives.lost().is_some(), lost, "{away} ms");
         // Without a known position nothing continues to move.
         let how = if lost { Ended::Lost } else { Ended::Deaf };
-        assert_eq!(bench.drives.dead_men().next().unwrap().ended(), Some((1, how)), "{away} ms");
+        assert_eq!(bench.drives.dead_man_switches().next().unwrap().ended(), Some((1, how)), "{away} ms");
     }
     // Nothing more arrives after it either.
     let mut bench = Bench::jogs();
@@ -234,7 +234,7 @@ fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     bench.cycles(4);
     bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
     assert_eq!(bench.cycles(3).join(" "), "0409");
-    assert_eq!(bench.drives.dead_men().next().unwrap().ended(), Some((2, Ended::Deaf)));
+    assert_eq!(bench.drives.dead_man_switches().next().unwrap().ended(), Some((2, Ended::Deaf)));
     bench.cycles(2);
     assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(90) }));
 }

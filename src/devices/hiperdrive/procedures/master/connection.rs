@@ -71,7 +71,7 @@ impl Master<'_> {
             }
             match self.open_so(layout, kind, port) {
                 Err(Error::Refused { refusal, .. }) => match refusal.extended.first() {
-                    Some(&extended @ (CONNECTION_IN_USE | OWNED)) if is_of_connection(&refusal) => {
+                    Some(&extended @ (CONNECTION_IN_USE | OWNED)) if is_connection_refusal(&refusal) => {
                         return Err(Error::OtherMaster { extended });
                     }
                     _ => refused = Some(refusal),
@@ -99,7 +99,7 @@ impl Master<'_> {
 
     /// Closes a connection that may be open and cannot be used, ignoring errors, because the original error is
     /// reported.
-    fn close_blindly(&mut self, close: &ForwardClose) {
+    fn close_without_reply(&mut self, close: &ForwardClose) {
         if let Err(why) = self.shielded(|master| master.forward_close(close)) {
             tracing::warn!("{why}");
         }
@@ -143,14 +143,14 @@ impl Master<'_> {
             Err(cause) => Err(Error::Damaged { requested: RequestedItem::Open, tries: 1, cause: cause.into() }),
         });
         if let Err(Error::NoReply { .. } | Error::Damaged { .. }) = &opened {
-            self.close_blindly(&close);
+            self.close_without_reply(&close);
         }
         let (opened, items) = opened?;
         let micros = |us: u32| Duration::from_micros(us.into());
         let to_target_interval = micros(opened.to_target_interval_us);
         let slowest = to_target_interval.max(micros(opened.to_originator_interval_us));
         if slowest > LONGEST.min(self.station.link.interval * SLOWER) {
-            self.close_blindly(&close);
+            self.close_without_reply(&close);
             let milliseconds = |time: Duration| time.as_millis() as u64;
             let (asked_ms, got_ms) = (milliseconds(self.station.link.interval), milliseconds(slowest));
             return Err(Error::TooSlow { asked_ms, got_ms });
@@ -173,13 +173,13 @@ fn group(to: SocketAddress) -> Option<SocketAddrV4> {
     to.address.is_multicast().then(|| SocketAddrV4::new(to.address, to.port))
 }
 
-fn is_of_connection(refusal: &Refusal) -> bool {
+fn is_connection_refusal(refusal: &Refusal) -> bool {
     refusal.status == GeneralStatus::CONNECTION
 }
 
 /// Returns whether a request with this layout and type avoids the refusal.
 fn answers(refusal: &Refusal, layout: Layout, kind: NetworkType) -> bool {
-    let first = refusal.extended.first().filter(|_| is_of_connection(refusal));
+    let first = refusal.extended.first().filter(|_| is_connection_refusal(refusal));
     match first {
         Some(code) if KINDS.contains(code) => kind == NetworkType::Multicast,
         Some(code) if SIZES.contains(code) => !layout.pkw,

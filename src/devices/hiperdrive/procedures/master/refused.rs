@@ -18,7 +18,7 @@ impl Master<'_> {
     ///
     /// # Errors
     /// Errors of the exchange.
-    pub(super) fn why_refused(
+    pub(super) fn refusal_reason(
         &mut self,
         requested: RequestedItem,
         number: ParameterNumber,
@@ -55,7 +55,7 @@ impl Master<'_> {
         }
     }
 
-    pub(super) fn why_not_set(
+    pub(super) fn write_refusal_reason(
         &mut self,
         number: ParameterNumber,
         value: i64,
@@ -71,7 +71,7 @@ impl Master<'_> {
                     None => Error::Refused { requested: RequestedItem::Set(number), refusal },
                 })
             }
-            _ => self.why_refused(RequestedItem::Set(number), number, refusal),
+            _ => self.refusal_reason(RequestedItem::Set(number), number, refusal),
         }
     }
 

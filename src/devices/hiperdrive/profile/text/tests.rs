@@ -51,7 +51,7 @@ fn emitted_profiles_parse_back() {
 #[test]
 fn a_handwritten_profile_has_no_identity() {
     let profile = parse(SHORT).unwrap();
-    assert!(profile.identity.is_of_no_device());
+    assert!(profile.identity.has_no_device());
     assert_eq!(profile.image, image_of(&[(24, 16), (254, 400), (256, 256), (258, -1000), (260, 204_400)]));
     assert_eq!(profile.drive(drive(2)), Some(&ProfileDrive::at(drive(2))));
     let text = document(profile.clone()).emit();

@@ -92,12 +92,12 @@ fn parameters_map_to_cip_attributes() {
         let parameter = number(own);
         assert_eq!((parameter.class(), parameter.attribute()), (class, attribute), "{own}");
         assert_eq!((parameter.drive(), parameter.base()), (drive, base), "{own}");
-        assert_eq!(ParameterNumber::of_attribute(class, attribute), Some(parameter), "{own}");
+        assert_eq!(ParameterNumber::from_attribute(class, attribute), Some(parameter), "{own}");
         let drives = drive.and_then(|drive| ParameterNumber::of_drive(base, drive));
         assert_eq!(drives, drive.map(|_| parameter), "{own}");
     }
     for (class, attribute) in [(0x63, 1), (0x64, 0), (0x64, 100), (0x65, 99), (0x65, 200), (0x6D, 101), (0xFFFF, 101)] {
-        assert_eq!(ParameterNumber::of_attribute(class, attribute), None, "{class:X}/{attribute}");
+        assert_eq!(ParameterNumber::from_attribute(class, attribute), None, "{class:X}/{attribute}");
     }
     assert_eq!((ParameterNumber::new(0), ParameterNumber::new(900)), (None, None));
     assert_eq!((DriveNumber::new(0), DriveNumber::new(9)), (None, None));
@@ -322,7 +322,7 @@ proptest! {
     #[test]
     fn every_parameter_has_one_address(own in 1u16..900) {
         let parameter = number(own);
-        prop_assert_eq!(ParameterNumber::of_attribute(parameter.class(), parameter.attribute()), Some(parameter));
+        prop_assert_eq!(ParameterNumber::from_attribute(parameter.class(), parameter.attribute()), Some(parameter));
     }
 
     #[test]

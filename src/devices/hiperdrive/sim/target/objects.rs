@@ -77,7 +77,7 @@ impl Plant {
         if ![Service::GET, Service::SET].contains(&request.service) {
             return Err(GeneralStatus::NO_SERVICE);
         }
-        let number = attribute.and_then(|attribute| ParameterNumber::of_attribute(class, attribute));
+        let number = attribute.and_then(|attribute| ParameterNumber::from_attribute(class, attribute));
         let (number, row) =
             number.and_then(|number| Some((number, number.row()?))).ok_or(GeneralStatus::NO_ATTRIBUTE)?;
         if request.service == Service::GET { self.get(number, row) } else { self.set(number, row, &request.data) }

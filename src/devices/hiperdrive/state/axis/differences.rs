@@ -24,13 +24,13 @@ impl DriveFacts {
 }
 
 /// Returns whether the position that was set is known to differ from the saved one.
-pub(super) fn is_place_other(seen: &DriveFacts) -> bool {
+pub(super) fn is_position_different(seen: &DriveFacts) -> bool {
     seen.differences().iter().any(|own| own.number == REFERENCE)
 }
 
 /// Returns the values to write to restore the previous state. The reference is left to the user: writing it assigns the
 /// number to the present location of the axis (manual, 198), which anywhere else would be a wrong zero.
-pub(super) fn to_write_back(seen: &DriveFacts) -> Vec<(u16, i64)> {
+pub(super) fn values_to_restore(seen: &DriveFacts) -> Vec<(u16, i64)> {
     let differences = seen.differences().into_iter().filter(|own| own.number != REFERENCE);
     differences.map(|own| (own.number, own.saved)).collect()
 }

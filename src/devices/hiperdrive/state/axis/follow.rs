@@ -61,7 +61,7 @@ impl Axis {
         }
         match next {
             Some(step) => self.enter(step, seen),
-            None => self.end_as(End::Done, seen, when),
+            None => self.finish_with(End::Done, seen, when),
         }
     }
 
@@ -85,11 +85,11 @@ impl Axis {
     pub(crate) fn cancel(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() {
             self.going = None;
-            self.end_as(End::Cancelled, seen, when);
+            self.finish_with(End::Cancelled, seen, when);
         }
     }
 
-    fn end_as(&mut self, end: End, seen: &DriveFacts, when: &str) {
+    fn finish_with(&mut self, end: End, seen: &DriveFacts, when: &str) {
         self.over = Some(RunSummary { end, when: when.to_owned(), seen: Box::new(seen.clone()) });
     }
 
@@ -157,7 +157,7 @@ impl Axis {
     }
 
     /// Records that a request was not written; `begun` tells whether a part of it may have been.
-    pub(crate) fn not_written(&mut self, begun: bool) {
+    pub(crate) fn handle_write_failure(&mut self, begun: bool) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) if begun => {
                 self.agree(&values, false);
@@ -177,7 +177,7 @@ impl Axis {
     }
 
     pub(crate) fn lose(&mut self) {
-        self.not_written(true);
+        self.handle_write_failure(true);
         self.going = None;
         match self.power {
             Some(_) => self.standstill.forget(),

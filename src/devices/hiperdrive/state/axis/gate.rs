@@ -38,8 +38,8 @@ impl Axis {
             Button::Give => stands().map(|()| DriveRequest::Give),
             Button::Recall => {
                 stands()?;
-                let back = differences::to_write_back(seen);
-                match (back.is_empty(), differences::is_place_other(seen)) {
+                let back = differences::values_to_restore(seen);
+                match (back.is_empty(), differences::is_position_different(seen)) {
                     (false, _) => Ok(DriveRequest::Restore(back)),
                     (true, false) => Err(TEXTS.text("hd_axis.nothing_back")),
                     (true, true) => Err(TEXTS.text("hd_axis.place_left")),
@@ -50,7 +50,7 @@ impl Axis {
             Button::Acknowledge if !seen.has_failed() => Err(TEXTS.text("hd_axis.no_fault")),
             Button::Acknowledge => Ok(DriveRequest::Acknowledge),
             _ if let Some(step) = self.fallen() => Err(words::fallen(step)),
-            Button::Do => stands().and_then(|()| self.ask_of_step(seen)),
+            Button::Do => stands().and_then(|()| self.step_request(seen)),
             Button::Confirm => match (seen.scale, seen.limits) {
                 (Some(_), Some(_)) => Ok(DriveRequest::ConfirmLimits),
                 _ => Err(TEXTS.text("hd_axis.unread")),
@@ -75,7 +75,7 @@ impl Axis {
         }
     }
 
-    fn ask_of_step(&self, seen: &DriveFacts) -> Result<DriveRequest, Text> {
+    fn step_request(&self, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         match self.step {
             AxisStep::Request if seen.requested == Some(true) => Err(TEXTS.text("hd_axis.already")),
             AxisStep::Request => Ok(DriveRequest::Try(vec![(REQUESTED, 1)])),

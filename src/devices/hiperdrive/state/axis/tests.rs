@@ -367,7 +367,7 @@ fn cancelling_reports_written_and_unsaved_values() {
     for (begun, changes) in [(false, 0), (true, 1)] {
         let mut axis = run();
         axis.begin(DriveRequest::Try(vec![(152, 1)]), &fresh());
-        axis.not_written(begun);
+        axis.handle_write_failure(begun);
         assert_eq!((axis.changes().len(), axis.is_partly_written()), (changes, begun));
     }
 }
@@ -418,7 +418,7 @@ fn pitch_and_step_are_previewed_before_writing() {
 fn every_step_has_instructions_and_a_result() {
     let (axis, seen) = until_power();
     for step in AxisStep::ALL {
-        let texts = [words::title(step), words::todo(step, &seen), words::button(step)];
+        let texts = [words::title(step), words::step_instructions(step, &seen), words::button(step)];
         let found = words::found(&axis, step, &seen).unwrap();
         for text in texts.iter().chain([&found]) {
             for language in [Language::English, Language::German] {

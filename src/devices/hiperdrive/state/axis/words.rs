@@ -24,7 +24,7 @@ pub fn title(step: AxisStep) -> Text {
     })
 }
 
-pub fn todo(step: AxisStep, seen: &DriveFacts) -> Text {
+pub fn step_instructions(step: AxisStep, seen: &DriveFacts) -> Text {
     TEXTS.text(match step {
         AxisStep::Request => "hd_axis.do_request",
         AxisStep::Scale => "hd_axis.do_scale",
@@ -206,7 +206,7 @@ pub fn returned(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
 /// Returns a message if parameters were restored but the position was not.
 pub fn place_left(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let is_set = axis.changes().iter().any(|own| matches!(own, AxisChange::Position(_)));
-    let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_place_other(seen));
+    let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_position_different(seen));
     is_left.then(|| TEXTS.text("hd_axis.place_left"))
 }
 

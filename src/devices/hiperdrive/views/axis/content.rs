@@ -123,7 +123,7 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     {
         super::warning(ui, theme, &why);
     }
-    if let Some(status) = shown.unit.running_or_last(shown.axis.drive()) {
+    if let Some(status) = shown.unit.current_or_last_request(shown.axis.drive()) {
         let ink = if status.is_well { theme.palette.muted } else { theme.palette.warn };
         paragraph(ui, RichText::new(theme.words(&status.words)).color(ink));
     }

@@ -40,7 +40,7 @@ impl Master<'_> {
     /// Takes the next codes out of the queue; returns whether more follow. `seen` contains the codes of each reply so
     /// far.
     fn next_codes(&mut self, seen: &mut Vec<Vec<StatusCode>>) -> Result<bool, Error> {
-        self.learn_echo()?;
+        self.detect_echo()?;
         let mut tries = 0;
         loop {
             tries += 1;
@@ -65,7 +65,7 @@ impl Master<'_> {
             let mut pending = None;
             for (codes, more) in answered.into_iter().chain(late) {
                 pending = Some(more);
-                self.meet_reply(codes, seen);
+                self.record_reply_codes(codes, seen);
             }
             match pending {
                 Some(pending) => {
@@ -79,12 +79,12 @@ impl Master<'_> {
 
     /// Handles a reply to 50h. One that equals an earlier one in the same queue may be a late duplicate: its codes are
     /// known, and the reply to the present request may be missing.
-    fn meet_reply(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
+    fn record_reply_codes(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
         if seen.contains(&codes) {
             return;
         }
         self.station.codes_unheard = self.station.codes_unheard.saturating_sub(1);
-        self.station.meet_codes(codes.iter().copied());
+        self.station.add_codes(codes.iter().copied());
         seen.push(codes);
     }
 

@@ -48,7 +48,7 @@ impl Master<'_> {
         request: &Request,
     ) -> Result<Result<ReceivedAnswer, ExchangeFailure>, Error> {
         if request.command() != Command::ReadTypeLabel {
-            self.learn_echo()?;
+            self.detect_echo()?;
         }
         self.begin()?;
         let frame = request.emit(self.station.address);
@@ -73,7 +73,7 @@ impl Master<'_> {
     }
 
     /// Determines whether the line echoes, if not known yet.
-    pub(super) fn learn_echo(&mut self) -> Result<(), Error> {
+    pub(super) fn detect_echo(&mut self) -> Result<(), Error> {
         if self.station.line.echo == Echo::Unknown {
             self.ask(&Request::ReadTypeLabel)?;
         }
@@ -108,7 +108,7 @@ impl Master<'_> {
         let mut line = Vec::new();
         let mut first_at = sent_at;
         loop {
-            let reply = self.without_echo(&line, frame);
+            let reply = self.strip_echo(&line, frame);
             if reply.is_some_and(|reply| request.reply_length(reply).is_none_or(|length| reply.len() >= length.max)) {
                 break;
             }
@@ -119,28 +119,28 @@ impl Master<'_> {
             if line.len() == before {
                 break;
             }
-            let first = self.without_echo(&line, frame).filter(|reply| !begun && !reply.is_empty());
+            let first = self.strip_echo(&line, frame).filter(|reply| !begun && !reply.is_empty());
             if let Some(reply) = first {
                 // An adapter delivers several characters at once: the first of them was complete earlier.
                 first_at = self.now() - timing.characters(reply.len() - 1);
             }
         }
-        let begun = self.without_echo(&line, frame).is_some_and(|reply| !reply.is_empty());
-        let more = self.hear_the_dead_time(&mut line, frame)?;
+        let begun = self.strip_echo(&line, frame).is_some_and(|reply| !reply.is_empty());
+        let more = self.receive_during_dead_time(&mut line, frame)?;
         let intrusion = match (begun, more) {
             (_, false) => None,
             (true, true) => Some(Damage::Trailing),
             (false, true) => {
                 let quiet = self.quiet();
-                self.line.let_late_ones_pass(&mut self.station.line, quiet)?;
+                self.line.discard_late_answers(&mut self.station.line, quiet)?;
                 Some(Damage::Late)
             }
         };
-        Ok(self.take_apart(&line, request, frame, first_at, intrusion))
+        Ok(self.parse_received_line(&line, request, frame, first_at, intrusion))
     }
 
     /// Listens during the dead time. Returns true if bytes arrived that belong to no reply.
-    fn hear_the_dead_time(&mut self, line: &mut Vec<u8>, frame: &SecretFrame) -> Result<bool, Error> {
+    fn receive_during_dead_time(&mut self, line: &mut Vec<u8>, frame: &SecretFrame) -> Result<bool, Error> {
         let before = line.len();
         let quiet_until = self.now() + self.dead_time();
         self.line.receive(quiet_until, line)?;
@@ -155,11 +155,11 @@ impl Master<'_> {
     }
 
     /// Returns the reply received so far, or `None` while it may still be the echo.
-    fn without_echo<'l>(&self, line: &'l [u8], frame: &SecretFrame) -> Option<&'l [u8]> {
+    fn strip_echo<'l>(&self, line: &'l [u8], frame: &SecretFrame) -> Option<&'l [u8]> {
         self.station.line.echo.strip(line, frame.bytes())
     }
 
-    fn take_apart(
+    fn parse_received_line(
         &self,
         line: &[u8],
         request: &Request,
@@ -169,7 +169,7 @@ impl Master<'_> {
     ) -> ReceivedBytes {
         let sent = frame.bytes();
         let echo_heard = line.starts_with(sent);
-        let reply = self.without_echo(line, frame).unwrap_or_default().to_vec();
+        let reply = self.strip_echo(line, frame).unwrap_or_default().to_vec();
         let is_reply = |rest: &[u8]| request.parse_reply(self.station.address, rest).is_ok();
         let wrong_echo = match self.station.line.echo {
             Echo::On => !echo_heard && !line.is_empty(),
@@ -198,7 +198,7 @@ impl Master<'_> {
             return Err(ExchangeFailure::Damage(Damage::AtEncoder(*code)));
         }
         self.station.line.answered();
-        self.station.line.answer_began(heard.first_at);
+        self.station.line.record_answer_start(heard.first_at);
         self.station.line.echo.learn(heard.echo_heard);
         let sender = heard.reply.first().copied().unwrap_or(self.station.address);
         Ok(ReceivedAnswer { answer, sender, at: heard.first_at - self.station.timing().character })

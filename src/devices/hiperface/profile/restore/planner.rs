@@ -27,7 +27,7 @@ pub(super) struct Planner<'a> {
 impl Planner<'_> {
     /// Removes a field whose bytes are left unchanged from the targets, unless mounting values are written to it. A
     /// field that the encoder lacks is created without content if another one must be created after it.
-    pub(super) fn leave_unknown(&mut self) {
+    pub(super) fn skip_unknown_fields(&mut self) {
         let (profile, device, with_mounting) = (self.profile, self.device, self.with_mounting);
         let left = std::mem::take(&mut self.left);
         let stays = |own: &FieldImage| {
@@ -54,12 +54,12 @@ impl Planner<'_> {
         }
         self.left = left;
         if !with_mounting {
-            self.name_mounting_left();
+            self.report_skipped_mounting();
         }
     }
 
     /// Lists the mounting values in fields that are left unchanged.
-    fn name_mounting_left(&mut self) {
+    fn report_skipped_mounting(&mut self) {
         let profile = self.profile;
         for target in &profile.fields {
             let is_wanted = self.target_of(target.number).is_some_and(|own| own.bytes.is_some());

@@ -6,7 +6,7 @@ use crate::devices::hiperface::protocol::FreeMemory;
 
 /// Returns the fields to delete, because the write of this backup created them: those unchanged since, from the last
 /// one on; also returns the numbers of the others.
-pub(super) fn undo_created(profile: &HiperfaceProfile, device: &DeviceState) -> (Vec<FieldImage>, Vec<u8>) {
+pub(super) fn created_fields_to_undo(profile: &HiperfaceProfile, device: &DeviceState) -> (Vec<FieldImage>, Vec<u8>) {
     let (mut undone, mut left) = (Vec::new(), Vec::new());
     for now in device.fields.iter().rev() {
         let is_wanted = profile.fields.iter().any(|field| field.number == now.number);

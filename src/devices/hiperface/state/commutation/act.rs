@@ -9,7 +9,7 @@ use crate::devices::hiperface::jobs::{Change, HiperfaceJob};
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 
 impl Encoder {
-    pub(in crate::devices::hiperface::state) fn act_commutation(
+    pub(in crate::devices::hiperface::state) fn handle_commutation_action(
         &mut self,
         action: CommutationAction,
         services: &mut Services,
@@ -19,8 +19,8 @@ impl Encoder {
                 self.commutation.form = *form;
                 self.commutation.problem = None;
             }
-            CommutationAction::Read(slot) => self.read_for(slot, services),
-            CommutationAction::Use(slot) => self.commutation.use_typed(slot),
+            CommutationAction::Read(slot) => self.read_into_slot(slot, services),
+            CommutationAction::Use(slot) => self.commutation.apply_typed_value(slot),
             CommutationAction::Clear => self.commutation.forget_readings(),
             CommutationAction::Store => match self.commutation.bytes(self.geometry(), &self.staged) {
                 Ok((field, address, bytes)) => {
@@ -48,7 +48,7 @@ impl Encoder {
         }
     }
 
-    fn read_for(&mut self, slot: Slot, services: &mut Services) {
+    fn read_into_slot(&mut self, slot: Slot, services: &mut Services) {
         if let Err(why) = may_read(&self.commutation, self.session.is_ready()) {
             self.commutation.problem = Some(why);
             return;

@@ -3,7 +3,7 @@
 
 use super::{Commutation, Inputs, Kind, OffsetLocation, Slot, Source, Storage};
 use crate::analysis::arctan::Phase;
-use crate::analysis::commutation::{ElectricalAngle, position_to_set};
+use crate::analysis::commutation::{ElectricalAngle, preset_position};
 use crate::analysis::quality::Verdict;
 use crate::app::Text;
 use crate::app::number::whole;
@@ -94,10 +94,10 @@ impl Commutation {
     /// States what is missing.
     pub fn second(&self, geometry: Option<Geometry>) -> Option<Result<(Verdict, Text), Text>> {
         let reading = self.reading(Slot::Second)?;
-        Some(self.judge_second(reading.fine_periods, geometry))
+        Some(self.evaluate_second_reading(reading.fine_periods, geometry))
     }
 
-    fn judge_second(&self, fine_periods: f64, geometry: Option<Geometry>) -> Result<(Verdict, Text), Text> {
+    fn evaluate_second_reading(&self, fine_periods: f64, geometry: Option<Geometry>) -> Result<(Verdict, Text), Text> {
         /// Fraction of the expected movement below which the shaft counts as not moved.
         const STILL: f64 = 0.1;
         /// Allowed ratio of the movement to the expected one.
@@ -177,7 +177,7 @@ impl Commutation {
         let periods = geometry.and_then(Geometry::range).map_or(u64::from(inputs.periods), |range| range / steps);
         let last = u32::try_from(periods.saturating_sub(1)).unwrap_or(u32::MAX).min((1 << 27) - 1);
         let period = whole(TEXTS.text("commutation.period"), &self.form.period, 0, last)?;
-        let value = position_to_set(period, phase).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
+        let value = preset_position(period, phase).ok_or_else(|| TEXTS.text("commutation.not_there"))?;
         let remaining = angle(f64::from(period) + phase.periods(), &inputs);
         let remaining = remaining.ok_or_else(|| TEXTS.text("commutation.not_there"))?.degrees();
         let off_step = here.raw.map_or(0, |raw| (raw % STEPS_PER_PERIOD).abs_diff(value % STEPS_PER_PERIOD));

@@ -59,7 +59,7 @@ impl Master<'_> {
     }
 
     /// Sends a word like [`set`](Self::set), but one that an encoder may also accept without a reply (`U`).
-    pub(super) fn tell_to(&mut self, command: Command) -> Result<(), Error> {
+    pub(super) fn send_instruction(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.leave_value()?;
         self.acknowledged(command, 0, true)
@@ -75,7 +75,7 @@ impl Master<'_> {
             rests.go_on(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
             match reply {
                 _ if is_echo(command, word) => {
-                    holds.map_or(same.is_stable(), |holds| same.stays_for(holds)).then_some(Ok(()))
+                    holds.map_or(same.is_stable(), |holds| same.has_lasted(holds)).then_some(Ok(()))
                 }
                 Reply::Error(error) if word != before && Some(word) != found && same.is_stable() => {
                     Some(Err(Error::Refused { sent: command, error }))

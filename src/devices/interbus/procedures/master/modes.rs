@@ -36,14 +36,14 @@ impl Master<'_> {
             Err(error @ Error::Link(_)) => Err(error.clone()),
             _ => self.shielded(Self::lead_back),
         };
-        let is_back = led.is_ok() || self.is_as_found();
+        let is_back = led.is_ok() || self.is_in_initial_state();
         self.conclude_notes(is_back);
         let Err(why) = led else {
-            self.rested = self.is_as_found().then(|| self.data.now());
+            self.rested = self.is_in_initial_state().then(|| self.data.now());
             return ended;
         };
         let cause = ended.err().unwrap_or(why);
-        if self.is_as_found() {
+        if self.is_in_initial_state() {
             return Err(cause);
         }
         Err(Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
@@ -55,9 +55,9 @@ impl Master<'_> {
     ///
     /// # Errors
     /// Errors of the handshake and the exchange.
-    pub fn end_what_was_left(&mut self) -> Result<StartupMode, Error> {
+    pub fn end_leftover_operation(&mut self) -> Result<StartupMode, Error> {
         let ended = self.shielded(|master| {
-            master.let_go_of_run()?;
+            master.release_run()?;
             let was_set = !matches!(Reply::parse(master.input), Reply::Run { .. });
             match master.run() {
                 Err(Error::Refused { error, .. }) => {
@@ -88,7 +88,7 @@ impl Master<'_> {
         match (self.is, wanted) {
             (_, Unknown(_)) => Err(Error::NotSelectable { mode: wanted }),
             (Some(mode @ Unknown(_)), _) => Err(Error::UnknownMode { mode }),
-            (Some(is), wanted) if does_the_same(is, wanted) => Ok(()),
+            (Some(is), wanted) if is_equivalent_mode(is, wanted) => Ok(()),
             (Some(Velocity), K2 | K3) => self.switch(Command::Velocity(false), wanted),
             (_, K2 | K3) => self.switch(Command::Cams(None), wanted),
             (Some(Cams(_)), Velocity) => {
@@ -119,7 +119,7 @@ impl Master<'_> {
             match Reply::parse(self.input) {
                 Reply::Echo { .. } | Reply::Busy { .. } if waited >= self.patience => {
                     let input = self.input;
-                    return Err(match self.suspected_order(input)? {
+                    return Err(match self.detect_word_order(input)? {
                         Some(swapped) => Error::WordOrder { input, swapped },
                         None => Error::NotRunning { input },
                     });
@@ -150,7 +150,7 @@ impl Master<'_> {
         }
         // Checks whether this read-out has ended the mode. Words for cams have other effects in another one.
         self.rest()?;
-        if does_the_same(self.ask_mode()?, mode) {
+        if is_equivalent_mode(self.ask_mode()?, mode) {
             self.known.kept = Some(mode);
             return Ok(());
         }
@@ -159,7 +159,7 @@ impl Master<'_> {
     }
 
     /// Returns whether the encoder was sent nothing, or is in normal operation.
-    fn is_as_found(&self) -> bool {
+    fn is_in_initial_state(&self) -> bool {
         let rests = matches!(self.out, None | Some(Command::Normal));
         rests && !self.lost && !self.parameterising && !self.unsure && self.is == self.found
     }
@@ -180,7 +180,7 @@ impl Master<'_> {
         self.note_switch(wanted)?;
         for held in [false, true].into_iter().skip(usize::from(known)) {
             (self.unsure, self.switched) = (true, true);
-            self.tell_to(command)?;
+            self.send_instruction(command)?;
             if of_cams {
                 self.run()?;
             }
@@ -189,7 +189,7 @@ impl Master<'_> {
                 self.normal()?;
             }
             is = self.ask_mode()?;
-            if does_the_same(is, wanted) {
+            if is_equivalent_mode(is, wanted) {
                 if !held {
                     self.known.kept = Some(wanted);
                 }
@@ -215,7 +215,7 @@ impl Master<'_> {
             || matches!(reply, Reply::Error(_)) && Some(self.input) != self.found_error;
         if self.parameterising || self.unsure || stands {
             if self.out == Some(Command::Run) {
-                self.let_go_of_run()?;
+                self.release_run()?;
             }
             self.run()?;
             self.normal()?;
@@ -235,7 +235,7 @@ impl Master<'_> {
     }
 
     /// Removes `80000000`, which may already be the OUT word, since only its edge has an effect.
-    fn let_go_of_run(&mut self) -> Result<(), Error> {
+    fn release_run(&mut self) -> Result<(), Error> {
         for _ in 0..LOOKS {
             self.cycle(Command::Normal)?;
         }
@@ -245,12 +245,12 @@ impl Master<'_> {
     /// Sends the idle word, used while nothing is requested from the encoder.
     fn rest(&mut self) -> Result<(), Error> {
         self.leave_value()?;
-        let word = self.resting_word();
+        let word = self.idle_command();
         if self.out == Some(word) { Ok(()) } else { self.running(word, self.patience) }
     }
 
-    fn resting_word(&self) -> Command {
-        let hold = self.known.hold.filter(|(mode, _)| self.is.is_some_and(|is| does_the_same(is, *mode)));
+    fn idle_command(&self) -> Command {
+        let hold = self.known.hold.filter(|(mode, _)| self.is.is_some_and(|is| is_equivalent_mode(is, *mode)));
         hold.map_or(Command::Normal, |(_, word)| word)
     }
 
@@ -262,9 +262,9 @@ impl Master<'_> {
             return Ok(());
         }
         if self.parameterising {
-            return self.stop_asking();
+            return self.end_query();
         }
-        let word = self.resting_word();
+        let word = self.idle_command();
         let of_cams = matches!(self.is, Some(StartupMode::Cams(_))) && word == Command::Normal;
         let patience = if of_cams { VALUE_STAYS.min(self.patience) } else { self.patience };
         match self.running(word, patience) {
@@ -278,7 +278,7 @@ impl Master<'_> {
 
     /// Sends `00000000` during a setting until no value is present, since `80000000` would store the setting. A value
     /// that persists can be told apart from the next echo.
-    fn stop_asking(&mut self) -> Result<(), Error> {
+    fn end_query(&mut self) -> Result<(), Error> {
         let patience = VALUE_STAYS.min(self.patience);
         let ended = self.until(Command::Normal, Awaited::Run, patience, |CycleResult { word, same, .. }| {
             let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
@@ -292,7 +292,7 @@ impl Master<'_> {
 }
 
 /// Returns whether the two modes are equal or both give the position.
-pub(super) fn does_the_same(is: StartupMode, wanted: StartupMode) -> bool {
+pub(super) fn is_equivalent_mode(is: StartupMode, wanted: StartupMode) -> bool {
     let is_plain = |mode| matches!(mode, StartupMode::K2 | StartupMode::K3);
     is == wanted || is_plain(is) && is_plain(wanted)
 }

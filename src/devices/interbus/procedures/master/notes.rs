@@ -1,7 +1,7 @@
 //! Notes about an encoder that a job switches to another mode, so that the next run can complete an interrupted one.
 
 use super::Master;
-use super::modes::does_the_same;
+use super::modes::is_equivalent_mode;
 use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::journal::{Excursion, Journal};
 use crate::devices::interbus::protocol::{ReadOut, StartupMode};
@@ -20,14 +20,14 @@ pub(super) struct Notes<'a> {
 impl<'a> Master<'a> {
     /// Uses `journal` to record facts that outlast this job.
     #[must_use]
-    pub fn noting(mut self, journal: impl Journal + 'a) -> Self {
+    pub fn with_journal(mut self, journal: impl Journal + 'a) -> Self {
         self.notes.journal = Some(Box::new(journal));
         self
     }
 }
 
 impl Master<'_> {
-    pub(super) fn said_serial_number(&mut self, serial_number: u32) {
+    pub(super) fn note_serial_number(&mut self, serial_number: u32) {
         self.notes.serial_number = Some(serial_number.to_string());
     }
 
@@ -55,7 +55,7 @@ impl Master<'_> {
         let serial_number = self.serial_number()?;
         let Some(journal) = &mut self.notes.journal else { return Ok(()) };
         let Some(excursion) = journal.excursion(&serial_number) else { return Ok(()) };
-        if does_the_same(mode, excursion.found) || !excursion.sent.contains(&mode) {
+        if is_equivalent_mode(mode, excursion.found) || !excursion.sent.contains(&mode) {
             // It was returned, or another mode was selected since.
             journal.is_back(&serial_number);
             return Ok(());
@@ -77,7 +77,7 @@ impl Master<'_> {
         {
             self.notes.left += 1;
         }
-        let Some(found) = self.found.filter(|found| !does_the_same(*found, wanted)) else { return Ok(()) };
+        let Some(found) = self.found.filter(|found| !is_equivalent_mode(*found, wanted)) else { return Ok(()) };
         if self.notes.journal.is_none() {
             return Ok(());
         }

@@ -54,12 +54,12 @@ impl Held {
     }
 
     pub(super) fn is_settled(self) -> bool {
-        self.stays_for(STAYS_FOR)
+        self.has_lasted(STAYS_FOR)
     }
 
     /// Returns whether the condition has held for the given time and, with a slow gateway, for enough cycles to be
     /// stable.
-    pub(super) fn stays_for(self, duration: Duration) -> bool {
+    pub(super) fn has_lasted(self, duration: Duration) -> bool {
         let least = if self.timeless { STAYS } else { STANDS };
         self.cycles >= least && self.lasts(duration)
     }

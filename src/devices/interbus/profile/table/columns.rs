@@ -39,7 +39,7 @@ impl Columns {
     }
 
     /// Guesses the columns of a table without a header from their number.
-    pub(super) fn of_count(count: usize) -> Self {
+    pub(super) fn from_column_count(count: usize) -> Self {
         use Column::{Cam, Name, Program, Start, Stop};
         let order: &[Column] = match count {
             0..=2 => &[Start, Stop],

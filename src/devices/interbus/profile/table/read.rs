@@ -70,13 +70,13 @@ impl CamTable {
         // A line without any number is a header.
         self.header = !cells.iter().any(|cell| number(cell, true).is_some());
         if !self.header {
-            return Columns::of_count(count);
+            return Columns::from_column_count(count);
         }
         let known = Columns::of_header(&cells);
         if known.is_none() {
             self.notes.push(TableNote::OtherHeader);
         }
-        let columns = known.unwrap_or_else(|| Columns::of_count(count));
+        let columns = known.unwrap_or_else(|| Columns::from_column_count(count));
         let mut missing = [Column::Start, Column::Stop].into_iter().filter(|column| columns.place(*column).is_none());
         if let Some(column) = missing.next() {
             self.problems.push(TableProblem {

@@ -51,7 +51,7 @@ impl Staged {
             return;
         };
         for kept in draft {
-            if kept.is_of_unread(&wanted, self.base_source) {
+            if kept.concerns_unread_values(&wanted, self.base_source) {
                 self.waiting.push(kept);
             } else {
                 kept.put(&mut wanted, self.base_source);
@@ -173,7 +173,7 @@ impl SavedEdit {
     }
 
     /// Returns whether the changed value was not read. A name needs no reading.
-    fn is_of_unread(&self, wanted: &EditedValues, ground: BaseSource) -> bool {
+    fn concerns_unread_values(&self, wanted: &EditedValues, ground: BaseSource) -> bool {
         ground == BaseSource::Encoder
             && match self {
                 SavedEdit::Shift(_) => wanted.image.shift.is_none(),

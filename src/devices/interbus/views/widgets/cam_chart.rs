@@ -84,7 +84,7 @@ impl CamChart<'_> {
 
     /// Returns the event of a drag: a preview while the pointer is down, then the result.
     pub(super) fn dragged(&self, ui: &Ui, base: Id, response: &Response, drag: Drag, snap: &Snap) -> Option<CamEvent> {
-        let given_up = ui.input(|input| input.key_pressed(Key::Escape)) || is_given_up(ui, base);
+        let given_up = ui.input(|input| input.key_pressed(Key::Escape)) || is_drag_cancelled(ui, base);
         let snap = if self.snaps && !ui.input(|input| input.modifiers.alt) { *snap } else { Snap::OFF };
         let to = self.pulled(drag.hold, drag.from, drag.at, &snap).filter(|_| !given_up);
         let cam = drag.hold.cam();
@@ -248,6 +248,6 @@ pub(super) fn drag(ui: &Ui, base: Id) -> Option<Drag> {
     ui.data(|data| data.get_temp(base))
 }
 
-fn is_given_up(ui: &Ui, base: Id) -> bool {
+fn is_drag_cancelled(ui: &Ui, base: Id) -> bool {
     drag(ui, base).is_some_and(|drag| drag.to.is_none())
 }

@@ -264,7 +264,7 @@ impl Ring<'_> {
                 painter.add(Shape::line((0..=count).map(point).collect(), marked));
             }
         }
-        let cam = pos_of_name(dial, lane.cam);
+        let cam = name_position(dial, lane.cam);
         let font = FontId::monospace((theme.sizes.caption).min(dial.pitch()));
         let ink = if lane.on { theme.palette.text } else { theme.palette.muted };
         let label = Rect::from_center_size(cam, Vec2::splat(dial.pitch().min(13.0)));
@@ -290,6 +290,6 @@ impl Ring<'_> {
 }
 
 /// Returns where a cam's number is drawn: at the start of the range.
-fn pos_of_name(dial: Dial, cam: CamNumber) -> Pos2 {
+fn name_position(dial: Dial, cam: CamNumber) -> Pos2 {
     dial.middle - Vec2::new(0.0, dial.circle(cam))
 }

@@ -67,7 +67,7 @@ impl<D: Dialect> Writer<'_, D> {
         self.lines.push(self.dialect.when(condition, &raised));
     }
 
-    fn any_of(&self, word: &'static str, bits: u64) -> String {
+    fn any_bit_set(&self, word: &'static str, bits: u64) -> String {
         let d = self.dialect;
         d.differs(&d.and(&d.name(word), &d.hex(bits)), &d.hex(0))
     }
@@ -96,8 +96,8 @@ impl<D: Dialect> Writer<'_, D> {
             let first = d.left(&d.right(&d.name("word"), behind), behind);
             self.set_word("fold", &d.xor(&d.or(&first, &d.right(&first, repeat.word + repeat.gap)), &d.name("word")));
             let again = ones(repeat.word) << behind >> (repeat.word + repeat.gap);
-            self.flag(&self.any_of("fold", again), Flags::REPEAT);
-            self.flag(&self.any_of("fold", all & !again), Flags::PADDING);
+            self.flag(&self.any_bit_set("fold", again), Flags::REPEAT);
+            self.flag(&self.any_bit_set("fold", all & !again), Flags::PADDING);
             self.set_word("word", &d.right(&d.name("word"), behind));
         }
     }
@@ -126,7 +126,7 @@ impl<D: Dialect> Writer<'_, D> {
         if descriptor.shift_right {
             self.comment("back by the clock by which it comes later");
             let top = ones(1) << (descriptor.area - 1) << layout.behind_area;
-            self.flag(&self.any_of("word", top), Flags::PADDING);
+            self.flag(&self.any_bit_set("word", top), Flags::PADDING);
             let area = ones(descriptor.area) << layout.behind_area;
             let moved = d.and(&d.left(&d.and(&d.name("word"), &d.hex(area)), 1), &d.hex(area));
             self.set_word("word", &d.or(&moved, &d.and(&d.name("word"), &d.hex(ones(layout.behind_area)))));
@@ -139,7 +139,7 @@ impl<D: Dialect> Writer<'_, D> {
         }
         if layout.zeros != 0 {
             self.comment("what is always 0");
-            self.flag(&self.any_of("word", layout.zeros), Flags::PADDING);
+            self.flag(&self.any_bit_set("word", layout.zeros), Flags::PADDING);
         }
     }
 
@@ -196,7 +196,7 @@ impl<D: Dialect> Writer<'_, D> {
         if coding.last() < ones(coding.bits()) || coding.code() == Code::Bcd {
             self.flag(&format!("position > {}", coding.last()), Flags::CODE);
             let none = d.assign("position", "0");
-            self.lines.push(d.when(&self.any_of("flags", Flags::CODE.0.into()), &none));
+            self.lines.push(d.when(&self.any_bit_set("flags", Flags::CODE.0.into()), &none));
         }
         if layout.loses_lowest_bit() {
             self.set("position", &format!("position - {}", d.rest("position", 2)));
@@ -231,8 +231,8 @@ impl<D: Dialect> Writer<'_, D> {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let none = (0..layout.errors.len()).fold(form, |all, index| all.with(Flags::error(index)));
         let stuck = Flags::ONES.with(Flags::ZEROS);
-        let invalid = self.any_of("flags", layout.invalid().0.into());
-        let no_position = d.both(&self.any_of("flags", stuck.0.into()), &self.any_of("flags", none.0.into()));
+        let invalid = self.any_bit_set("flags", layout.invalid().0.into());
+        let no_position = d.both(&self.any_bit_set("flags", stuck.0.into()), &self.any_bit_set("flags", none.0.into()));
         self.comment("an error, or a line that is stuck");
         self.set("valid", &d.both(&d.negated(&invalid), &d.negated(&no_position)));
     }

@@ -3,7 +3,7 @@
 
 use super::code_ends::unusual;
 use super::frame_set::FrameSet;
-use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, goes_over_zero, sent_parity, sum};
+use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, detect_parity, goes_over_zero, sum};
 use super::plausible::{shares, widths};
 use super::reading::Read;
 use crate::devices::ssi::protocol::code::Code;
@@ -49,7 +49,7 @@ pub(super) fn any_other(
                 area: reading.last,
                 lead,
                 between: reading.gap.map_or(0, |(from, to)| to + 1 - from),
-                parity: sent_parity(reading, inverted),
+                parity: detect_parity(reading, inverted),
                 inverted,
                 ..Descriptor::plain(0, 0)
             };

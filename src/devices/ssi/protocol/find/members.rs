@@ -66,7 +66,7 @@ fn inversions(read: &Read) -> &'static [bool] {
 }
 
 /// Returns the parity as sent by the encoder. Swapped wires invert the parity of an odd number of bits.
-pub(super) fn sent_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
+pub(super) fn detect_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
     let turned = |parity: Parity| inverted && parity.clock % 2 == 1;
     reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
 }
@@ -74,7 +74,7 @@ pub(super) fn sent_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
 /// Returns the even parity bit after Gray that may just as well be a zero covered by the code: either looks like the
 /// lowest position bit.
 pub(super) fn goes_over_zero(reading: &Reading, inverted: bool) -> Option<Parity> {
-    sent_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
+    detect_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }
 
 /// Returns whether nearly all steps are even, so that the lowest bit carries no information.

@@ -32,7 +32,7 @@ pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
         return Some(Uncertainty::Close);
     }
     let sure = frames >= SURE_FRAMES && first.read.reading.width() >= SURE_BITS;
-    let sure = sure && !jumps_alike(&first.read) && words.different() >= SURE_DIFFERENT;
+    let sure = sure && !has_uniform_jumps(&first.read) && words.different() >= SURE_DIFFERENT;
     // Regardless of how improbable the others are.
     let sure = sure && groups.iter().skip(1).all(|next| next.read.cost() - first.read.cost() >= LEAD_BITS);
     let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven(words, first).is_empty();
@@ -40,7 +40,7 @@ pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
 }
 
 /// Returns whether many jumps have a common size, which points to a wrong code rather than to disturbances.
-fn jumps_alike(read: &Read) -> bool {
+fn has_uniform_jumps(read: &Read) -> bool {
     let mut sizes: Vec<u64> = read.motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     sizes.retain(|size| *size > read.motion.limit);
     sizes.sort_unstable();

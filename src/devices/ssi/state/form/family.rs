@@ -15,10 +15,10 @@ pub(super) fn groups(designer: &Designer, family: &Family, settings: &Settings) 
     if family.align.len() > 1 {
         let own = resolved.as_ref().map_or(Align::Left, |resolved| resolved.align);
         let all: Vec<(Align, Text)> = family.align.iter().map(|align| (*align, align_words(*align))).collect();
-        frame.push(Row::choice(Field::Align, "ssi_form.align", &all, &own).hinted("ssi_form.align_hint"));
+        frame.push(Row::choice(Field::Align, "ssi_form.align", &all, &own).with_hint("ssi_form.align_hint"));
     }
     if family.shift {
-        frame.push(Row::switch(Field::Shift, "ssi_form.shift", settings.shift).hinted("ssi_form.shift_hint"));
+        frame.push(Row::switch(Field::Shift, "ssi_form.shift", settings.shift).with_hint("ssi_form.shift_hint"));
     }
     let places = places(designer, family);
     if places.len() > 1 {

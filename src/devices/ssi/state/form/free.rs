@@ -27,9 +27,11 @@ fn frame(descriptor: &Descriptor) -> Vec<Row> {
     if descriptor.range.multiturn_bits() > 0 {
         rows.push(Row::number(Field::Between, "ssi_form.between", descriptor.between, "bit"));
     }
-    rows.push(Row::number(Field::Area, "ssi_form.area", descriptor.area, "").hinted("ssi_form.area_hint"));
-    rows.push(Row::switch(Field::Shift, "ssi_form.shift", descriptor.shift_right).hinted("ssi_form.shift_hint"));
-    rows.push(Row::switch(Field::Inverted, "ssi_form.inverted", descriptor.inverted).hinted("ssi_form.inverted_hint"));
+    rows.push(Row::number(Field::Area, "ssi_form.area", descriptor.area, "").with_hint("ssi_form.area_hint"));
+    rows.push(Row::switch(Field::Shift, "ssi_form.shift", descriptor.shift_right).with_hint("ssi_form.shift_hint"));
+    rows.push(
+        Row::switch(Field::Inverted, "ssi_form.inverted", descriptor.inverted).with_hint("ssi_form.inverted_hint"),
+    );
     let own = descriptor.parity.map(|parity| parity.even);
     let all = [
         (None, TEXTS.text("ssi_form.parity_none")),
@@ -41,7 +43,7 @@ fn frame(descriptor: &Descriptor) -> Vec<Row> {
         rows.push(Row::number(Field::ParityClock, "ssi_form.parity_clock", parity.clock, ""));
     }
     rows.push(
-        Row::switch(Field::Repeat, "ssi_form.repeat", descriptor.repeat.is_some()).hinted("ssi_form.repeat_hint"),
+        Row::switch(Field::Repeat, "ssi_form.repeat", descriptor.repeat.is_some()).with_hint("ssi_form.repeat_hint"),
     );
     if let Some(repeat) = descriptor.repeat {
         rows.push(Row::number(Field::Gap, "ssi_form.gap", repeat.gap, "bit"));
@@ -67,7 +69,7 @@ fn error(index: usize, bit: &ErrorBit) -> Group {
 /// Applies an entry to a frame without a family, or returns `None` if the field does not apply.
 pub(super) fn entered(designer: &Designer, field: Field, input: &Input) -> Option<Edit> {
     let before = &designer.design().profile.descriptor;
-    if let Some(range) = range_entered(&before.range, field, input) {
+    if let Some(range) = apply_range_input(&before.range, field, input) {
         return Some(Edit::Position(range, before.code));
     }
     if let (Field::Code, Input::Choice(code)) = (field, input) {
@@ -114,7 +116,7 @@ pub(super) fn entered(designer: &Designer, field: Field, input: &Input) -> Optio
     Some(Edit::Frame(Box::new(next)))
 }
 
-fn range_entered(range: &Range, field: Field, input: &Input) -> Option<Range> {
+fn apply_range_input(range: &Range, field: Field, input: &Input) -> Option<Range> {
     if let (Field::Range, Input::Choice(kind)) = (field, input) {
         let bits = range.bits().unwrap_or(12);
         return Some(match KINDS.get(*kind)? {

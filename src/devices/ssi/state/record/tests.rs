@@ -51,11 +51,11 @@ fn renaming_an_error_bit_keeps_its_count() {
     record.kept.clear();
     let mut descriptor = record.layout.descriptor().clone();
     descriptor.errors[2].name = "LIGHT".to_owned();
-    record.read_as(&Layout::new(descriptor).unwrap());
+    record.reinterpret(&Layout::new(descriptor).unwrap());
     record.add(vec![run(3, &[GOOD | 1])], 0);
     assert_eq!(record.positions(), 4);
     assert_eq!(names(&record), [("ERRSYNC".to_owned(), 1), ("LIGHT".to_owned(), 1)]);
-    record.read_as(&layout("afs60,code=gray"));
+    record.reinterpret(&layout("afs60,code=gray"));
     assert_eq!(record.positions(), 1, "only the last word is kept");
 }
 
@@ -65,7 +65,7 @@ fn a_cleared_count_stays_cleared_with_another_layout() {
     record.add(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
     record.forget_tally();
     record.add(vec![run(3, &[GOOD | 2])], 0);
-    record.read_as(&layout("afs60,code=gray"));
+    record.reinterpret(&layout("afs60,code=gray"));
     assert_eq!((names(&record), record.positions()), (vec![("ERRSI".to_owned(), 1)], 4));
 }
 

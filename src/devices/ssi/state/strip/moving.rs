@@ -107,7 +107,7 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
     match handle {
         Handle::LeadEnd => {
             new.lead = plus(new.lead, by)?;
-            new.range = if both { resized(new.range, -by, 0)? } else { resized_one(new.range, -by)? };
+            new.range = if both { resized(new.range, -by, 0)? } else { resize_range_evenly(new.range, -by)? };
         }
         Handle::Split if new.between > 0 => return None,
         Handle::Split => new.range = resized(new.range, by, -by)?,
@@ -120,7 +120,7 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
             new.between = plus(new.between, by)?;
         }
         Handle::StepsEnd => {
-            new.range = if both { resized(new.range, 0, by)? } else { resized_one(new.range, by)? };
+            new.range = if both { resized(new.range, 0, by)? } else { resize_range_evenly(new.range, by)? };
             follow(layout, &mut new, by, following)?;
         }
         Handle::Position => {
@@ -216,7 +216,7 @@ fn resized(range: Range, turns: i16, steps: i16) -> Option<Range> {
 }
 
 /// Returns the range with its number of bits changed, if it has bits of only one kind; at least one bit remains.
-fn resized_one(range: Range, by: i16) -> Option<Range> {
+fn resize_range_evenly(range: Range, by: i16) -> Option<Range> {
     let more = |bits| plus(bits, by).filter(|bits| *bits > 0);
     match range {
         Range::Bits { multiturn, singleturn: 0 } => Some(Range::Bits { multiturn: more(multiturn)?, singleturn: 0 }),

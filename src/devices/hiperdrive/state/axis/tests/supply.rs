@@ -9,7 +9,7 @@ fn a_failed_mark_keeps_saved_values() {
         let (mut axis, seen) = until_power();
         let ask = axis.ask(Button::Do, &seen).unwrap();
         axis.begin(ask, &seen);
-        axis.not_written(begun);
+        axis.handle_write_failure(begun);
         assert_eq!((axis.is_saved(), axis.is_partly_written()), (true, false), "{begun}");
         assert_eq!(axis.ask(Button::Do, &seen), Ok(DriveRequest::Try(vec![(182, 1001)])), "{begun}: once more");
     }
