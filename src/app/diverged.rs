@@ -68,7 +68,7 @@ impl Diverged {
         let kind = saving.document.body.kind();
         let is_of_kind = |found: Box<Document>| match found.body.kind() == kind {
             true => Ok(found),
-            false => Err(ReadError::Profile(found.body.is_not(kind))),
+            false => Err(ReadError::Profile(found.body.wrong_kind_error(kind))),
         };
         let is_known = |found: Box<Document>| found.known().map(Box::new).map_err(ReadError::Profile);
         let document = document.and_then(is_of_kind).and_then(is_known);

@@ -16,7 +16,7 @@ pub fn number(text: &str) -> Option<f64> {
 /// Parses a number from `least` to `most`; `what` names the entry.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// A text that states why the entry is invalid.
 pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -> Result<f64, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -50,7 +50,7 @@ pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) ->
 /// Parses a number from 0 to `last`, decimal, or hexadecimal with `0x` or a final `h`.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// A text that states why the entry is invalid.
 pub(crate) fn number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Result<u64, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -103,7 +103,7 @@ fn quantity(text: &str) -> Option<f64> {
 /// Parses a quantity from `least` to `most`; errors state this as `range`.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// A text that states why the entry is invalid.
 pub(crate) fn quantity_within(
     what: impl Into<Text>,
     text: &str,

@@ -127,11 +127,11 @@ impl Body {
     /// # Errors
     /// [`ProfileError::OtherKind`].
     pub fn compare(&self, other: &Body) -> Result<Comparison, ProfileError> {
-        self.0.compared(other.0.as_ref()).ok_or_else(|| other.is_not(self.kind()))
+        self.0.compared(other.0.as_ref()).ok_or_else(|| other.wrong_kind_error(self.kind()))
     }
 
     /// Returns the error for a profile of a kind of device other than `wanted`.
-    pub fn is_not(&self, wanted: &'static str) -> ProfileError {
+    pub fn wrong_kind_error(&self, wanted: &'static str) -> ProfileError {
         ProfileError::OtherKind { found: self.kind(), wanted }
     }
 

@@ -112,7 +112,7 @@ fn an_unknown_kind_is_reported_with_the_known_ones() {
 #[test]
 fn a_profile_of_another_kind_names_both() {
     let error = lamp("red").into_profile::<Fan>().unwrap_err();
-    assert_eq!(error, lamp("red").is_not(Fan::KIND));
+    assert_eq!(error, lamp("red").wrong_kind_error(Fan::KIND));
     assert_eq!(error.to_string(), "a profile of a lamp device where one of a fan device is needed");
     assert_eq!(Body::new(Fan).into_profile(), Ok(Fan));
 }

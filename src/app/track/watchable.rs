@@ -19,7 +19,7 @@ pub trait Watchable: Clone + PartialEq {
     }
 }
 
-/// For a device without watched values.
+/// Placeholder for devices without watched values.
 impl Watchable for Infallible {
     fn is_whole(&self) -> bool {
         match *self {}

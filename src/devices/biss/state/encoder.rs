@@ -158,7 +158,7 @@ impl Encoder {
     }
 
     /// Updates the device mode in which registers were just read; `None` means operation.
-    pub(super) fn see_mode(&mut self, unsaved: Option<DeviceMode>) {
+    pub(super) fn set_device_mode(&mut self, unsaved: Option<DeviceMode>) {
         if let Some(mode) = self.status.as_mut().and_then(|status| status.mode.as_mut()) {
             *mode = unsaved.unwrap_or(DeviceMode::OPERATION);
         }

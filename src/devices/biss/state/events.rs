@@ -111,12 +111,12 @@ impl SessionEvents for Encoder {
             BissOutput::Registers(read) => {
                 self.memory.take(read.start, &read.bytes);
                 if read.start.bank().is_some() {
-                    self.see_mode(read.unsaved);
+                    self.set_device_mode(read.unsaved);
                 }
                 self.read_back_changes(services);
             }
             BissOutput::Area { banks, unsaved } => {
-                self.see_mode(unsaved);
+                self.set_device_mode(unsaved);
                 for bank in banks {
                     bank.registers().for_each(|(at, byte)| self.memory.take(at, &[byte]));
                 }

@@ -2,7 +2,7 @@
 
 use super::scaling::Family;
 
-/// Variant of a drive. Unknown numbers are preserved.
+/// Product variant of a drive, as reported by parameter 120. Unknown numbers are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant(u16);
 

@@ -311,7 +311,7 @@ impl Station {
         if matches!(value, 1 | -3) {
             self.store.count = self.store.count.saturating_add(1);
             if self.store.dies_in == Some(self.store.count) {
-                (self.store.dies_at, save) = (Some(now + SAVES / 2), Memory::keep_half);
+                (self.store.dies_at, save) = (Some(now + SAVES / 2), Memory::save_half);
             }
         }
         let each = |memory: &mut Memory| match value {

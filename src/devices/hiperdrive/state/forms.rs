@@ -24,7 +24,7 @@ pub fn step(unit: &Unit, text: &str, measure: Measure, sign: i32) -> Result<i32,
 /// Parses a position within the limits of the selected drive.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// A text that states why the entry is invalid.
 pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     let place = |steps| unit.place(unit.drive(), steps);
@@ -41,7 +41,7 @@ pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
 /// Parses a position independently of the limits: for the limits themselves, and for setting the position.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// A text that states why the entry is invalid.
 pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     let value = number(text).ok_or_else(|| TEXTS.text("hd_entry.number").with("entry", text.trim()))?;
     if measure == Measure::Steps && value.fract() != 0.0 {
@@ -70,7 +70,7 @@ pub fn percent(text: &str) -> Result<Percent, Text> {
 /// Parses a parameter value, decimal or with `0x`. An empty entry removes it from a profile.
 ///
 /// # Errors
-/// Explains why the entry is invalid.
+/// A text that states why the entry is invalid.
 pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let digits = digits.replace('\u{2212}', "-");

@@ -10,7 +10,7 @@ use crate::units::CharacterFormat;
 /// Parses an access code: one hexadecimal byte.
 ///
 /// # Errors
-/// Explains why the entry is invalid without repeating it.
+/// A text that states why the entry is invalid, without repeating it.
 pub fn access_code(text: &str) -> Result<AccessCode, Text> {
     byte(text).map(AccessCode::new).ok_or_else(|| TEXTS.text("entry.code"))
 }
@@ -52,7 +52,7 @@ pub fn channel(text: &str) -> Result<u8, Text> {
 /// exponents and words are not allowed.
 ///
 /// # Errors
-/// Explains why the entry is invalid, with the range if known.
+/// A text that states why the entry is invalid, with the range if known.
 pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     let text = text.trim();
     let last = geometry.and_then(Geometry::range).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));

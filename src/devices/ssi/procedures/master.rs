@@ -67,12 +67,12 @@ impl<'a> Master<'a> {
     /// # Errors
     /// As for [`hello`](Self::hello).
     pub fn word(&mut self) -> Result<Words, Error> {
-        match self.word_as_set() {
+        match self.read_configured_word() {
             // The adapter has lost its settings: it was reset. One more attempt, with new settings.
             Err(Error::Adapter(AdapterError::Refused { code: ErrorCode::BAD_ARGUMENT, operation, .. }))
                 if operation == Request::SsiRead.operation() =>
             {
-                self.word_as_set()
+                self.read_configured_word()
             }
             taken => taken,
         }
@@ -188,7 +188,7 @@ impl<'a> Master<'a> {
         Ok(clock_hz)
     }
 
-    fn word_as_set(&mut self) -> Result<Words, Error> {
+    fn read_configured_word(&mut self) -> Result<Words, Error> {
         let Identity { asking, clock_hz, .. } = self.hello()?;
         let taken = self.repeated(Self::read_single_word);
         let (word, at) = taken.map_err(|error| self.may_be_reset(error))?;

@@ -41,7 +41,7 @@ impl Profile for SsiProfile {
             return Err(ProfileError::refused(entries.path_of("preset"), EntryError::Preset { preset, last }));
         }
         let reading = match entries.optional_structure("reading")? {
-            Some(entries) => read_reading(entries, &mut unknown)?,
+            Some(entries) => parse_reading_settings(entries, &mut unknown)?,
             None => ReadingSettings::default(),
         };
         Ok(SsiProfile { name, family, descriptor, direction, preset, reading, unknown })
@@ -333,7 +333,7 @@ fn read_pattern(mut entries: Entries) -> Result<(Pattern, Unknown), ProfileError
     Ok((Pattern { name, word, meaning: required_word(&mut entries, "meaning")? }, entries.rest()?))
 }
 
-fn read_reading(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<ReadingSettings, ProfileError> {
+fn parse_reading_settings(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<ReadingSettings, ProfileError> {
     let usual = ReadingSettings::default();
     let clock_hz = entries.optional("clock_hz", CLOCK_HZ)?.unwrap_or(usual.clock_hz);
     if !(1_000..=20_000_000).contains(&clock_hz) {

@@ -241,7 +241,7 @@ impl MotionRequest {
         )
     }
 
-    /// Returns speed and torque, if the request has any.
+    /// Returns speed and torque; `None` for requests without them, such as a stop.
     pub fn effort(self) -> Option<Effort> {
         match self {
             MotionRequest::Jog { effort, outward: true, .. } => Some(effort.at_most(Effort::JOG)),

@@ -187,7 +187,7 @@ impl Form {
     /// other way.
     ///
     /// # Errors
-    /// Explains why the entry is invalid.
+    /// A text that states why the entry is invalid.
     pub fn second_turns(&self) -> Result<f64, Text> {
         Ok(within(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
     }
@@ -217,7 +217,7 @@ impl Form {
     /// Returns the signal periods per revolution as entered, or else of the encoder type.
     ///
     /// # Errors
-    /// Explains why the entry is invalid.
+    /// A text that states why the entry is invalid.
     pub fn periods(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
         match (self.periods.trim().is_empty(), geometry) {
             (_, Some(Geometry::Linear { .. })) => Err(TEXTS.text("commutation.linear")),
