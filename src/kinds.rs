@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 pub use kind::{Kind, Program, ToolTab};
 
-use crate::buses::bridge::sim::Attachable;
+use crate::buses::bridge::sim::AttachableKind;
 use crate::buses::ethernet_ip::commands::EthernetIpDecoder;
 use crate::signals;
 
@@ -26,8 +26,8 @@ pub fn program() -> Program {
 }
 
 /// Returns the virtual devices available at the virtual adapter. Those that take a speed (`rpm`) come last.
-pub fn at_adapter() -> &'static [&'static dyn Attachable] {
-    static DEVICES: OnceLock<Vec<&'static dyn Attachable>> = OnceLock::new();
+pub fn at_adapter() -> &'static [&'static dyn AttachableKind] {
+    static DEVICES: OnceLock<Vec<&'static dyn AttachableKind>> = OnceLock::new();
     DEVICES.get_or_init(|| {
         let mut devices: Vec<_> = KINDS.iter().filter_map(|kind| kind.at_adapter).collect();
         devices.sort_by_key(|device| device.keys().contains(&"rpm"));

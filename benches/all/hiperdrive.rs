@@ -23,7 +23,7 @@ use encoder_studio::devices::hiperdrive::protocol::{
     ByteOrder, ControlWord, Direction, DriveNumber, Layout, OutImage, Topology, Variant,
 };
 use encoder_studio::devices::hiperdrive::sim::{Setup, Station};
-use encoder_studio::link::{Clock, DatagramPort, Datagrams, RealClock, UdpPort};
+use encoder_studio::link::{Clock, DatagramChannel, DatagramPort, RealClock, UdpPort};
 
 const INTERVAL: Duration = Duration::from_millis(10);
 const LAYOUT: Layout = Layout { topology: Topology::Adapter, pkw: true, order: ByteOrder::Little };
@@ -173,7 +173,7 @@ impl Drop for Naive {
     }
 }
 
-fn port() -> (Box<dyn Datagrams>, Target, Arc<RealClock>) {
+fn port() -> (Box<dyn DatagramChannel>, Target, Arc<RealClock>) {
     let clock = Arc::new(RealClock::start());
     let mut packets = UdpPort::new("127.0.0.1:44818", clock.clone()).open().unwrap();
     let target = Target::start(packets.port());

@@ -5,7 +5,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use encoder_studio::devices::interbus::protocol::{Cam, Compiled, Program, Value};
+use encoder_studio::devices::interbus::protocol::{Cam, CompiledPrograms, Program, Value};
 
 const POSITIONS: usize = 1 << 20;
 const ROUNDS: usize = 9;
@@ -30,7 +30,7 @@ pub(crate) fn run() {
     let programs = [(); 8].map(|()| program());
     let anywhere: Vec<Value> = (0..POSITIONS).map(|_| any()).collect();
     let turning: Vec<Value> = (0..POSITIONS).map(|at| Value::new(at as u32 * 31).unwrap()).collect();
-    let compiled = Compiled::new(&programs);
+    let compiled = CompiledPrograms::new(&programs);
     println!("8 programs of 8 cams, {POSITIONS} positions, medians of {ROUNDS}\n");
     for (name, positions) in [("any positions", &anywhere), ("a turning shaft", &turning)] {
         let mut outputs = vec![[0_u8; 8]; POSITIONS];
@@ -49,6 +49,6 @@ pub(crate) fn run() {
         let rate = |seconds: f64| POSITIONS as f64 / seconds / 1e6;
         println!("{name:16} compiled {:7.1}, a loop {:7.1} million positions/s", rate(fast), rate(plain));
     }
-    let seconds = median(|| Compiled::new(black_box(&programs)));
+    let seconds = median(|| CompiledPrograms::new(black_box(&programs)));
     println!("\nthe programs are compiled in {:.0} µs", seconds * 1e6);
 }

@@ -1,5 +1,4 @@
-//! Benchmarks, each beside a naive solution or a physical limit. They print figures without a verdict; docs/performance.md
-//! has a table of them.
+//! Benchmarks, each beside a naive solution or a physical limit. They print figures without a verdict.
 //!
 //! `cargo bench` runs all, `cargo bench -- NAME` one; more words choose a part of it.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]

@@ -32,4 +32,4 @@ pub mod wiring;
 
 pub use motion::{Motion, Rates};
 pub use time::Time;
-pub use unwrap::{Unwrap, Unwrapped};
+pub use unwrap::{Unwrap, UnwrappedPosition};

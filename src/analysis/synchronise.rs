@@ -24,7 +24,7 @@ pub struct Synchroniser {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Synchronised {
+pub struct SynchronisedPosition {
     /// Whole periods, below the range.
     pub period: u64,
     pub phase: Phase,
@@ -38,7 +38,7 @@ pub struct Synchronised {
 /// The positions differ by exactly half a period, so either neighbour could be correct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("absolute and analogue position are half a period apart")]
-pub struct Unsynchronisable;
+pub struct AmbiguousPeriod;
 
 impl Synchroniser {
     pub fn new(periods: u64) -> Self {
@@ -48,8 +48,8 @@ impl Synchroniser {
     /// Brings an absolute position in steps of 1/32 period and an analogue phase together.
     ///
     /// # Errors
-    /// [`Unsynchronisable`] at exactly half a period.
-    pub fn synchronise(&self, absolute: u64, phase: Phase) -> Result<Synchronised, Unsynchronisable> {
+    /// [`AmbiguousPeriod`] at exactly half a period.
+    pub fn synchronise(&self, absolute: u64, phase: Phase) -> Result<SynchronisedPosition, AmbiguousPeriod> {
         /// Tolerance for rounding at half a period, in steps.
         const SLACK: f64 = 1e-9;
         let half = if self.half_step { 0.5 } else { 0.0 };
@@ -60,7 +60,7 @@ impl Synchroniser {
         let nearest = periods.round();
         let residual = periods - nearest;
         if (residual.abs() - 0.5).abs() * (STEPS as f64) < SLACK || !residual.is_finite() {
-            return Err(Unsynchronisable);
+            return Err(AmbiguousPeriod);
         }
         let range = self.periods.max(1);
         let forward = (nearest as i64).rem_euclid(i64::try_from(range).unwrap_or(i64::MAX)).unsigned_abs();
@@ -71,7 +71,7 @@ impl Synchroniser {
             off if off > 8.0 => Verdict::Warn,
             _ => Verdict::Ok,
         };
-        Ok(Synchronised { period, phase, correction: nearest as i8, residual_periods: residual, verdict })
+        Ok(SynchronisedPosition { period, phase, correction: nearest as i8, residual_periods: residual, verdict })
     }
 
     /// Returns the fine position from a quadrature counter, which counts quarters of a period.
@@ -84,7 +84,7 @@ impl Synchroniser {
     }
 }
 
-impl Synchronised {
+impl SynchronisedPosition {
     pub fn periods(&self) -> f64 {
         self.period as f64 + self.phase.periods()
     }
@@ -139,7 +139,7 @@ mod tests {
             assert!((told.periods() - fine).abs() < 1e-9, "{label}: {told:?}");
             assert!((told.residual_periods - residual).abs() < 6e-5, "{label}: {told:?}");
         }
-        assert_eq!(Synchroniser::new(16).synchronise(0, phase(0.5)), Err(Unsynchronisable));
+        assert_eq!(Synchroniser::new(16).synchronise(0, phase(0.5)), Err(AmbiguousPeriod));
     }
 
     #[test]

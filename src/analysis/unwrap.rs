@@ -10,7 +10,7 @@ pub struct Unwrap {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Unwrapped {
+pub struct UnwrappedPosition {
     /// Steps; beyond the range after a wrap, negative below zero.
     pub steps: i64,
     /// Whether the path from the previous sample is unknown, because of a gap or an ambiguous step of half the range.
@@ -36,21 +36,21 @@ impl Unwrap {
 
     /// Unwraps the next position word along the shortest way from the previous one, so a wrap is a step like any other.
     /// Returns `None` for a word outside the range, which counts as a gap.
-    pub fn next(&mut self, word: i64) -> Option<Unwrapped> {
+    pub fn next(&mut self, word: i64) -> Option<UnwrappedPosition> {
         if self.range.is_some_and(|range| !(0..range).contains(&word)) {
             self.gap();
             return None;
         }
         let gap = std::mem::take(&mut self.gap);
         let next = match (self.last, self.range) {
-            (None, _) => Unwrapped { steps: word, broken: false },
-            (Some(_), None) => Unwrapped { steps: word, broken: gap },
+            (None, _) => UnwrappedPosition { steps: word, broken: false },
+            (Some(_), None) => UnwrappedPosition { steps: word, broken: gap },
             (Some((before, steps)), Some(range)) => {
                 // 0…range − 1, and the shorter way round; both ways are equally long at exactly half.
                 let forward = (word - before).rem_euclid(range);
                 let backward = range - forward;
                 let step = if forward <= backward { forward } else { -backward };
-                Unwrapped { steps: steps.saturating_add(step), broken: gap || forward == backward }
+                UnwrappedPosition { steps: steps.saturating_add(step), broken: gap || forward == backward }
             }
         };
         self.last = Some((word, next.steps));
@@ -91,13 +91,13 @@ mod tests {
     fn after_a_gap_the_distance_is_unknown() {
         let mut ring = Unwrap::rotary(100).unwrap();
         ring.gap();
-        assert_eq!(ring.next(98), Some(Unwrapped { steps: 98, broken: false }));
+        assert_eq!(ring.next(98), Some(UnwrappedPosition { steps: 98, broken: false }));
         ring.gap();
-        assert_eq!(ring.next(2), Some(Unwrapped { steps: 102, broken: true }));
-        assert_eq!(ring.next(3), Some(Unwrapped { steps: 103, broken: false }));
+        assert_eq!(ring.next(2), Some(UnwrappedPosition { steps: 102, broken: true }));
+        assert_eq!(ring.next(3), Some(UnwrappedPosition { steps: 103, broken: false }));
         assert_eq!(ring.next(100), None);
         assert_eq!(ring.next(-1), None);
-        assert_eq!(ring.next(4), Some(Unwrapped { steps: 104, broken: true }));
+        assert_eq!(ring.next(4), Some(UnwrappedPosition { steps: 104, broken: true }));
     }
 
     #[test]
@@ -106,7 +106,7 @@ mod tests {
         assert_eq!(follow(linear, &[-5, 1 << 40, 0]), [(-5, false), (1 << 40, false), (0, false)]);
         linear.next(1);
         linear.gap();
-        assert_eq!(linear.next(9), Some(Unwrapped { steps: 9, broken: true }));
+        assert_eq!(linear.next(9), Some(UnwrappedPosition { steps: 9, broken: true }));
     }
 
     #[test]
@@ -125,7 +125,7 @@ mod tests {
             for step in walk {
                 truth += (step * ((range - 1) / 2) as f64) as i64;
                 let next = unwrap.next(truth.rem_euclid(range)).unwrap();
-                prop_assert_eq!(next, Unwrapped { steps: truth, broken: false });
+                prop_assert_eq!(next, UnwrappedPosition { steps: truth, broken: false });
             }
         }
     }

@@ -7,10 +7,10 @@ use super::devices::{AnyDevice, DeviceCommand, OpenProfile};
 use super::diverged::{Diverged, Resolve};
 use super::file_question::FileQuestion;
 use super::payload::Payload;
-use super::recorder::{self, Exported};
+use super::recorder::{self, ExportResult};
 use super::review::Permit;
 use super::services::Services;
-use super::session::{DeviceHistory, DraftDone, Kind, ProfileFile, Saving};
+use super::session::{DeviceHistory, DraftOutcome, Kind, ProfileFile, Saving};
 use super::settings_store::{SettingsRead, SettingsWritten};
 use super::shutdown::ClosingSessionInfo;
 use super::studio::SessionId;
@@ -114,7 +114,7 @@ pub enum Done {
     Finder(Tab, Payload),
     /// A task whose result belongs to no particular session, and the handler of the result.
     Shared(SharedResult),
-    Ports(Result<Vec<connect::Offer>, LinkError>),
+    Ports(Result<Vec<connect::PortEntry>, LinkError>),
     Read {
         file: ProfileFile,
         result: Result<Box<Document>, ReadError>,
@@ -137,7 +137,7 @@ pub enum Done {
     Diverged(Box<Diverged>),
     /// A profile was not saved, because these comments of the user would be lost.
     WouldLose(Box<Saving>, Vec<String>),
-    TableWritten(RecorderOwner, Exported),
+    TableWritten(RecorderOwner, ExportResult),
     PictureSaved(PathBuf, Result<(), FileError>),
     ReportSaved(PathBuf, Result<(), FileError>),
     /// A wait before closing has run out of time.
@@ -148,7 +148,7 @@ pub enum Done {
     SettingsKept(Result<SettingsWritten, FileError>),
     /// The settings have been read while drives are under control; `None` if there are none.
     SettingsSeen(Result<Option<Box<Settings>>, FileError>),
-    Draft(SessionId, DraftDone),
+    Draft(SessionId, DraftOutcome),
     Listed(SessionId, DeviceKey, Box<DeviceHistory>),
     /// A backup was read, or not.
     Backup {
@@ -167,7 +167,7 @@ pub struct Attempt {
     pub session: SessionId,
     /// Number of the attempt within its session; only the latest one counts.
     pub attempt: u32,
-    pub(super) result: Result<Box<dyn AnyOpened>, Box<OpenFailed>>,
+    pub(super) result: Result<Box<dyn OpenedSession>, Box<OpenFailure>>,
 }
 
 /// A session on its thread, with the ring for its trace.
@@ -184,14 +184,14 @@ pub struct Opened<D: Kind> {
 }
 
 /// A session on its thread with its kind of device erased.
-pub trait AnyOpened: Any + Send {
+pub trait OpenedSession: Any + Send {
     /// Closes a session that is no longer required.
     fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services);
 
     fn into_any(self: Box<Self>) -> Box<dyn Any>;
 }
 
-impl<D: Kind> AnyOpened for Opened<D> {
+impl<D: Kind> OpenedSession for Opened<D> {
     fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services) {
         let Opened { worker, url, turn, .. } = *self;
         let about = services.world.kinds.display_link(&url);
@@ -214,7 +214,7 @@ pub enum Waited {
 }
 
 #[derive(Debug)]
-pub enum OpenFailed {
+pub enum OpenFailure {
     Link(OpenError),
     Thread(String),
     Held,

@@ -6,7 +6,7 @@ use super::action::ReadError;
 use super::devices::{ActContext, DeviceCommand};
 use super::documents::read_error;
 use super::file_question::FileQuestion;
-use super::payload::{Payload, WrongKind};
+use super::payload::{Payload, PayloadKindError};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text};
 
@@ -93,7 +93,7 @@ impl Studio {
     }
 
     /// Stops all motion if an action has reached another kind of device, because its intended target does not exist.
-    pub(super) fn report_wrong_kind(&mut self, done: Result<(), WrongKind>, id: SessionId) {
+    pub(super) fn report_wrong_kind(&mut self, done: Result<(), PayloadKindError>, id: SessionId) {
         if done.is_err() {
             let name = self.device(id).map(AnyDevice::name);
             self.notify_wrong_kind(name.as_deref());

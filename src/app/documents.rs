@@ -7,7 +7,7 @@ use jiff::Timestamp;
 use super::action::{Action, Done, ReadError};
 use super::devices::OpenProfile;
 use super::kinds::Kinds;
-use super::session::{DraftDone, ProfileFile, Source, file_key};
+use super::session::{DraftOutcome, ProfileFile, Source, file_key};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text, explain};
 use crate::profile::{Body, Document, Formats, ProfileError};
@@ -65,8 +65,8 @@ impl Studio {
     }
 
     /// Handles a draft of a session that was looked up, stored or removed.
-    pub(super) fn draft_done(&mut self, id: SessionId, done: DraftDone) {
-        if let DraftDone::Kept { result, .. } = &done {
+    pub(super) fn draft_done(&mut self, id: SessionId, done: DraftOutcome) {
+        if let DraftOutcome::Kept { result, .. } = &done {
             self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);
             if let Err(error) = result
                 && self.device(id).is_none()

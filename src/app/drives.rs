@@ -50,7 +50,7 @@ pub struct RememberedDrives {
 /// The readable part of a drive's entry whose other parts are broken.
 #[derive(Default, Deserialize)]
 #[serde(default)]
-pub(crate) struct LocksOnly {
+pub(crate) struct PartialDriveEntry {
     unconfirmed: Vec<u8>,
     marks: BTreeMap<u8, u64>,
 }
@@ -64,7 +64,7 @@ pub enum SettingsReadState {
 }
 
 /// Drives of which the settings remember something.
-pub trait RemembersDrives {
+pub trait DriveMemory {
     /// Returns the name under which the settings store the drives of the device, or `None` before it was read.
     fn remembered_as(&self) -> Option<String>;
 
@@ -82,8 +82,8 @@ pub trait RemembersDrives {
     fn set_marks(&mut self, marks: SettingsReadState);
 }
 
-impl From<LocksOnly> for RememberedDrives {
-    fn from(LocksOnly { unconfirmed, marks }: LocksOnly) -> Self {
+impl From<PartialDriveEntry> for RememberedDrives {
+    fn from(PartialDriveEntry { unconfirmed, marks }: PartialDriveEntry) -> Self {
         RememberedDrives { unconfirmed, marks, ..RememberedDrives::default() }
     }
 }

@@ -6,7 +6,7 @@ use super::action::{Action, Done, RecorderOwner};
 use super::closing::MUCH;
 use super::file_question::FileQuestion;
 use super::question::{Question, Then};
-use super::recorder::{self, Exported, Recorder};
+use super::recorder::{self, ExportResult, Recorder};
 use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Picture, Severity, Text, connect, explain};
 use crate::link::{LinkUrl, Scheme};
@@ -145,7 +145,7 @@ impl Studio {
         }
     }
 
-    pub(super) fn finish_table_export(&mut self, owner: RecorderOwner, exported: Exported) {
+    pub(super) fn finish_table_export(&mut self, owner: RecorderOwner, exported: ExportResult) {
         let is_written = matches!(exported.rows, Ok(Some(_)));
         // Another drive may be selected by now.
         let recorders = match owner {

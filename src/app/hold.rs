@@ -64,7 +64,7 @@ pub enum HoldEvent {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Holder {
+enum HoldSource {
     Pointer,
     Key(PressKey),
 }
@@ -72,7 +72,7 @@ enum Holder {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HoldState {
     scene: Option<HoldScene>,
-    holder: Option<Holder>,
+    holder: Option<HoldSource>,
     keys: FreshKeys,
     pointer: bool,
     was_held: bool,
@@ -96,7 +96,7 @@ impl HoldState {
         }
         if before.is_none_or(|own| own.keyboard != scene.keyboard) {
             self.keys.forget();
-            if matches!(self.holder, Some(Holder::Key(_))) {
+            if matches!(self.holder, Some(HoldSource::Key(_))) {
                 self.let_go();
             }
         }
@@ -115,7 +115,7 @@ impl HoldState {
                 if scene.window {
                     self.keys.release(key, now);
                 }
-                if self.holder == Some(Holder::Key(key)) {
+                if self.holder == Some(HoldSource::Key(key)) {
                     self.let_go();
                 }
             }
@@ -129,7 +129,7 @@ impl HoldState {
                 self.pointer = true;
                 self.let_go();
                 if on && alone && scene.enabled && scene.window {
-                    self.hold_by(Holder::Pointer);
+                    self.hold_by(HoldSource::Pointer);
                 }
             }
             HoldInput::PointerMoved { inside: true } => {}
@@ -171,7 +171,7 @@ impl HoldState {
     }
 
     pub fn is_held_by_pointer(&self) -> bool {
-        self.holder == Some(Holder::Pointer)
+        self.holder == Some(HoldSource::Pointer)
     }
 
     /// Returns whether the button has the keyboard focus but no key release has been seen yet, so that the first press
@@ -185,11 +185,13 @@ impl HoldState {
     fn key_down(&mut self, key: PressKey, plain: bool, scene: HoldScene) {
         let fresh = self.keys.press(key);
         match self.holder {
-            Some(Holder::Key(own)) if own == key && plain => {}
+            Some(HoldSource::Key(own)) if own == key && plain => {}
             Some(_) => self.let_go(),
             None if !scene.keyboard => {}
             None if scene.moving => self.stop = true,
-            None if fresh && plain && scene.enabled && scene.window && !self.pointer => self.hold_by(Holder::Key(key)),
+            None if fresh && plain && scene.enabled && scene.window && !self.pointer => {
+                self.hold_by(HoldSource::Key(key))
+            }
             None => {}
         }
     }
@@ -198,7 +200,7 @@ impl HoldState {
         self.keys.is_down(PressKey::Space) || self.keys.is_down(PressKey::Enter)
     }
 
-    fn hold_by(&mut self, holder: Holder) {
+    fn hold_by(&mut self, holder: HoldSource) {
         self.holder = Some(holder);
         self.began = true;
     }
@@ -208,7 +210,7 @@ impl HoldState {
     }
 
     fn release_pointer(&mut self) {
-        if self.holder == Some(Holder::Pointer) {
+        if self.holder == Some(HoldSource::Pointer) {
             self.let_go();
         }
     }

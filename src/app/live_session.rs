@@ -29,7 +29,7 @@ pub struct LiveSession<D: Device> {
 }
 
 #[derive(Clone, Debug)]
-pub struct Progressing {
+pub struct JobProgress {
     pub title: Text,
     /// Steps done, total steps, and the present step.
     pub progress: Option<(u64, u64, Text)>,
@@ -42,10 +42,10 @@ impl<D: Kind> LiveSession<D> {
         LiveSession { worker, trace, running: None, is_virtual }
     }
 
-    pub fn job_progress(&self) -> Option<Progressing> {
+    pub fn job_progress(&self) -> Option<JobProgress> {
         let running = self.running.as_ref()?;
         let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::step_text(&own.step)));
-        Some(Progressing { title: running.title.clone(), progress, stopping: running.stopping })
+        Some(JobProgress { title: running.title.clone(), progress, stopping: running.stopping })
     }
 
     /// Starts a job.

@@ -3,7 +3,7 @@
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
-use super::action::{Action, Attempt, Done, OpenFailed, Opened};
+use super::action::{Action, Attempt, Done, OpenFailure, Opened};
 use super::given::Opener;
 use super::question::{Question, Then};
 use super::services::{Environment, JobEnd, Services};
@@ -191,7 +191,7 @@ impl Services {
         url: LinkUrl,
         earlier: Option<Receiver<()>>,
         prepare: impl FnOnce(&mut Session<D>) + Send + 'static,
-        done: impl FnOnce(Result<Box<Opened<D>>, Box<OpenFailed>>) -> Done + Send + 'static,
+        done: impl FnOnce(Result<Box<Opened<D>>, Box<OpenFailure>>) -> Done + Send + 'static,
     ) -> Receiver<()> {
         let (turn, over) = bounded(0);
         let (world, wake) = (self.world.clone(), self.tasks.wake());
@@ -202,7 +202,7 @@ impl Services {
                 let _ = earlier.recv_timeout(world.patience.job);
             }
             let free = endings.into_iter().all(|(ending, patience)| ending.wait(patience));
-            let result = if free { open(&world, &url, prepare, wake, turn) } else { Err(Box::new(OpenFailed::Held)) };
+            let result = if free { open(&world, &url, prepare, wake, turn) } else { Err(Box::new(OpenFailure::Held)) };
             Action::Done(done(result))
         });
         over
@@ -215,13 +215,13 @@ fn open<D: Kind>(
     prepare: impl FnOnce(&mut Session<D>),
     wake: Wake,
     turn: Sender<()>,
-) -> Result<Box<Opened<D>>, Box<OpenFailed>> {
+) -> Result<Box<Opened<D>>, Box<OpenFailure>> {
     let began = (world.now)();
     let mut session = world
         .given
         .get::<Opener<D>>()
         .map_or_else(|| D::open(url, world.store.clone()), |opener| opener.open(url, world.store.clone()))
-        .map_err(|error| Box::new(OpenFailed::Link(error)))?;
+        .map_err(|error| Box::new(OpenFailure::Link(error)))?;
     prepare(&mut session);
     let (is_virtual, aside) = (session.is_virtual(), D::session_handle(&session));
     let trace: Ring<TraceEntry> = Ring::bounded(FRAMES, FRAME_BYTES, |entry| entry.bytes.len() + size_of_val(entry));
@@ -232,7 +232,7 @@ fn open<D: Kind>(
     });
     match Worker::spawn(session, wake) {
         Ok(worker) => Ok(Box::new(Opened { worker, aside, trace, is_virtual, began, url: url.clone(), turn })),
-        Err(error) => Err(Box::new(OpenFailed::Thread(error.to_string()))),
+        Err(error) => Err(Box::new(OpenFailure::Thread(error.to_string()))),
     }
 }
 

@@ -17,7 +17,7 @@ pub struct Payload(Box<dyn Any + Send>);
 /// A payload reached a device of another kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the action is for another kind of device")]
-pub struct WrongKind;
+pub struct PayloadKindError;
 
 impl Payload {
     pub(in crate::app) fn of(content: impl Any + Send) -> Self {
@@ -31,9 +31,9 @@ impl Payload {
     /// Returns the content.
     ///
     /// # Errors
-    /// [`WrongKind`] if the content has another type.
-    pub fn open<T: Any>(self) -> Result<T, WrongKind> {
-        self.0.downcast().map(|content| *content).map_err(|_| WrongKind)
+    /// [`PayloadKindError`] if the content has another type.
+    pub fn open<T: Any>(self) -> Result<T, PayloadKindError> {
+        self.0.downcast().map(|content| *content).map_err(|_| PayloadKindError)
     }
 }
 

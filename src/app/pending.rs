@@ -26,7 +26,7 @@ pub trait PendingEdits {
 }
 
 /// Edits kept as a complete copy of the values, with the steps that led to them.
-pub(crate) trait Stepped {
+pub(crate) trait SteppedEdits {
     type Values: Clone + PartialEq;
 
     fn differences_count(&self) -> usize;
@@ -42,7 +42,7 @@ pub(crate) trait Stepped {
 /// The original values, the edited values and the steps.
 pub(crate) type SteppedParts<'s, T> = (&'s T, &'s mut T, &'s mut History<T>);
 
-impl<S: Stepped> PendingEdits for S {
+impl<S: SteppedEdits> PendingEdits for S {
     fn count(&self) -> usize {
         self.differences_count()
     }

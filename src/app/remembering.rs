@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::Settings;
 use super::devices::MotionControl;
-use super::drives::{RemembersDrives, SettingsReadState};
+use super::drives::{DriveMemory, SettingsReadState};
 use super::studio::Studio;
 use crate::store::FileError;
 
@@ -47,7 +47,7 @@ impl Studio {
             }
         }
         self.remember_drives();
-        let reading = |drives: &&mut dyn RemembersDrives| drives.marks() == SettingsReadState::Reading;
+        let reading = |drives: &&mut dyn DriveMemory| drives.marks() == SettingsReadState::Reading;
         self.drives_in_hand().filter(reading).for_each(|drives| drives.set_marks(SettingsReadState::Read));
     }
 
@@ -58,7 +58,7 @@ impl Studio {
         self.drives_in_hand().for_each(|drives| drives.set_marks(SettingsReadState::Unread));
     }
 
-    fn drives_in_hand(&mut self) -> impl Iterator<Item = &mut dyn RemembersDrives> {
+    fn drives_in_hand(&mut self) -> impl Iterator<Item = &mut dyn DriveMemory> {
         let in_hand = self.devices.iter_mut().filter(|own| own.motion().is_some_and(MotionControl::is_in_control));
         in_hand.filter_map(|device| device.remembers_drives())
     }

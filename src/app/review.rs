@@ -113,23 +113,23 @@ impl<K: Reviewed> Review<K> {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OpWords {
+pub struct OperationTexts {
     pub item: Text,
     /// Changes in order; at least one.
-    pub changes: Vec<ChangeWords>,
+    pub changes: Vec<ChangeTexts>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ChangeWords {
+pub struct ChangeTexts {
     /// Changed part of the item, or `None` for all of it.
     pub part: Option<Text>,
     pub old: Text,
     pub new: Text,
 }
 
-impl OpWords {
+impl OperationTexts {
     pub fn one(item: Text, old: Text, new: Text) -> Self {
-        OpWords { item, changes: vec![ChangeWords { part: None, old, new }] }
+        OperationTexts { item, changes: vec![ChangeTexts { part: None, old, new }] }
     }
 
     pub fn texts(&self) -> impl Iterator<Item = &Text> {
@@ -181,7 +181,7 @@ impl ExecutionMode {
 pub struct ReviewSheet {
     pub title: Text,
     pub stage: Stage,
-    pub lines: Vec<OpWords>,
+    pub lines: Vec<OperationTexts>,
     pub warnings: Vec<Text>,
     /// What the plan requires from the user at the device.
     pub needs: Vec<Text>,
@@ -230,7 +230,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     fn change(change: &Self::Change) -> Text;
     /// Returns the flag of a permit, or `None` if it does not apply.
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
-    fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OpWords;
+    fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
     /// Returns whether values of the mounting differ and are left alone.
     fn leaves_mounting(_prepared: &Self::Prepared) -> bool {
         false
@@ -307,7 +307,11 @@ impl<K: Reviewed> Review<K> {
     }
 
     /// Returns the review for display, with the connected device's own descriptions of operations.
-    pub(in crate::app) fn sheet_with(&self, done: usize, op: impl Fn(&K::Prepared, &Op<K>) -> OpWords) -> ReviewSheet {
+    pub(in crate::app) fn sheet_with(
+        &self,
+        done: usize,
+        op: impl Fn(&K::Prepared, &Op<K>) -> OperationTexts,
+    ) -> ReviewSheet {
         let prepared = self.prepared();
         let cut_off = match &self.state {
             ReviewState::Failed { cut_off: Some((prepared, done)), .. } => Some((&**prepared, *done)),

@@ -8,7 +8,7 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Language;
-use super::drives::{LocksOnly, RememberedDrives};
+use super::drives::{PartialDriveEntry, RememberedDrives};
 use super::kinds::Kinds;
 use super::tab::Tab;
 
@@ -106,7 +106,7 @@ impl Settings {
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
                 // Unconfirmed limits stay unconfirmed, even if other parts are broken.
-                entry!(drives: BTreeMap<String, LocksOnly>, BTreeMap::new())
+                entry!(drives: BTreeMap<String, PartialDriveEntry>, BTreeMap::new())
                     .into_iter()
                     .map(|(device, locks)| (device, locks.into()))
                     .collect()

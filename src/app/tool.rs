@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crossbeam_channel::Receiver;
 
-use super::payload::{Payload, WrongKind};
+use super::payload::{Payload, PayloadKindError};
 use super::recorder::Recorder;
 use super::services::Services;
 use super::sine_cosine::SineCosineSource;
@@ -31,13 +31,13 @@ pub trait Tool: Any {
     ///
     /// # Errors
     /// The action belongs to another tool.
-    fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), WrongKind>;
+    fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), PayloadKindError>;
 
     /// Handles the result of a task.
     ///
     /// # Errors
     /// The result belongs to another tool.
-    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), WrongKind>;
+    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError>;
 
     /// Processes the events received since the last call.
     fn pump(&mut self, services: &mut Services);

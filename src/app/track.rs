@@ -18,7 +18,7 @@ mod watchable;
 
 use follower::Follower;
 pub use meaning::Meaning;
-pub use watchable::{Watchable, Watching};
+pub use watchable::{Watchable, WatchedValue};
 
 /// Maximum number of positions: more than a day at the fastest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
@@ -261,7 +261,7 @@ impl<W: Watchable> Track<W> {
         self.watched.iter().filter(|own| own.active).map(|own| own.value.clone()).collect()
     }
 
-    pub fn add_watched(&mut self, what: &W, watching: &Watching) {
+    pub fn add_watched(&mut self, what: &W, watching: &WatchedValue) {
         let Some(own) = self.watched.iter().find(|own| own.active && own.value == *what) else { return };
         let (group, line) = (own.group, own.line);
         let mut flags = if watching.value.is_some() { Flags::NONE } else { Flags::BAD };

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 pub use act::Do;
-pub(super) use build::{Arguments, Called, parse_arguments};
+pub(super) use build::{Arguments, ParsedCommand, parse_arguments};
 pub use decode::Decode;
 pub(crate) use decode::{Direction, DirectionOption};
 

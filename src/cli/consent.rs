@@ -56,29 +56,29 @@ where
 }
 
 /// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal it is
-/// replaced, as other tools do, and [`Replaces::report`] states so.
-pub(super) fn replaces(path: &Path, force: bool) -> Result<Replaces> {
+/// replaced, as other tools do, and [`ReplacementNotice::report`] states so.
+pub(super) fn replaces(path: &Path, force: bool) -> Result<ReplacementNotice> {
     // A pipe or a device is written to, and has no content to replace.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());
     if !is_there || force {
-        return Ok(Replaces { message: None });
+        return Ok(ReplacementNotice { message: None });
     }
     let name = path.display();
     if !can_ask() {
-        return Ok(Replaces { message: Some(format!("{name} already existed and was replaced.")) });
+        return Ok(ReplacementNotice { message: Some(format!("{name} already existed and was replaced.")) });
     }
     if ask(&format!("{name} already exists. Replace it? [y/N] ")) {
-        return Ok(Replaces { message: None });
+        return Ok(ReplacementNotice { message: None });
     }
     Err(Failure::Failed(vec![format!("Not confirmed; {name} was not changed.")]))
 }
 
 /// The message after a file was written.
-pub(super) struct Replaces {
+pub(super) struct ReplacementNotice {
     message: Option<String>,
 }
 
-impl Replaces {
+impl ReplacementNotice {
     /// Reports that a file was replaced, if the user was not asked.
     pub(super) fn report(&self, output: &Output) {
         if let Some(message) = &self.message {

@@ -19,14 +19,14 @@ pub(crate) mod slow_reply_notice;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use args::{Arguments, Called};
+use args::{Arguments, ParsedCommand};
 
 pub use args::{Command, Common, Consenting, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProfileCommands, ProtocolDecoder};
 pub use consent::{agreed, check_wear, require_consent};
 pub use output::{Lines, Output};
 pub use positions::{readings, try_readings};
-pub use profiles::{Unrestored, restore_options, save_profile, to_restore, write_restore};
+pub use profiles::{UnrestoredItems, restore_options, save_profile, to_restore, write_restore};
 pub use runner::{JobFailure, Runner, Runs, failed, unexpected};
 pub use simulate::{Simulated, settings};
 pub use slow_reply_notice::Pace;
@@ -133,10 +133,10 @@ fn end(result: Result) -> u8 {
     }
 }
 
-fn call(common: &Common, called: Called, output: &Output) -> Result {
+fn call(common: &Common, called: ParsedCommand, output: &Output) -> Result {
     match called {
-        Called::Shared(command) => dispatch(common, &command, output),
-        Called::Own(command, matches) => command.run(common, output, &matches),
+        ParsedCommand::Shared(command) => dispatch(common, &command, output),
+        ParsedCommand::Own(command, matches) => command.run(common, output, &matches),
     }
 }
 

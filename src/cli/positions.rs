@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::args::Position;
 use super::runner::{JobFailure, Runner, Runs};
 use super::{Done, Result};
-use crate::worker::EndedEarly as _;
+use crate::worker::JobInterruption as _;
 
 /// Runs `job` repeatedly and prints each result with `show`; a failed job ends the loop.
 pub fn readings<D: Runs>(

@@ -114,7 +114,7 @@ pub fn write_restore(
     output: &Output,
     restore: &Restore,
     plan: &PlanReport,
-    left: &Unrestored,
+    left: &UnrestoredItems,
     write: impl FnOnce() -> Result<WriteSummary>,
 ) -> Result {
     left.warn(output);
@@ -166,7 +166,7 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
 }
 
 /// Items that a restore leaves unchanged.
-pub struct Unrestored {
+pub struct UnrestoredItems {
     /// Number of items that already have the value in the profile.
     pub unchanged: u64,
     /// Items that are present on one side only.
@@ -175,7 +175,7 @@ pub struct Unrestored {
     pub redo: Vec<String>,
 }
 
-impl Unrestored {
+impl UnrestoredItems {
     /// Prints the values that must be set up again.
     fn warn(&self, output: &Output) {
         let items = self.redo.iter().map(explain::plain).collect();
@@ -186,7 +186,7 @@ impl Unrestored {
 }
 
 /// Prints the plan of a restore without executing it.
-fn show_dry_run(output: &Output, plan: &PlanReport, left: &Unrestored) -> Result {
+fn show_dry_run(output: &Output, plan: &PlanReport, left: &UnrestoredItems) -> Result {
     let json = json!({
         "dry_run": true,
         "operations": plan.operations,
@@ -202,7 +202,7 @@ fn show_dry_run(output: &Output, plan: &PlanReport, left: &Unrestored) -> Result
     Ok(Done::Well)
 }
 
-fn show_restored(output: &Output, spent: &WriteSummary, left: &Unrestored) -> Result {
+fn show_restored(output: &Output, spent: &WriteSummary, left: &UnrestoredItems) -> Result {
     let json = json!({
         "written": spent.written,
         "unchanged": left.unchanged,

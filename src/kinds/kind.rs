@@ -1,7 +1,7 @@
 //! Kinds of devices and tools, and the assembly of a program from them.
 
 use crate::app::{DeviceKind, Kinds, ToolKind};
-use crate::buses::bridge::sim::Attachable;
+use crate::buses::bridge::sim::AttachableKind;
 use crate::cli::{Commands, DeviceCommands, OwnCommand, ProtocolDecoder};
 use crate::profile::{Formats, ProfileFormat};
 use crate::ui::{DeviceView, TabViews, ToolView};
@@ -12,7 +12,7 @@ pub struct Kind {
     pub commands: &'static dyn DeviceCommands,
     /// Virtual device for the virtual adapter, or `None` for a kind that does not use an adapter. The adapter only
     /// offers the program's built-in list (`kinds::at_adapter`), which excludes external kinds.
-    pub at_adapter: Option<&'static dyn Attachable>,
+    pub at_adapter: Option<&'static dyn AttachableKind>,
 }
 
 #[derive(Clone, Copy)]

@@ -7,7 +7,7 @@ use super::LinkError;
 use crate::units::Moment;
 
 /// Datagrams to and from a single target.
-pub trait Datagrams: Send {
+pub trait DatagramChannel: Send {
     /// Returns the local port to which the target must send.
     fn port(&self) -> u16;
 
@@ -43,7 +43,7 @@ pub trait DatagramPort: Send {
     ///
     /// # Errors
     /// No port is available, or the target cannot be reached.
-    fn open(&mut self) -> Result<Box<dyn Datagrams>, LinkError>;
+    fn open(&mut self) -> Result<Box<dyn DatagramChannel>, LinkError>;
 }
 
 /// A request to all devices in a network, and their replies.

@@ -1,6 +1,6 @@
 //! Connections, clocks, and the execution context of procedures.
 //!
-//! Most devices require a byte stream ([`ByteLink`]); some also exchange cyclic data as datagrams ([`Datagrams`]).
+//! Most devices require a byte stream ([`ByteLink`]); some also exchange cyclic data as datagrams ([`DatagramChannel`]).
 //! Protocols with registers, process data or explicit messages share the same [`Ctx`].
 
 #![warn(missing_docs)]
@@ -23,7 +23,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 pub use clock::{Clock, RealClock, VirtualClock};
-pub use datagram::{Broadcast, DatagramPort, Datagrams};
+pub use datagram::{Broadcast, DatagramChannel, DatagramPort};
 pub use error::{LinkError, LinkErrorKind};
 pub use line::{Echo, LineQuality, LineState};
 pub use realtime_priority::wake_before_others;

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::{ByteLink, Clock, DatagramPort, Datagrams, LinkError};
+use super::{ByteLink, Clock, DatagramChannel, DatagramPort, LinkError};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{CharacterFormat, Moment};
 
@@ -81,30 +81,30 @@ impl SimPort {
 }
 
 impl DatagramPort for SimPort {
-    fn open(&mut self) -> Result<Box<dyn Datagrams>, LinkError> {
+    fn open(&mut self) -> Result<Box<dyn DatagramChannel>, LinkError> {
         // Packets in transit to the previous port are dropped.
         let port = self.next;
         self.next = self.next.checked_add(1).unwrap_or(FIRST_PORT);
         let (device, clock) = (self.device.clone(), self.clock.clone());
-        Ok(Box::new(SimPackets { device, clock, port, arrived: VecDeque::new() }))
+        Ok(Box::new(SimDatagrams { device, clock, port, arrived: VecDeque::new() }))
     }
 }
 
-struct SimPackets {
+struct SimDatagrams {
     device: Arc<Mutex<dyn DatagramDevice>>,
     clock: Arc<dyn Clock>,
     port: u16,
     arrived: VecDeque<Vec<u8>>,
 }
 
-impl SimPackets {
+impl SimDatagrams {
     fn with_device<T>(&self, work: impl FnOnce(&mut dyn DatagramDevice) -> T) -> T {
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut *device)
     }
 }
 
-impl Datagrams for SimPackets {
+impl DatagramChannel for SimDatagrams {
     fn port(&self) -> u16 {
         self.port
     }

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
-use super::{Broadcast, Clock, DatagramPort, Datagrams, LinkError, LinkErrorKind, wake_before_others};
+use super::{Broadcast, Clock, DatagramChannel, DatagramPort, LinkError, LinkErrorKind, wake_before_others};
 use crate::units::Moment;
 
 /// Maximum accepted packet length in bytes; process data are much shorter.
@@ -32,7 +32,7 @@ impl UdpPort {
 }
 
 impl DatagramPort for UdpPort {
-    fn open(&mut self) -> Result<Box<dyn Datagrams>, LinkError> {
+    fn open(&mut self) -> Result<Box<dyn DatagramChannel>, LinkError> {
         let fail = |kind| LinkError::new(&self.target, kind);
         let mut addresses = self.target.to_socket_addrs().map_err(|_| fail(LinkErrorKind::NotFound))?;
         let found = addresses.find_map(|address| match address {
@@ -47,7 +47,7 @@ impl DatagramPort for UdpPort {
         let socket = UdpSocket::bind((local, 0)).map_err(unreachable)?;
         let port = socket.local_addr().map_err(unreachable)?.port();
         let (sender, heard) = bounded(WAITING);
-        let mut packets = Packets {
+        let mut packets = UdpChannel {
             name: self.target.clone(),
             target,
             local,
@@ -77,7 +77,7 @@ fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
 
 /// Packets to and from one target. A dedicated thread receives them, so that a wait ends exactly when the packet
 /// arrives or the time is up.
-struct Packets {
+struct UdpChannel {
     name: String,
     target: SocketAddrV4,
     local: Ipv4Addr,
@@ -100,7 +100,7 @@ impl Drop for Listener {
     }
 }
 
-impl Packets {
+impl UdpChannel {
     fn fail(&self, error: &io::Error) -> LinkError {
         LinkError::new(&self.name, LinkErrorKind::Unreachable(error.to_string()))
     }
@@ -139,7 +139,7 @@ fn is_transient(error: &io::Error) -> bool {
     matches!(error.kind(), WouldBlock | TimedOut | Interrupted | ConnectionRefused | ConnectionReset)
 }
 
-impl Datagrams for Packets {
+impl DatagramChannel for UdpChannel {
     fn port(&self) -> u16 {
         self.port
     }
@@ -278,7 +278,7 @@ mod tests {
     use super::*;
     use crate::link::RealClock;
 
-    fn pair() -> (UdpSocket, Box<dyn Datagrams>, Arc<RealClock>) {
+    fn pair() -> (UdpSocket, Box<dyn DatagramChannel>, Arc<RealClock>) {
         let target = UdpSocket::bind("127.0.0.1:0").unwrap();
         target.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
         let clock = Arc::new(RealClock::start());

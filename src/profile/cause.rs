@@ -6,19 +6,19 @@ use std::fmt;
 
 /// The device-specific reason why a profile entry is refused. It displays like the wrapped error and compares equal to
 /// it.
-pub struct Cause(Box<dyn Fact>);
+pub struct Cause(Box<dyn BoxedFact>);
 
-trait Fact: Any + Error + Send + Sync {
-    fn boxed(&self) -> Box<dyn Fact>;
-    fn equals(&self, other: &dyn Fact) -> bool;
+trait BoxedFact: Any + Error + Send + Sync {
+    fn boxed(&self) -> Box<dyn BoxedFact>;
+    fn equals(&self, other: &dyn BoxedFact) -> bool;
 }
 
-impl<E: Error + Clone + Eq + Send + Sync + 'static> Fact for E {
-    fn boxed(&self) -> Box<dyn Fact> {
+impl<E: Error + Clone + Eq + Send + Sync + 'static> BoxedFact for E {
+    fn boxed(&self) -> Box<dyn BoxedFact> {
         Box::new(self.clone())
     }
 
-    fn equals(&self, other: &dyn Fact) -> bool {
+    fn equals(&self, other: &dyn BoxedFact) -> bool {
         let other: &dyn Any = other;
         other.downcast_ref::<E>() == Some(self)
     }

@@ -76,7 +76,7 @@ pub enum FaultError {
 
 /// The passage of a byte over a noisy line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Passage {
+pub struct BytePassage {
     /// Noise byte inserted before it, if any.
     pub inserted: Option<u8>,
     /// The byte itself, or `None` if it was lost.
@@ -111,13 +111,13 @@ impl Faults {
     }
 
     /// Passes a byte over the noisy line.
-    pub fn passage(&self, rng: &mut Rng, byte: u8) -> Passage {
+    pub fn passage(&self, rng: &mut Rng, byte: u8) -> BytePassage {
         let inserted = happens(self.garbage, rng).then(|| rng.u8(..));
         let carried = (!happens(self.drop, rng)).then(|| match happens(self.flip, rng) {
             true => Carried { byte: byte ^ 1 << rng.u8(..8), flipped: true },
             false => Carried { byte, flipped: false },
         });
-        Passage { inserted, carried }
+        BytePassage { inserted, carried }
     }
 }
 
@@ -210,7 +210,7 @@ mod tests {
         let noisy: Faults = "flip:1,garbage:1".parse().unwrap();
         for byte in 0..=255 {
             let whole = Some(Carried { byte, flipped: false });
-            assert_eq!(quiet.passage(&mut rng, byte), Passage { inserted: None, carried: whole });
+            assert_eq!(quiet.passage(&mut rng, byte), BytePassage { inserted: None, carried: whole });
             assert_eq!(lossy.passage(&mut rng, byte).carried, None);
             let passage = noisy.passage(&mut rng, byte);
             assert!(passage.inserted.is_some());

@@ -47,7 +47,7 @@ impl LogFile {
     /// Returns an error if no thread can be started.
     pub fn begin(path: &Path) -> io::Result<Self> {
         let own = path.to_owned();
-        let log = Self::spawn_writer(move || Rotating::open(&own, LARGE), QUEUE)?;
+        let log = Self::spawn_writer(move || RotatingFile::open(&own, LARGE), QUEUE)?;
         let lines = log.clone();
         let layer = fmt::layer().with_writer(move || lines.clone()).with_ansi(false).with_target(false);
         let filter = Targets::new().with_default(Level::WARN).with_target(env!("CARGO_CRATE_NAME"), Level::INFO);
@@ -119,21 +119,21 @@ impl Write for LogFile {
 }
 
 /// A file that starts over once it has grown large.
-struct Rotating {
+struct RotatingFile {
     path: PathBuf,
     large: u64,
     file: File,
     length: u64,
 }
 
-impl Rotating {
+impl RotatingFile {
     fn open(path: &Path, large: u64) -> io::Result<Self> {
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder)?;
         }
         let file = OpenOptions::new().create(true).append(true).open(path)?;
         let length = file.metadata()?.len();
-        Ok(Rotating { path: path.to_owned(), large, file, length })
+        Ok(RotatingFile { path: path.to_owned(), large, file, length })
     }
 
     fn begin_anew(&mut self) -> io::Result<()> {
@@ -143,7 +143,7 @@ impl Rotating {
     }
 }
 
-impl Write for Rotating {
+impl Write for RotatingFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let full = self.length > 0 && self.length.saturating_add(bytes.len() as u64) > self.large;
         if full && self.begin_anew().is_err() {
@@ -173,7 +173,7 @@ mod tests {
             let log = LogFile::spawn_writer(
                 {
                     let path = path.clone();
-                    move || Rotating::open(&path, LARGE)
+                    move || RotatingFile::open(&path, LARGE)
                 },
                 QUEUE,
             )
@@ -189,7 +189,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("own.log");
         let own = path.clone();
-        let log = LogFile::spawn_writer(move || Rotating::open(&own, 8), QUEUE).unwrap();
+        let log = LogFile::spawn_writer(move || RotatingFile::open(&own, 8), QUEUE).unwrap();
         for line in ["one\n", "two\n", "three\n", "four\n"] {
             log.add(line.as_bytes());
         }

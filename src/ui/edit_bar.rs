@@ -14,7 +14,7 @@ const NARROW: f32 = 660.0;
 
 /// The kind of edits that a page counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Edited {
+pub enum EditKind {
     /// Bytes of a memory.
     Bytes,
     Values,
@@ -24,7 +24,7 @@ pub fn edit_bar_ui(
     ui: &mut Ui,
     theme: &Theme,
     (studio, device): (&Studio, &AnyDevice),
-    edited: Edited,
+    edited: EditKind,
     actions: &mut Vec<Action>,
 ) {
     ui.add_space(theme.space.between);
@@ -58,14 +58,14 @@ pub fn edit_bar_ui(
             if dirty {
                 let count = device.edits();
                 let text = Text::new(match (device.source(), count, edited) {
-                    (Source::Link(_), 1, Edited::Bytes) => "memory.edited_one",
-                    (Source::Link(_), _, Edited::Bytes) => "memory.edited",
-                    (Source::File { .. } | Source::New { .. }, 1, Edited::Bytes) => "memory.unsaved_one",
-                    (Source::File { .. } | Source::New { .. }, _, Edited::Bytes) => "memory.unsaved",
-                    (Source::Link(_), 1, Edited::Values) => "values.edited_one",
-                    (Source::Link(_), _, Edited::Values) => "values.edited",
-                    (Source::File { .. } | Source::New { .. }, 1, Edited::Values) => "values.unsaved_one",
-                    (Source::File { .. } | Source::New { .. }, _, Edited::Values) => "values.unsaved",
+                    (Source::Link(_), 1, EditKind::Bytes) => "memory.edited_one",
+                    (Source::Link(_), _, EditKind::Bytes) => "memory.edited",
+                    (Source::File { .. } | Source::New { .. }, 1, EditKind::Bytes) => "memory.unsaved_one",
+                    (Source::File { .. } | Source::New { .. }, _, EditKind::Bytes) => "memory.unsaved",
+                    (Source::Link(_), 1, EditKind::Values) => "values.edited_one",
+                    (Source::Link(_), _, EditKind::Values) => "values.edited",
+                    (Source::File { .. } | Source::New { .. }, 1, EditKind::Values) => "values.unsaved_one",
+                    (Source::File { .. } | Source::New { .. }, _, EditKind::Values) => "values.unsaved",
                 })
                 .with("count", count);
                 edits(ui, theme, count, &theme.words(&text));

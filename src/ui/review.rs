@@ -9,7 +9,7 @@ use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 use super::controls::{at_the_right, enabled_button, modal, paragraph, primary, row, spinner};
 use super::page::apart;
 use super::{Theme, icons};
-use crate::app::review::{ChangeWords, ExecutionMode, OpWords, Question, ReviewSheet, Stage, Toggle};
+use crate::app::review::{ChangeTexts, ExecutionMode, OperationTexts, Question, ReviewSheet, Stage, Toggle};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
 /// Draws the review dialog, if a write is under review.
@@ -148,7 +148,7 @@ fn buttons(
 }
 
 /// Draws the operations and, during a write, the number of completed ones. Values are never truncated.
-fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OpWords], f32), done: Option<usize>) {
+fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], f32), done: Option<usize>) {
     let palette = theme.palette;
     theme.sunken().show(ui, |ui| {
         ScrollArea::vertical().id_salt("operations").max_height(room).auto_shrink([false, true]).show(ui, |ui| {
@@ -191,7 +191,7 @@ fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OpWords], f32), done
 }
 
 /// Draws the old and new value on one line, if they fit beside the item.
-fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeWords, ink: Rgb) -> Option<Arc<Galley>> {
+fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeTexts, ink: Rgb) -> Option<Arc<Galley>> {
     let mut job = LayoutJob::default();
     let font = FontId::monospace(theme.sizes.body);
     let parts = [
@@ -209,7 +209,7 @@ fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeWords, ink: Rgb) -> 
     (galley.rows.len() == 1 && beside + galley.size().x <= ui.available_width()).then_some(galley)
 }
 
-fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeWords, heads: [&'static str; 2], ink: Rgb) {
+fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeTexts, heads: [&'static str; 2], ink: Rgb) {
     if let Some(part) = &change.part {
         ui.horizontal(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;

@@ -6,7 +6,7 @@ use super::NotBegun;
 use crate::profile::{DeviceError, Interrupted, OperationError, WriteRecord};
 
 /// The reason why a job ended early, for any kind of device.
-pub trait EndedEarly {
+pub trait JobInterruption {
     /// Returns whether the user cancelled the job.
     fn is_cancelled(&self) -> bool;
 
@@ -59,7 +59,7 @@ impl<P, Op, E: OperationError, Done: WriteRecord, Left, K> JobError<E::Device, P
     }
 }
 
-impl<P, Op, E, Done, Left, K> EndedEarly for JobError<E::Device, P, Interrupted<Op, E, Done, Left>, K>
+impl<P, Op, E, Done, Left, K> JobInterruption for JobError<E::Device, P, Interrupted<Op, E, Done, Left>, K>
 where
     E: OperationError<Device: DeviceError>,
     Done: WriteRecord,

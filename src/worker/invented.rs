@@ -1,13 +1,13 @@
 //! A device for tests that never sends a message.
 
-use super::{Device, EndedEarly, JobReport, SessionContext, Watched};
+use super::{Device, JobInterruption, JobReport, SessionContext, Watched};
 use crate::link::LinkError;
 
 /// Placeholder device that is never queried.
 #[derive(Debug)]
 pub(super) struct TestDevice;
 
-impl EndedEarly for () {
+impl JobInterruption for () {
     fn is_cancelled(&self) -> bool {
         false
     }

@@ -30,7 +30,7 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, bounded};
 
 pub use commit::{Committed, NotBegun, check_wear, is_uncounted};
-pub use interruption::{EndedEarly, JobError};
+pub use interruption::{JobError, JobInterruption};
 pub use live::Stopper;
 pub use open::OpenError;
 pub use ring::Ring;
@@ -49,7 +49,7 @@ pub trait Device: Send + 'static {
     /// The result of a job.
     type Output: Send + fmt::Debug;
     /// The reason why a job ends early.
-    type Error: EndedEarly + Send + fmt::Debug;
+    type Error: JobInterruption + Send + fmt::Debug;
     /// A message that the device sends along with any reply.
     type DeviceMessage: Send + fmt::Debug;
     /// One polled sample; samples of watched values identify themselves.

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Due<W> {
+pub(super) enum DueRequest<W> {
     /// The sample of the device.
     Sample,
     /// A watched value.
@@ -43,28 +43,28 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
 
     /// Returns the next request and its time: the earliest request, or the sample if several are due. Watching pauses
     /// while sampling is off; a new request is due at once.
-    pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, Due<W>)> {
+    pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, DueRequest<W>)> {
         let sample = self.sample.due(polling, now);
-        let mut next: Option<(Instant, Due<W>)> = None;
+        let mut next: Option<(Instant, DueRequest<W>)> = None;
         for Watch { value: what, interval, pace } in &mut self.watches {
             let due = pace.due(polling.and(Some(*interval)), now);
             if let Some(due) = due
                 && self.sample_was_last
                 && next.as_ref().is_none_or(|(earliest, _)| due < *earliest)
             {
-                next = Some((due, Due::Watch(what.clone())));
+                next = Some((due, DueRequest::Watch(what.clone())));
             }
         }
         let sample = sample?;
-        next.filter(|(due, _)| *due < sample).or(Some((sample, Due::Sample)))
+        next.filter(|(due, _)| *due < sample).or(Some((sample, DueRequest::Sample)))
     }
 
     /// Records that the request was made and its reply arrived at `now`.
-    pub(super) fn taken(&mut self, due: &Due<W>, now: Instant) {
-        self.sample_was_last = *due == Due::Sample;
+    pub(super) fn taken(&mut self, due: &DueRequest<W>, now: Instant) {
+        self.sample_was_last = *due == DueRequest::Sample;
         match due {
-            Due::Sample => self.sample.taken(now),
-            Due::Watch(what) => {
+            DueRequest::Sample => self.sample.taken(now),
+            DueRequest::Watch(what) => {
                 if let Some(watch) = self.watches.iter_mut().find(|watch| watch.value == *what) {
                     watch.pace.taken(now);
                 }
@@ -135,7 +135,7 @@ mod tests {
             if now > end {
                 return said.join(" ");
             }
-            let name = if let Due::Watch(what) = due { what } else { '.' };
+            let name = if let DueRequest::Watch(what) = due { what } else { '.' };
             said.push(format!("{name}{now}"));
             now += 25;
             agenda.taken(&due, start + ms(now));
@@ -165,18 +165,30 @@ mod tests {
         let mut agenda = PollScheduler::default();
         agenda.watch(vec![('a', ms(200))]);
         assert_eq!(agenda.next(None, start), None);
-        assert_eq!(agenda.next(Some(ms(100)), start + ms(10)), Some((start + ms(10), Due::Sample)));
-        agenda.taken(&Due::Sample, start + ms(20));
-        assert_eq!(agenda.next(Some(ms(100)), start + ms(20)), Some((start + ms(10), Due::Watch('a'))));
-        agenda.taken(&Due::Watch('a'), start + ms(30));
-        agenda.taken(&Due::Sample, start + ms(120));
+        assert_eq!(agenda.next(Some(ms(100)), start + ms(10)), Some((start + ms(10), DueRequest::Sample)));
+        agenda.taken(&DueRequest::Sample, start + ms(20));
+        assert_eq!(agenda.next(Some(ms(100)), start + ms(20)), Some((start + ms(10), DueRequest::Watch('a'))));
+        agenda.taken(&DueRequest::Watch('a'), start + ms(30));
+        agenda.taken(&DueRequest::Sample, start + ms(120));
         agenda.watch(vec![('b', ms(50)), ('a', ms(200))]);
-        assert_eq!(agenda.next(Some(ms(100)), start + ms(120)), Some((start + ms(120), Due::Watch('b'))), "b begins");
-        agenda.taken(&Due::Watch('b'), start + ms(130));
+        assert_eq!(
+            agenda.next(Some(ms(100)), start + ms(120)),
+            Some((start + ms(120), DueRequest::Watch('b'))),
+            "b begins"
+        );
+        agenda.taken(&DueRequest::Watch('b'), start + ms(130));
         agenda.watch(vec![('a', ms(200))]);
-        assert_eq!(agenda.next(Some(ms(100)), start + ms(130)), Some((start + ms(210), Due::Sample)), "110 + 100");
-        agenda.taken(&Due::Sample, start + ms(220));
-        assert_eq!(agenda.next(Some(ms(100)), start + ms(220)), Some((start + ms(210), Due::Watch('a'))), "10 + 200");
+        assert_eq!(
+            agenda.next(Some(ms(100)), start + ms(130)),
+            Some((start + ms(210), DueRequest::Sample)),
+            "110 + 100"
+        );
+        agenda.taken(&DueRequest::Sample, start + ms(220));
+        assert_eq!(
+            agenda.next(Some(ms(100)), start + ms(220)),
+            Some((start + ms(210), DueRequest::Watch('a'))),
+            "10 + 200"
+        );
         assert_eq!(agenda.next(None, start + ms(230)), None);
     }
 }

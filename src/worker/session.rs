@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Device, EndedEarly as _, Event, JobId, JobReport, Watched};
+use super::{Device, Event, JobId, JobInterruption as _, JobReport, Watched};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
-pub use analogue::{Analogue, SettingsDropped};
+pub use analogue::{Analogue, StaleSettings};
 
 use super::has_ended;
 use super::thread::Never;

@@ -9,8 +9,8 @@ use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
 
 use super::event_sender::EventSender;
 use super::live::{Live, Watches};
-use super::poll_scheduler::{Due, PollScheduler};
-use super::{Device, EndedEarly as _, Event, JobId, Ring, Session, Watched};
+use super::poll_scheduler::{DueRequest, PollScheduler};
+use super::{Device, Event, JobId, JobInterruption as _, Ring, Session, Watched};
 use crate::link::Cancel;
 
 /// Interval between attempts to send to a full channel.
@@ -130,12 +130,12 @@ impl<D: Device> Bench<D> {
 
     /// Takes a due sample or watched value. Returns false if a job or another request interrupted it, in which case it
     /// is still due.
-    fn take(&mut self, due: &Due<D::Watch>) -> bool {
+    fn take(&mut self, due: &DueRequest<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling().clone());
         let request = self.live.number();
         let taken = match due {
-            Due::Sample => self.session.sample(),
-            Due::Watch(what) => self.session.watch_value(what).map(|watched| match watched {
+            DueRequest::Sample => self.session.sample(),
+            DueRequest::Watch(what) => self.session.watch_value(what).map(|watched| match watched {
                 Watched::Sample(sample) => sample,
                 Watched::Refused(sample) => {
                     self.watches.refuse(what);

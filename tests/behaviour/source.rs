@@ -7,7 +7,7 @@ use encoder_studio::analysis::position_error::Samples;
 use encoder_studio::analysis::quality::Limits;
 use encoder_studio::analysis::signal_analysis::{Analysis, AnalysisError};
 use encoder_studio::analysis::wiring::{Wire, Wires};
-use encoder_studio::sim::sine_cosine::{References, Settings, Source};
+use encoder_studio::sim::sine_cosine::{ReferenceLevel, Settings, Source};
 
 /// Returns a second and a half of one revolution per second, 512 periods each, 50 kHz.
 fn recorded(settings: Settings) -> (Vec<f64>, Wires) {
@@ -83,7 +83,12 @@ fn each_injected_fault_is_diagnosed() {
         }),
         (
             "an open wire of a pair",
-            Settings { open_wire: Some(Wire::Refsin), references: References::Complement, terminated: false, ..base() },
+            Settings {
+                open_wire: Some(Wire::Refsin),
+                references: ReferenceLevel::Complement,
+                terminated: false,
+                ..base()
+            },
             |what| matches!(what, FindingKind::Half { .. }),
         ),
         ("no rotation", Settings { amplitude_v: 0.0, noise_v: 0.0, ..base() }, |what| {

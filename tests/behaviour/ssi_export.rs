@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use encoder_studio::devices::ssi::protocol::{
     Code, Coded, Descriptor, ErrorBit, Families, FrameReading, Layout, Meaning, Parity, Range, Repeat, Settings,
-    WideNumbers, c99, scl, structured_text, structured_text_32,
+    TooWideError, c99, scl, structured_text, structured_text_32,
 };
 
 use crate::support::python;
@@ -162,7 +162,7 @@ const REFERENCE: [(&str, u64, &str); 12] = [
     ("kh53", 0xFF_FFFE, "16777214 0 16777214 0"),
 ];
 
-fn decoders_of_32_bits(layout: &Layout) -> [(&'static str, Result<String, WideNumbers>); 2] {
+fn decoders_of_32_bits(layout: &Layout) -> [(&'static str, Result<String, TooWideError>); 2] {
     [("st", structured_text_32(layout, "title")), ("scl", scl(layout, "title"))]
 }
 
@@ -214,7 +214,7 @@ fn decoders_of_32_bits_decode_as_the_program_does() {
 fn what_32_bits_cannot_hold_is_refused() {
     let wide = Layout::new(Descriptor::plain(12, 22)).unwrap();
     let axis = family("atm60,steps=8000000,revolutions=4095/4");
-    for (layout, error) in [(wide, WideNumbers::Position { bits: 34 }), (axis, WideNumbers::RoundAxis)] {
+    for (layout, error) in [(wide, TooWideError::Position { bits: 34 }), (axis, TooWideError::RoundAxis)] {
         for (_, text) in decoders_of_32_bits(&layout) {
             assert_eq!(text, Err(error));
         }

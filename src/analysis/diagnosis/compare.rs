@@ -13,11 +13,11 @@ pub struct Changes {
     /// Findings that changed without becoming worse.
     pub changed: Vec<DiagnosisFinding>,
     /// Properties that cannot be compared.
-    pub untold: Vec<NotComparable>,
+    pub untold: Vec<ComparisonObstacle>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NotComparable {
+pub enum ComparisonObstacle {
     NoEllipseBefore,
     NoEllipseAfter,
     /// One of the captures has no spectrum, so that hum, interference and noise cannot be compared.
@@ -46,8 +46,8 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
             }
             disturbances(before, after, to_v, &mut changes);
         }
-        (None, _) => changes.untold.push(NotComparable::NoEllipseBefore),
-        (Some(_), None) => changes.untold.push(NotComparable::NoEllipseAfter),
+        (None, _) => changes.untold.push(ComparisonObstacle::NoEllipseBefore),
+        (Some(_), None) => changes.untold.push(ComparisonObstacle::NoEllipseAfter),
     }
     changes.worse.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     changes
@@ -56,7 +56,7 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
 /// Compares noise and spectral lines by magnitude.
 fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut Changes) {
     let (Some(earlier), Some(later)) = (&before.interference, &after.interference) else {
-        changes.untold.push(NotComparable::NoSpectrum);
+        changes.untold.push(ComparisonObstacle::NoSpectrum);
         return;
     };
     if let (Some(from_v), Some(to_v)) = (before.noise_v, after.noise_v)

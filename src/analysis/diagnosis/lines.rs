@@ -105,7 +105,7 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Spectru
         both.iter().zip(&is_signal).filter(|(_, signal)| !**signal).map(|(height, _)| *height).collect();
     let noise_v = noise(median(rest)?, length);
     let projector =
-        Projector { sine: &sine, cosine: &cosine, analysis, correction: analysis.ellipse.correction(), rate_hz };
+        FrequencyProbe { sine: &sine, cosine: &cosine, analysis, correction: analysis.ellipse.correction(), rate_hz };
     let spacing_hz = spectra.0.spacing_hz();
     let mut found: Vec<StrongLine> = candidates(&both, &is_signal, analysis.ellipse.amplitude_v)
         .into_iter()
@@ -243,7 +243,7 @@ impl Complex {
 }
 
 /// Examines a single frequency in both channels, and its radial component.
-struct Projector<'a> {
+struct FrequencyProbe<'a> {
     sine: &'a [f64],
     cosine: &'a [f64],
     analysis: &'a Analysis,
@@ -251,7 +251,7 @@ struct Projector<'a> {
     rate_hz: f64,
 }
 
-impl Projector<'_> {
+impl FrequencyProbe<'_> {
     /// Returns the line at a frequency, or `None` if it is not interference.
     fn line(&self, frequency_hz: f64) -> Option<StrongLine> {
         let [sine, cosine, along_sine, along_cosine] = self.at(frequency_hz);

@@ -11,7 +11,7 @@ mod lines;
 mod shape;
 mod trust;
 
-pub use compare::{Changes, NotComparable, compare};
+pub use compare::{Changes, ComparisonObstacle, compare};
 pub use finding::{DiagnosisFinding, FindingKind, Severity, Stuck};
 pub use lines::Interference;
 

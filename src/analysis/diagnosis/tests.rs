@@ -398,15 +398,18 @@ fn missing_comparisons_are_reported() {
     let mut timeless = ellipse(1.0, 0.0, 0.0);
     timeless.time.clear();
     let timeless = timeless.diagnosed();
-    assert_eq!(compare(&good, &timeless).untold, [NotComparable::NoSpectrum]);
-    assert_eq!(compare(&timeless, &good), Changes { untold: vec![NotComparable::NoSpectrum], ..Changes::default() });
+    assert_eq!(compare(&good, &timeless).untold, [ComparisonObstacle::NoSpectrum]);
+    assert_eq!(
+        compare(&timeless, &good),
+        Changes { untold: vec![ComparisonObstacle::NoSpectrum], ..Changes::default() }
+    );
     let dead = made(steady, |_, _, (sine, _)| (sine, 0.0)).diagnosed();
     let died = compare(&good, &dead);
-    assert_eq!(died.untold, [NotComparable::NoEllipseAfter]);
+    assert_eq!(died.untold, [ComparisonObstacle::NoEllipseAfter]);
     assert!(matches!(died.worse.as_slice(), [DiagnosisFinding { kind: FindingKind::Dead { .. }, .. }]), "{died:?}");
     // The offset of the first capture is not known.
     let mended = compare(&dead, &ellipse(1.0, 0.05, 0.0).diagnosed());
-    assert_eq!(mended, Changes { untold: vec![NotComparable::NoEllipseBefore], ..Changes::default() });
+    assert_eq!(mended, Changes { untold: vec![ComparisonObstacle::NoEllipseBefore], ..Changes::default() });
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::context::{FinderContext, Next};
 use super::form::AnyForm;
 use super::{Connect, ConnectAction, list_ports};
-use crate::app::payload::{Payload, WrongKind};
+use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::app::{FileQuestion, Text};
@@ -91,7 +91,7 @@ impl Studio {
         match fills_in {
             Ok(true) => self.edit(|connect| connect.typed = None),
             Ok(false) => {}
-            Err(WrongKind) => self.notify_wrong_kind(None),
+            Err(PayloadKindError) => self.notify_wrong_kind(None),
         }
     }
 

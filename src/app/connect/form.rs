@@ -10,7 +10,7 @@ use crossbeam_channel::Receiver;
 
 use super::context::FinderContext;
 use crate::app::Text;
-use crate::app::payload::{Payload, WrongKind};
+use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::services::Services;
 use crate::link::LinkUrl;
 
@@ -123,12 +123,12 @@ pub trait AnyForm {
     ///
     /// # Errors
     /// The entries belong to another kind of device.
-    fn edit(&mut self, entries: Payload) -> Result<(), WrongKind>;
+    fn edit(&mut self, entries: Payload) -> Result<(), PayloadKindError>;
     /// Passes an action to the finder; returns whether it has filled in the form.
     ///
     /// # Errors
     /// The action belongs to another kind of device.
-    fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, WrongKind>;
+    fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, PayloadKindError>;
     /// Continues after the user has confirmed that no other master is on the line.
     fn confirmed(&mut self, context: &mut FinderContext<'_>);
     /// Processes pending events of the finder.
@@ -190,12 +190,12 @@ impl<F: FormModel> AnyForm for Filled<F> {
         action.is::<<F::Finder as Finder>::Action>()
     }
 
-    fn edit(&mut self, entries: Payload) -> Result<(), WrongKind> {
+    fn edit(&mut self, entries: Payload) -> Result<(), PayloadKindError> {
         self.form = entries.open()?;
         Ok(())
     }
 
-    fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, WrongKind> {
+    fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, PayloadKindError> {
         let before = self.form.clone();
         self.finder.act(action.open()?, &mut self.form, context);
         Ok(self.form != before)

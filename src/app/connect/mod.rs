@@ -9,7 +9,7 @@ mod ports;
 pub(crate) mod target;
 
 pub use parameters::Typed;
-pub use ports::{Offer, offered_ports};
+pub use ports::{PortEntry, offered_ports};
 pub use target::is_missing;
 
 use std::any::Any;
@@ -59,7 +59,7 @@ pub struct Connect {
     /// The typed link until the form is edited, or `None` if the link is that of the form.
     pub typed: Option<String>,
     /// Serial ports of this computer, or `None` while they are being listed.
-    pub ports: Option<Result<Vec<Offer>, Text>>,
+    pub ports: Option<Result<Vec<PortEntry>, Text>>,
     pub problem: Option<Text>,
 }
 

@@ -3,7 +3,7 @@
 use crate::link::{LinkUrl, PortInfo, Scheme};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Offer {
+pub struct PortEntry {
     /// Path or name, as used in a link.
     pub path: String,
     /// Description of the adapter by the system; may be empty.
@@ -16,14 +16,14 @@ pub struct Offer {
 
 /// Returns ports used before, the latest first, then USB adapters, then the rest. `links` are the links used, the latest
 /// first; `exists` checks a path that the system does not list.
-pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str) -> bool) -> Vec<Offer> {
-    let mut offers: Vec<Offer> = Vec::new();
+pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str) -> bool) -> Vec<PortEntry> {
+    let mut offers: Vec<PortEntry> = Vec::new();
     for url in links.iter().filter_map(|link| link.parse::<LinkUrl>().ok()) {
         if url.scheme == Scheme::Serial && offers.iter().all(|offer| offer.path != url.target) {
             let known = ports.iter().find(|port| port.path == url.target);
             let description = known.map(|port| port.description.clone()).unwrap_or_default();
             let listed = known.is_some() || exists(&url.target);
-            offers.push(Offer { path: url.target, description, used: true, listed });
+            offers.push(PortEntry { path: url.target, description, used: true, listed });
         }
     }
     let (usb, others): (Vec<&PortInfo>, Vec<&PortInfo>) =
@@ -31,7 +31,7 @@ pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str)
     for port in usb.into_iter().chain(others) {
         if offers.iter().all(|offer| offer.path != port.path) {
             let (path, description) = (port.path.clone(), port.description.clone());
-            offers.push(Offer { path, description, used: false, listed: true });
+            offers.push(PortEntry { path, description, used: false, listed: true });
         }
     }
     offers

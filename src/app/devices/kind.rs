@@ -10,7 +10,7 @@ use super::AnyDevice;
 use super::model::DeviceModel;
 use crate::app::Text;
 use crate::app::connect::form::{AnyForm, Filled, Finder, FormModel};
-use crate::app::payload::{Payload, WrongKind};
+use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::services::Services;
 use crate::app::session::{Kind, ProfileFile, Session};
 use crate::app::studio::SessionId;
@@ -127,7 +127,7 @@ pub trait DeviceKind: Sync {
         form: Option<&mut dyn AnyForm>,
         done: Payload,
         services: &mut Services,
-    ) -> Result<(), WrongKind>;
+    ) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
     fn at_link(&self, id: SessionId, url: LinkUrl, services: &mut Services) -> Box<AnyDevice>;
     #[doc(hidden)]
@@ -190,7 +190,7 @@ impl<M: DeviceType> DeviceKind for KindOf<M> {
         form: Option<&mut dyn AnyForm>,
         done: Payload,
         services: &mut Services,
-    ) -> Result<(), WrongKind> {
+    ) -> Result<(), PayloadKindError> {
         let finder = form.and_then(|form| form.finder_mut().downcast_mut());
         <M::Form as FormModel>::Finder::done(finder, done.open()?, services);
         Ok(())

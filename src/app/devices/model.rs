@@ -13,7 +13,7 @@ use crate::app::services::{Environment, Services};
 use crate::app::session::{DeviceHistory, Drafted, HasSession, Kind, Saved, SessionEvents, WithMemory};
 use crate::app::studio::SessionId;
 use crate::app::{
-    AnyDevice, DeviceAction, DeviceCommand, EditStep, Recording, RemembersDrives, Severity, SineCosineSource, Tab, Text,
+    AnyDevice, DeviceAction, DeviceCommand, DriveMemory, EditStep, Recording, Severity, SineCosineSource, Tab, Text,
 };
 use crate::link::LinkUrl;
 use crate::profile::{Body, Document, ProfileError};
@@ -209,7 +209,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     }
 
     /// Returns the interface for stored data about drives, or `None` for a kind without drives.
-    fn remembers_drives(&mut self) -> Option<&mut dyn RemembersDrives> {
+    fn remembers_drives(&mut self) -> Option<&mut dyn DriveMemory> {
         None
     }
 }

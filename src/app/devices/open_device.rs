@@ -10,12 +10,12 @@ use crossbeam_channel::Receiver;
 
 use super::command::DeviceCommand;
 use super::model::{ActContext, DeviceMemory, DeviceModel, MotionControl};
-use crate::app::action::{AnyOpened, Attempt, Done, OpenFailed};
-use crate::app::live_session::Progressing;
+use crate::app::action::{Attempt, Done, OpenFailure, OpenedSession};
+use crate::app::live_session::JobProgress;
 use crate::app::recorder::Recorder;
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::{DraftDone, Drafted, Kind, ProfileFile, Saving, SessionEvents, SessionState, Source};
-use crate::app::{Payload, RemembersDrives, SineCosineSource, Tab, Text, WrongKind};
+use crate::app::session::{DraftOutcome, Drafted, Kind, ProfileFile, Saving, SessionEvents, SessionState, Source};
+use crate::app::{DriveMemory, Payload, PayloadKindError, SineCosineSource, Tab, Text};
 use crate::link::LinkUrl;
 use crate::profile::{Body, Document, ProfileError};
 use crate::store::FileError;
@@ -52,7 +52,7 @@ pub trait OpenDevice: Any {
     /// Returns whether positions can be streamed, at thousands of samples per second.
     fn streams(&self) -> bool;
     /// Returns the running job, if any.
-    fn running(&self) -> Option<Progressing>;
+    fn running(&self) -> Option<JobProgress>;
     /// Returns whether edits have not been written.
     fn is_dirty(&self) -> bool;
     /// Returns the number of edits that have not been written.
@@ -88,19 +88,19 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl>;
     #[doc(hidden)]
-    fn remembers_drives(&mut self) -> Option<&mut dyn RemembersDrives>;
+    fn remembers_drives(&mut self) -> Option<&mut dyn DriveMemory>;
     #[doc(hidden)]
     fn open(&self, url: LinkUrl, attempt: u32, earlier: Option<Receiver<()>>, services: &mut Services) -> Receiver<()>;
     #[doc(hidden)]
-    fn open_failed(&self, failed: &OpenFailed) -> Text;
+    fn open_failed(&self, failed: &OpenFailure) -> Text;
     #[doc(hidden)]
-    fn connect(&mut self, opened: Box<dyn AnyOpened>, services: &mut Services) -> Result<(), WrongKind>;
+    fn connect(&mut self, opened: Box<dyn OpenedSession>, services: &mut Services) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
-    fn act(&mut self, action: Payload, context: &mut ActContext<'_>) -> Result<(), WrongKind>;
+    fn act(&mut self, action: Payload, context: &mut ActContext<'_>) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
     fn obey(&mut self, command: DeviceCommand, services: &mut Services);
     #[doc(hidden)]
-    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), WrongKind>;
+    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError>;
     #[doc(hidden)]
     fn wanted_body(&self) -> Option<Body>;
     #[doc(hidden)]
@@ -126,7 +126,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn leave_draft(&mut self, services: &mut Services);
     #[doc(hidden)]
-    fn take_draft(&mut self, done: DraftDone, services: &mut Services);
+    fn take_draft(&mut self, done: DraftOutcome, services: &mut Services);
     #[doc(hidden)]
     fn take_document(&mut self, file: ProfileFile, document: Document);
     #[doc(hidden)]
@@ -188,7 +188,7 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::streams(self)
     }
 
-    fn running(&self) -> Option<Progressing> {
+    fn running(&self) -> Option<JobProgress> {
         self.session().line().and_then(|line| line.job_progress())
     }
 
@@ -260,11 +260,11 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::motion_mut(self)
     }
 
-    fn remembers_drives(&mut self) -> Option<&mut dyn RemembersDrives> {
+    fn remembers_drives(&mut self) -> Option<&mut dyn DriveMemory> {
         DeviceModel::remembers_drives(self)
     }
 
-    fn open_failed(&self, failed: &OpenFailed) -> Text {
+    fn open_failed(&self, failed: &OpenFailure) -> Text {
         M::Device::open_failed(failed)
     }
 
@@ -272,18 +272,18 @@ impl<M: DeviceModel> OpenDevice for M {
         let session = self.session().id;
         let prepare = DeviceModel::prepare(self, &services.world);
         services.open_task::<M::Device>(url, earlier, prepare, move |result| {
-            let result = result.map(|opened| opened as Box<dyn AnyOpened>);
+            let result = result.map(|opened| opened as Box<dyn OpenedSession>);
             Done::Opened(Attempt { session, attempt, result })
         })
     }
 
-    fn connect(&mut self, opened: Box<dyn AnyOpened>, services: &mut Services) -> Result<(), WrongKind> {
-        let opened = opened.into_any().downcast().map_err(|_| WrongKind)?;
+    fn connect(&mut self, opened: Box<dyn OpenedSession>, services: &mut Services) -> Result<(), PayloadKindError> {
+        let opened = opened.into_any().downcast().map_err(|_| PayloadKindError)?;
         DeviceModel::connect(self, *opened, services);
         Ok(())
     }
 
-    fn act(&mut self, action: Payload, context: &mut ActContext<'_>) -> Result<(), WrongKind> {
+    fn act(&mut self, action: Payload, context: &mut ActContext<'_>) -> Result<(), PayloadKindError> {
         DeviceModel::act(self, action.open()?, context);
         Ok(())
     }
@@ -292,7 +292,7 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::command(self, command, services);
     }
 
-    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), WrongKind> {
+    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError> {
         DeviceModel::done(self, done.open()?, services);
         Ok(())
     }
@@ -346,7 +346,7 @@ impl<M: DeviceModel> OpenDevice for M {
         Drafted::leave_draft(self, services);
     }
 
-    fn take_draft(&mut self, done: DraftDone, services: &mut Services) {
+    fn take_draft(&mut self, done: DraftOutcome, services: &mut Services) {
         Drafted::take_draft(self, done, services);
     }
 

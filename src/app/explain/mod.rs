@@ -13,7 +13,7 @@ pub(crate) use detail::tests::check as in_both_languages;
 pub use detail::{document, logbook_problem, recording, setting, url};
 pub use expected::expected;
 
-use super::action::OpenFailed;
+use super::action::OpenFailure;
 use super::{Kinds, Text};
 use crate::link::{LinkError, LinkErrorKind};
 use crate::profile::{Document, ProfileError, SCHEMA};
@@ -59,11 +59,11 @@ pub fn open(error: &OpenError) -> Text {
 
 /// Explains why a link could not be opened, including that no thread could be started; `open` supplies the explanation
 /// of the kind.
-pub fn open_failed(failed: &OpenFailed, open: impl Fn(&OpenError) -> Text) -> Text {
+pub fn open_failed(failed: &OpenFailure, open: impl Fn(&OpenError) -> Text) -> Text {
     match failed {
-        OpenFailed::Link(error) => open(error),
-        OpenFailed::Thread(why) => Text::new("session.no_thread").with("why", why),
-        OpenFailed::Held => Text::new("session.held"),
+        OpenFailure::Link(error) => open(error),
+        OpenFailure::Thread(why) => Text::new("session.no_thread").with("why", why),
+        OpenFailure::Held => Text::new("session.held"),
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::file;
 use crate::analysis::capture::CaptureError;
-use crate::analysis::diagnosis::{DiagnosisFinding, FindingKind, NotComparable, Stuck};
+use crate::analysis::diagnosis::{ComparisonObstacle, DiagnosisFinding, FindingKind, Stuck};
 use crate::analysis::ellipse::{Channel, FitError, LEAST_POINTS};
 use crate::analysis::nonlinearity::NonlinearityError;
 use crate::analysis::quality::{QualityFinding as Parameter, Verdict};
@@ -192,11 +192,11 @@ pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
     }
 }
 
-pub fn untold(untold: NotComparable) -> Text {
+pub fn untold(untold: ComparisonObstacle) -> Text {
     Text::new(match untold {
-        NotComparable::NoEllipseBefore => "compare.no_ellipse_before",
-        NotComparable::NoEllipseAfter => "compare.no_ellipse_after",
-        NotComparable::NoSpectrum => "compare.no_spectrum",
+        ComparisonObstacle::NoEllipseBefore => "compare.no_ellipse_before",
+        ComparisonObstacle::NoEllipseAfter => "compare.no_ellipse_after",
+        ComparisonObstacle::NoSpectrum => "compare.no_spectrum",
     })
 }
 

@@ -46,7 +46,7 @@ impl ExportNumber {
 }
 
 #[derive(Debug)]
-pub struct Exported {
+pub struct ExportResult {
     pub(in crate::app) number: ExportNumber,
     pub path: PathBuf,
     /// Number of rows written, or `None` if the export was cancelled and there is no file.
@@ -269,7 +269,7 @@ fn heading(line: &Series) -> String {
 
 impl Writing {
     /// Writes until all rows have arrived; `wake` tells that more can be passed on.
-    pub(in crate::app) fn run(self, wake: &dyn Fn()) -> Exported {
+    pub(in crate::app) fn run(self, wake: &dyn Fn()) -> ExportResult {
         let mut given_up = false;
         let rows = write_with(&self.path, |file| {
             given_up = !self.write(file, wake)?;
@@ -281,7 +281,7 @@ impl Writing {
             Err(_) if given_up => Ok(None),
             Err(error) => Err(error),
         };
-        Exported { number: self.number, path: self.path, rows }
+        ExportResult { number: self.number, path: self.path, rows }
     }
 
     /// Writes the table; returns `false` if it was cancelled.

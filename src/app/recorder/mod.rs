@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 pub use cursors::{Cursor, Measured};
-pub use export::{Export, Exported};
+pub use export::{Export, ExportResult};
 pub use line::{LineId, Scale, Series};
 pub use trigger::{Trigger, TriggerState, When};
 pub use view::TimeWindow;

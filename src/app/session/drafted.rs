@@ -4,7 +4,7 @@
 #![warn(missing_docs)]
 
 use super::drafts::DRAFT_BACK;
-use super::{DraftDone, DraftEdits, DraftKey, HasSession, Kind, Phase, ProfileFile, Saving, Source};
+use super::{DraftEdits, DraftKey, DraftOutcome, HasSession, Kind, Phase, ProfileFile, Saving, Source};
 use crate::app::services::Services;
 use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::profile::Document;
@@ -71,7 +71,7 @@ pub trait Drafted: HasSession {
     }
 
     /// Takes the result of a task.
-    fn take_draft(&mut self, done: DraftDone, services: &mut Services) {
+    fn take_draft(&mut self, done: DraftOutcome, services: &mut Services) {
         let (key, name, dirty) = (self.draft_key(), self.session().name(), !self.edited().is_nothing());
         if let Some(edits) = self.session_mut().drafting.take(done, key.as_ref(), dirty, &name, services) {
             self.take_edits(edits);

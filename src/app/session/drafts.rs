@@ -39,7 +39,7 @@ impl DraftKey {
     }
 }
 
-pub enum DraftDone {
+pub enum DraftOutcome {
     Looked {
         key: DraftKey,
         /// Claim to store the draft, or `None` if the draft belongs to another window or session.
@@ -63,7 +63,7 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
 }
 
 #[derive(Debug)]
-pub(crate) struct Drafting<E> {
+pub(crate) struct ActiveDraft<E> {
     session: SessionId,
     /// The edits last passed on for storing.
     kept: E,
@@ -89,10 +89,10 @@ pub(in crate::app) fn file_key(path: &Path) -> String {
     format!("{hash:016x}")
 }
 
-impl<E: DraftEdits> Drafting<E> {
+impl<E: DraftEdits> ActiveDraft<E> {
     /// Creates the drafting of a session, before any draft was looked for.
     pub(in crate::app) fn new(session: SessionId) -> Self {
-        Drafting {
+        ActiveDraft {
             session,
             kept: E::default(),
             busy: false,
@@ -133,7 +133,7 @@ impl<E: DraftEdits> Drafting<E> {
                 Ok(None) => Ok(None),
                 _ => load(&drafts, &key),
             };
-            Action::Done(Done::Draft(session, DraftDone::Looked { key, claim, result }))
+            Action::Done(Done::Draft(session, DraftOutcome::Looked { key, claim, result }))
         });
     }
 
@@ -141,16 +141,16 @@ impl<E: DraftEdits> Drafting<E> {
     /// is outdated; edits made in the meantime (`dirty`) take precedence.
     pub(in crate::app) fn take(
         &mut self,
-        done: DraftDone,
+        done: DraftOutcome,
         own: Option<&DraftKey>,
         dirty: bool,
         name: &str,
         services: &mut Services,
     ) -> Option<E> {
         let (claim, result) = match done {
-            DraftDone::Looked { key, claim, result } if own == Some(&key) => (claim, result),
-            DraftDone::Looked { .. } => return None,
-            DraftDone::Kept { key, result } => {
+            DraftOutcome::Looked { key, claim, result } if own == Some(&key) => (claim, result),
+            DraftOutcome::Looked { .. } => return None,
+            DraftOutcome::Kept { key, result } => {
                 self.finish_draft_store(own == Some(&key), result, name, services);
                 return None;
             }
@@ -250,7 +250,7 @@ impl<E: DraftEdits> Drafting<E> {
 
     /// Leaves the edits of the previous device on disk because another device, or none, is being opened.
     pub(in crate::app) fn leave(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
-        let before = std::mem::replace(self, Drafting::new(self.session));
+        let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key
             && before.is_loaded
             && edits != before.kept
@@ -261,7 +261,7 @@ impl<E: DraftEdits> Drafting<E> {
 
     /// Removes the draft, because the edits are now in another file.
     pub(in crate::app) fn forget(&mut self, key: Option<DraftKey>, services: &mut Services) {
-        let before = std::mem::replace(self, Drafting::new(self.session));
+        let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key
             && before.is_loaded
         {
@@ -287,6 +287,6 @@ fn store_edits<E: DraftEdits>(
             drafts.save(&key.kind, &key.name, &ron::to_string(&edits).unwrap_or_default())
         };
         drop(claim);
-        Action::Done(Done::Draft(session, DraftDone::Kept { key, result }))
+        Action::Done(Done::Draft(session, DraftOutcome::Kept { key, result }))
     });
 }

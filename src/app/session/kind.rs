@@ -3,7 +3,7 @@
 
 #![warn(missing_docs)]
 
-use crate::app::action::OpenFailed;
+use crate::app::action::OpenFailure;
 use crate::app::services::JobEnd;
 use crate::app::session::{DraftEdits, first};
 use crate::app::{Severity, Text, explain};
@@ -43,7 +43,7 @@ pub trait Kind: Device + Sized {
     }
 
     /// Explains why a link could not be opened, including that no thread could be started.
-    fn open_failed(failed: &OpenFailed) -> Text {
+    fn open_failed(failed: &OpenFailure) -> Text {
         explain::open_failed(failed, Self::open_error)
     }
 

@@ -4,12 +4,12 @@
 #![warn(missing_docs)]
 
 use super::{Drafted, EarlyEnd, HasSession, Kind, SessionEvents};
-use crate::app::review::{self, OpWords, Permit, Review, ReviewSheet, ReviewState, Reviewed, written_texts};
+use crate::app::review::{self, OperationTexts, Permit, Review, ReviewSheet, ReviewState, Reviewed, written_texts};
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Consent, PlanId};
 use crate::worker::commit::Planned as _;
-use crate::worker::{self, Device, EndedEarly as _};
+use crate::worker::{self, Device, JobInterruption as _};
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 type Error<T> = <<T as HasSession>::Device as Device>::Error;
@@ -34,7 +34,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     }
 
     /// Describes an operation of a plan.
-    fn op(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OpWords {
+    fn op(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OperationTexts {
         Self::Device::op(prepared, op)
     }
 

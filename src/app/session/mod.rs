@@ -17,8 +17,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 pub use drafted::Drafted;
-pub use drafts::{DraftDone, DraftEdits, DraftKey};
-pub(in crate::app) use drafts::{Drafting, file_key};
+pub(in crate::app) use drafts::{ActiveDraft, file_key};
+pub use drafts::{DraftEdits, DraftKey, DraftOutcome};
 pub use has_session::HasSession;
 pub use kind::{JobEnding, Kind};
 pub use memory::{ApprovedPlanOf, WithMemory};
@@ -91,7 +91,7 @@ pub(crate) struct Opening {
 pub struct Session<D: Kind> {
     state: SessionState,
     pub(crate) line: Option<LiveSession<D>>,
-    pub(crate) drafting: Drafting<D::Edits>,
+    pub(crate) drafting: ActiveDraft<D::Edits>,
     pub review: Option<D::Review>,
 }
 
@@ -128,7 +128,12 @@ impl<D: Kind> Session<D> {
     }
 
     fn new(id: SessionId, source: Source, phase: Phase) -> Self {
-        Session { state: SessionState::new(id, source, phase), line: None, drafting: Drafting::new(id), review: None }
+        Session {
+            state: SessionState::new(id, source, phase),
+            line: None,
+            drafting: ActiveDraft::new(id),
+            review: None,
+        }
     }
 
     pub fn line(&self) -> Option<&LiveSession<D>> {

@@ -9,7 +9,7 @@ use crate::app::services::{JobEnd, Services};
 use crate::app::trace::Explained;
 use crate::app::{Severity, Text, explain};
 use crate::link::TraceEntry;
-use crate::worker::{Device, EndedEarly as _, Event, JobId};
+use crate::worker::{Device, Event, JobId, JobInterruption as _};
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 type Output<T> = <<T as HasSession>::Device as Device>::Output;

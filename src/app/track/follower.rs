@@ -2,7 +2,7 @@
 //! completed an unnoticed turn.
 
 use super::Meaning;
-use crate::analysis::{Motion, Rates, Time, Unwrap, Unwrapped};
+use crate::analysis::{Motion, Rates, Time, Unwrap, UnwrappedPosition};
 
 /// Nanoseconds over which speed is averaged.
 const WINDOW: i64 = 250_000_000;
@@ -42,7 +42,7 @@ impl Follower {
     }
 
     /// Unwraps the next position and calculates its rates, or returns `None` if it is outside the range.
-    pub(super) fn next(&mut self, time: Time, word: i64) -> Option<(Unwrapped, Rates)> {
+    pub(super) fn next(&mut self, time: Time, word: i64) -> Option<(UnwrappedPosition, Rates)> {
         let next = self.unwrap.next(word)?;
         if next.broken {
             self.motion.reset();

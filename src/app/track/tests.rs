@@ -207,7 +207,7 @@ fn another_unit_of_the_same_steps_uses_the_same_lines() {
 #[test]
 fn a_value_no_longer_watched_keeps_its_samples() {
     let mut track = Track::<Nothing>::default();
-    let watching = |second| Watching {
+    let watching = |second| WatchedValue {
         at: Moment::after_start(Duration::from_secs(second)),
         value: Some(Value::Whole(second as i64)),
         is_warned: false,

@@ -32,7 +32,7 @@ impl Watchable for Infallible {
 
 /// A watched value, if there is one at the moment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Watching {
+pub struct WatchedValue {
     pub at: Moment,
     pub value: Option<Value>,
     pub is_warned: bool,

@@ -15,10 +15,10 @@ const AFTER_SHARED: usize = 200;
 pub(in crate::cli) struct Arguments {
     pub(in crate::cli) common: Common,
     pub(in crate::cli) profile: Option<PathBuf>,
-    pub(in crate::cli) command: Option<Called>,
+    pub(in crate::cli) command: Option<ParsedCommand>,
 }
 
-pub(in crate::cli) enum Called {
+pub(in crate::cli) enum ParsedCommand {
     Shared(Command),
     Own(&'static dyn OwnCommand, ArgMatches),
 }
@@ -38,11 +38,11 @@ fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Err
     let common = Common { commands, ..common };
     let own = matches.subcommand().and_then(|(name, own)| {
         let command = commands.own().find(|command| command.command().get_name() == name)?;
-        Some(Called::Own(command, own.clone()))
+        Some(ParsedCommand::Own(command, own.clone()))
     });
     let command = match own {
         Some(own) => Some(own),
-        None if matches.subcommand_name().is_some() => Some(Called::Shared(Command::from_arg_matches(matches)?)),
+        None if matches.subcommand_name().is_some() => Some(ParsedCommand::Shared(Command::from_arg_matches(matches)?)),
         None => None,
     };
     Ok(Arguments { common, profile, command })

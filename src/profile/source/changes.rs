@@ -64,7 +64,7 @@ impl fmt::Display for Step {
 /// Returns the changes that turn `left` into `right`, or `None` if either cannot be parsed.
 pub(in crate::profile) fn changes(left: &str, right: &str) -> Option<Vec<Change>> {
     let (from, to) = (read(left)?, read(right)?);
-    let mut walk = Walk { left, right, path: Vec::new(), found: Vec::new() };
+    let mut walk = TreeWalk { left, right, path: Vec::new(), found: Vec::new() };
     walk.both(&from, &to, (None, None), &[]);
     Some(walk.found)
 }
@@ -107,14 +107,14 @@ fn plain(value: &str) -> String {
     ron::from_str::<Value>(value).ok().and_then(|value| ron::to_string(&value).ok()).unwrap_or_else(|| value.to_owned())
 }
 
-struct Walk<'t> {
+struct TreeWalk<'t> {
     left: &'t str,
     right: &'t str,
     path: Vec<Step>,
     found: Vec<Change>,
 }
 
-impl Walk<'_> {
+impl TreeWalk<'_> {
     fn both(&mut self, from: &Node, to: &Node, parts: (Option<&Part>, Option<&Part>), behind: &[Step]) {
         let (own, other) = (steps(self.left, from), steps(self.right, to));
         let same_kind = match (&from.kind, &to.kind) {

@@ -15,7 +15,7 @@ use crate::analysis::quality::Family;
 use crate::app::number::MOST_PERIODS;
 use crate::app::recorder::Recorder;
 use crate::app::services::Services;
-use crate::app::{Payload, Severity, SineCosineSource, Text, Tool, ToolContext, WrongKind, explain, recorder};
+use crate::app::{Payload, PayloadKindError, Severity, SineCosineSource, Text, Tool, ToolContext, explain, recorder};
 use crate::link::LinkUrl;
 use crate::signals::state::TEXTS;
 use crate::store::ReadCaptureError;
@@ -58,7 +58,7 @@ impl Default for Signals {
 }
 
 impl Tool for Signals {
-    fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), WrongKind> {
+    fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), PayloadKindError> {
         match action.open()? {
             SignalsAction::Source(SourceAction::StartAdapter) => self.begin_with_adapter(context),
             action => Signals::act(self, action, context.services()),
@@ -66,7 +66,7 @@ impl Tool for Signals {
         Ok(())
     }
 
-    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), WrongKind> {
+    fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError> {
         Signals::done(self, done.open()?, services);
         Ok(())
     }

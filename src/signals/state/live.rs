@@ -8,7 +8,7 @@ use crate::signals::state::TEXTS;
 use crossbeam_channel::Receiver;
 
 use super::feed::{AdapterLink, Feed};
-use super::recent::{MOST, Recent};
+use super::recent::{MOST, RecentSamples};
 use super::{Done, Failed, Measurement, Origin, Scope, Signals, task_guard};
 use crate::analysis::Time;
 use crate::analysis::quality::Family;
@@ -18,7 +18,7 @@ use crate::app::shutdown::same_wire;
 use crate::app::{Severity, Text, explain};
 use crate::buses::bridge::procedures::Streaming;
 use crate::link::LinkUrl;
-use crate::sim::sine_cosine::{Quantity, References, Settings};
+use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum SourceAction {
@@ -39,7 +39,7 @@ pub enum SourceAction {
     SetOpenWire(Option<Wire>),
     /// Sets whether a resistor connects the wires of each pair.
     SetTerminated(bool),
-    SetReferences(References),
+    SetReferences(ReferenceLevel),
     /// Measures the newest samples of the given length in milliseconds, 10 to 10 000.
     SetWindow(u32),
     Reset,
@@ -74,7 +74,7 @@ pub struct Source {
 
 struct Live {
     feed: Feed,
-    recent: Recent,
+    recent: RecentSamples,
     held: bool,
     measuring: bool,
     /// Time of the last sample in the latest measurement.
@@ -272,7 +272,8 @@ impl Source {
         self.kind = kind;
         self.runs = self.runs.wrapping_add(1);
         self.lost = 0;
-        self.live = Some(Live { feed, recent: Recent::default(), held: false, measuring: false, measured: None });
+        self.live =
+            Some(Live { feed, recent: RecentSamples::default(), held: false, measuring: false, measured: None });
     }
 }
 

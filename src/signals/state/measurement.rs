@@ -5,7 +5,7 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{AbsoluteOffset, Example, NoOffset, Nonlinearities, Spectra, reference_comparison};
+use super::{AbsoluteOffset, Example, Nonlinearities, OffsetError, Spectra, reference_comparison};
 use crate::analysis::capture::Capture;
 use crate::analysis::diagnosis::{Diagnosis, Record, diagnose};
 use crate::analysis::ellipse::Correction;
@@ -82,7 +82,7 @@ pub struct Results {
     pub nonlinearities: Option<Result<Nonlinearities, RevolutionError>>,
     /// Lead of the absolute position over the analogue position, or why it cannot be determined; `None` without an
     /// absolute position.
-    pub absolute_offset: Option<Result<AbsoluteOffset, NoOffset>>,
+    pub absolute_offset: Option<Result<AbsoluteOffset, OffsetError>>,
     /// Image of all samples, sine over cosine; `None` if the values are too large for an image.
     pub raw: Option<Density>,
     /// Image of all samples after the ellipse correction; `None` without an ellipse.

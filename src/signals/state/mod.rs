@@ -49,7 +49,7 @@ pub use live::{Source, SourceAction, SourceKind, VIRTUAL_ADAPTER};
 pub use measurement::{Judge, Measurement, Origin, Results, TableSource};
 pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
 pub use reading::{Example, Reading};
-pub use reference_comparison::{AbsoluteOffset, NoOffset, Nonlinearities, nonlinearity_quantities};
+pub use reference_comparison::{AbsoluteOffset, Nonlinearities, OffsetError, nonlinearity_quantities};
 pub use scope::{Scope, TimeAxisError};
 pub use spectra::{ChannelSpectrum, Spectra, dbv};
 pub use table::{Column, Table};

@@ -12,7 +12,7 @@ use crate::worker::stream::Batch;
 
 /// The newest samples, without gaps.
 #[derive(Default)]
-pub(super) struct Recent {
+pub(super) struct RecentSamples {
     chunks: VecDeque<Arc<Channels>>,
     count: usize,
     newest: Option<Time>,
@@ -31,7 +31,7 @@ pub(super) struct Window {
 pub(super) const MOST: usize = 500_000;
 const EVERY_NS: i64 = 250_000_000;
 
-impl Recent {
+impl RecentSamples {
     pub(super) fn add(&mut self, batch: Batch<Channels>) {
         if batch.lost > 0 || batch.period_ns != self.period_ns {
             (self.chunks, self.count) = (VecDeque::new(), 0);
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn signals_without_wire_samples_are_measured() {
-        let mut recent = Recent::default();
+        let mut recent = RecentSamples::default();
         let pair = Pair { sine_v: vec![1.0, 2.0, 3.0], cosine_v: vec![4.0, 5.0, 6.0] };
         recent.add(Batch { first: 0, time: Time::ORIGIN, period_ns: 1_000_000, lost: 0, samples: pair.into() });
         let window = recent.window(2).unwrap().capture();
@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn a_window_has_the_newest_samples_without_a_gap() {
-        let mut recent = Recent::default();
+        let mut recent = RecentSamples::default();
         assert!(recent.window(10).is_none() && !recent.is_due(None));
         recent.add(batch(0, 5, 1_000_000, 0));
         recent.add(batch(5, 6, 1_000_000, 0));
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn chunks_are_shared_and_limited_to_the_window() {
-        let mut recent = Recent::default();
+        let mut recent = RecentSamples::default();
         for at in 0..70 {
             recent.add(batch(at * 10_000, 10_000, 1_000, 0));
         }
@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn signals_are_measured_four_times_a_second() {
-        let mut recent = Recent::default();
+        let mut recent = RecentSamples::default();
         recent.add(batch(0, 100, 1_000_000, 0));
         assert!(recent.is_due(None));
         let measured = recent.newest;

@@ -46,16 +46,16 @@ pub struct AbsoluteOffset {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoOffset {
+pub enum OffsetError {
     NoSignal,
     Scattered,
 }
 
-impl NoOffset {
+impl OffsetError {
     pub fn text(self) -> Text {
         TEXTS.text(match self {
-            NoOffset::NoSignal => "synchronise.no_signal",
-            NoOffset::Scattered => "synchronise.scattered",
+            OffsetError::NoSignal => "synchronise.no_signal",
+            OffsetError::Scattered => "synchronise.scattered",
         })
     }
 }
@@ -116,7 +116,7 @@ pub fn nonlinearity_quantities(nonlinearities: &Nonlinearities) -> Vec<Quantity>
 pub(super) fn absolute_offset(
     capture: &Capture,
     analysis: Option<&Analysis>,
-) -> Option<Result<AbsoluteOffset, NoOffset>> {
+) -> Option<Result<AbsoluteOffset, OffsetError>> {
     let absolute = capture.absolute.as_ref()?;
     let left_out = analysis.and_then(|own| own.outliers.as_ref()).map_or(&[][..], |outliers| &outliers.stretches);
     let count = absolute.len().min(capture.sine_v.len()).min(capture.cosine_v.len());
@@ -126,9 +126,9 @@ pub(super) fn absolute_offset(
     };
     let samples = || kept(count, left_out).flatten().filter_map(sample);
     if samples().next().is_none() {
-        return Some(Err(NoOffset::NoSignal));
+        return Some(Err(OffsetError::NoSignal));
     }
-    let Some(offset_steps) = measure_offset(samples()) else { return Some(Err(NoOffset::Scattered)) };
+    let Some(offset_steps) = measure_offset(samples()) else { return Some(Err(OffsetError::Scattered)) };
     let off = |(steps, phase): (u64, Phase)| {
         let periods = (steps as f64 - offset_steps) / STEPS as f64 - phase.periods();
         (periods - periods.round()).abs() * STEPS as f64
@@ -206,10 +206,10 @@ mod tests {
         assert_eq!(told.samples, 20_000);
         let backwards = capture.absolute.as_ref().unwrap().iter().map(|steps| -steps).collect();
         capture.absolute = Some(backwards);
-        assert_eq!(absolute_offset(&capture, None), Some(Err(NoOffset::Scattered)));
+        assert_eq!(absolute_offset(&capture, None), Some(Err(OffsetError::Scattered)));
         capture.sine_v.fill(0.0);
         capture.cosine_v.fill(0.0);
-        assert_eq!(absolute_offset(&capture, None), Some(Err(NoOffset::NoSignal)));
+        assert_eq!(absolute_offset(&capture, None), Some(Err(OffsetError::NoSignal)));
         capture.absolute = None;
         assert_eq!(absolute_offset(&capture, None), None);
     }

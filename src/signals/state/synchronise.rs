@@ -4,7 +4,7 @@
 
 use crate::analysis::arctan::{Phase, exact};
 use crate::analysis::quality::{Limits, Verdict};
-use crate::analysis::synchronise::{STEPS, Synchronised, Synchroniser, Unsynchronisable, measure_offset};
+use crate::analysis::synchronise::{AmbiguousPeriod, STEPS, SynchronisedPosition, Synchroniser, measure_offset};
 use crate::app::number::{MOST_PERIODS, number_or_hex, whole, within};
 use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
 use crate::signals::state::TEXTS;
@@ -71,7 +71,7 @@ pub struct Synchronisation {
     /// Lead over the analogue position within the period, in 1/32 period; offset and half step affect only the result.
     pub difference_steps: f64,
     /// The fine position, or why it cannot be determined.
-    pub result: Result<Synchronised, Unsynchronisable>,
+    pub result: Result<SynchronisedPosition, AmbiguousPeriod>,
     pub periods: u32,
 }
 
@@ -182,7 +182,7 @@ impl Synchronisation {
 
     pub fn words(&self) -> (Verdict, Text) {
         match self.result {
-            Err(Unsynchronisable) => (Verdict::Fault, TEXTS.text("synchronise.impossible")),
+            Err(AmbiguousPeriod) => (Verdict::Fault, TEXTS.text("synchronise.impossible")),
             Ok(fine) => {
                 let id = match fine.verdict {
                     Verdict::Ok => "synchronise.good",
@@ -309,7 +309,7 @@ mod tests {
             assert!((degrees - 119.186_718_75).abs() < 1e-9, "{degrees}");
         }
         let told = form("0", "0.5", "16", "1").synchronisation().unwrap();
-        assert_eq!((told.result, told.degrees()), (Err(Unsynchronisable), None));
+        assert_eq!((told.result, told.degrees()), (Err(AmbiguousPeriod), None));
         assert_eq!(told.words().1.id(), "synchronise.impossible");
     }
 

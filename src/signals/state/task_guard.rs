@@ -6,18 +6,18 @@ use crate::app::action::{Action, Done as StudioDone};
 use crate::app::tasks::{Mailbox, Tasks};
 
 /// A message that is sent if the task ends without returning.
-struct Promise {
+struct CompletionGuard {
     mailbox: Mailbox,
     failed: Option<Done>,
 }
 
-impl Promise {
+impl CompletionGuard {
     fn task_returned(mut self) {
         self.failed = None;
     }
 }
 
-impl Drop for Promise {
+impl Drop for CompletionGuard {
     fn drop(&mut self) {
         if let Some(failed) = self.failed.take() {
             self.mailbox.send(action(failed));
@@ -31,7 +31,7 @@ fn action(done: Done) -> Action {
 
 /// Runs a task on a thread and returns `failed` if the task gives no result.
 pub(super) fn run(tasks: &Tasks, name: &str, failed: Done, task: impl FnOnce() -> Done + Send + 'static) {
-    let promise = Promise { mailbox: tasks.mailbox(), failed: Some(failed) };
+    let promise = CompletionGuard { mailbox: tasks.mailbox(), failed: Some(failed) };
     tasks.run(name, move || {
         let done = task();
         promise.task_returned();

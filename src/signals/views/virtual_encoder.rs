@@ -6,7 +6,7 @@ use crate::analysis::wiring::Wire;
 use crate::app::{Action, explain, number};
 use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS};
 use crate::signals::views::say;
-use crate::sim::sine_cosine::{Quantity, References, Settings};
+use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
 use crate::ui::controls::{button, card_with, choice, entry, label_width, paragraph, problem_below, two_columns};
 use crate::ui::{Theme, icons};
 
@@ -123,8 +123,8 @@ fn wires(ui: &mut Ui, theme: &Theme, settings: &Settings, ask: &mut impl FnMut(S
     let mut references = settings.references;
     entry(ui, theme, &word, |ui| {
         let options = [
-            (References::Level, say(theme, "virtual.level")),
-            (References::Complement, say(theme, "virtual.complement")),
+            (ReferenceLevel::Level, say(theme, "virtual.level")),
+            (ReferenceLevel::Complement, say(theme, "virtual.complement")),
         ];
         if choice(ui, &word, &mut references, options) {
             ask(SourceAction::SetReferences(references));

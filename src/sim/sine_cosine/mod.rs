@@ -19,7 +19,7 @@ mod settings;
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
-pub use settings::{Checked, Quantity, References, SettingError, Settings};
+pub use settings::{Checked, Quantity, ReferenceLevel, SettingError, Settings};
 
 use crate::analysis::Time;
 use crate::analysis::wiring::{Wire, Wires};
@@ -217,8 +217,8 @@ impl<'a> Model<'a> {
     fn wires(&self, index: u64, [sine, cosine]: [f64; 2]) -> [f64; 4] {
         let level = self.settings.level_v;
         let pair = |difference: f64| match self.settings.references {
-            References::Level => (level + difference, level),
-            References::Complement => (level + difference / 2.0, level - difference / 2.0),
+            ReferenceLevel::Level => (level + difference, level),
+            ReferenceLevel::Complement => (level + difference / 2.0, level - difference / 2.0),
         };
         let ((mut sin, mut refsin), (mut cos, mut refcos)) = (pair(sine), pair(cosine));
         let hanging = |partner: f64| if self.settings.terminated { partner } else { level };

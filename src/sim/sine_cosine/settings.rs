@@ -45,14 +45,14 @@ pub struct Settings {
     /// Whether the receiver has a resistor between the wires of a pair (120 Ω), as the manuals require.
     pub terminated: bool,
     /// Level of the reference wires.
-    pub references: References,
+    pub references: ReferenceLevel,
     /// Seed of the noise: equal seeds yield equal noise.
     pub seed: u64,
 }
 
 /// Level of REFSIN and REFCOS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum References {
+pub enum ReferenceLevel {
     /// The mean level, as for HIPERFACE encoders: only SIN and COS carry the signal.
     Level,
     /// The inverted signal, as for encoders with complementary outputs: each wire carries half of it.
@@ -266,7 +266,7 @@ impl Default for Settings {
             eccentricity_arcsec: 0.0,
             open_wire: None,
             terminated: true,
-            references: References::Level,
+            references: ReferenceLevel::Level,
             seed: 1,
         }
     }

@@ -141,7 +141,7 @@ fn an_open_wire_reads_as_the_receiver_terminates_it() {
         let wires = source(settings).samples(10, 1).unwrap();
         (wires.sine_v()[0], wires.sin_v[0], wires.refsin_v[0])
     };
-    use References::{Complement, Level};
+    use ReferenceLevel::{Complement, Level};
     let cases = [
         (Wire::Sin, true, Level, (0.0, 2.5, 2.5)),
         (Wire::Refsin, true, Level, (0.0, 3.0, 3.0)),

@@ -45,7 +45,7 @@ struct HoldMemory {
 
 /// State of the previous frame's hold buttons, as seen by the window.
 #[derive(Clone, Copy, Default)]
-struct Drawn {
+struct DrawnButtons {
     /// Button with the keyboard focus, and the pass in which the button had it.
     keyboard: Option<(Id, u64)>,
     pointer: Option<u64>,
@@ -70,11 +70,11 @@ pub(in crate::ui) fn is_hold_button_held(ctx: &Context) -> bool {
     drawn(ctx).pointer.is_some_and(|pass| pass + 1 >= ctx.cumulative_pass_nr())
 }
 
-fn drawn(ctx: &Context) -> Drawn {
-    ctx.data(|data| data.get_temp(Drawn::id())).unwrap_or_default()
+fn drawn(ctx: &Context) -> DrawnButtons {
+    ctx.data(|data| data.get_temp(DrawnButtons::id())).unwrap_or_default()
 }
 
-impl Drawn {
+impl DrawnButtons {
     fn id() -> Id {
         Id::unique("hold buttons")
     }
@@ -125,7 +125,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     }
     ui.data_mut(|data| {
         data.insert_temp(response.id, HoldMemory { state, pass, modifiers });
-        let drawn: &mut Drawn = data.get_temp_mut_or_default(Drawn::id());
+        let drawn: &mut DrawnButtons = data.get_temp_mut_or_default(DrawnButtons::id());
         if scene.keyboard {
             drawn.keyboard = Some((response.id, pass));
         }

@@ -18,7 +18,7 @@ const LATE_NS: i64 = 250_000_000;
 /// The settings of due samples are no longer stored, because the source was changed too often in the meantime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the settings of samples that are due are forgotten")]
-pub struct SettingsDropped;
+pub struct StaleSettings;
 
 /// The virtual source on a clock.
 #[derive(Debug)]
@@ -37,15 +37,15 @@ impl Analogue {
 impl Producer for Analogue {
     type Request = Checked;
     type Samples = Wires;
-    type Error = SettingsDropped;
+    type Error = StaleSettings;
 
     fn change(&mut self, request: Checked) {
         self.source.change(self.next, request);
     }
 
-    fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Wires>>, SettingsDropped> {
+    fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Wires>>, StaleSettings> {
         let (Some(settings), Some(time)) = (self.source.settings(), self.source.time(self.next)) else {
-            return Err(SettingsDropped);
+            return Err(StaleSettings);
         };
         let period_ns = settings.period_ns();
         let now = clock.now();
@@ -61,7 +61,7 @@ impl Producer for Analogue {
         let most = (LATE_NS / period_ns).max(1).unsigned_abs();
         let (lost, count) = (due.saturating_sub(most), due.min(most));
         let first = self.next + lost;
-        let samples = self.source.samples(first, usize::try_from(count).unwrap_or(0)).ok_or(SettingsDropped)?;
+        let samples = self.source.samples(first, usize::try_from(count).unwrap_or(0)).ok_or(StaleSettings)?;
         self.next = first + count;
         let time = time.plus(i64::try_from(lost).unwrap_or(i64::MAX).saturating_mul(period_ns));
         Ok(Some(Batch { first, time, period_ns, lost, samples }))

@@ -3,7 +3,7 @@
 use encoder_studio::app::Given;
 use encoder_studio::cli::{
     Command, Common, DeviceCommands, Done, Failure, Output, Position, ProfileCommands, Restore, Result, Runs, Save,
-    Simulate, Simulated, Unrestored, agreed, check_wear, plan, readings, restore_options, save_profile, settings,
+    Simulate, Simulated, UnrestoredItems, agreed, check_wear, plan, readings, restore_options, save_profile, settings,
     to_restore, write_restore,
 };
 use encoder_studio::profile::{Body, Operation};
@@ -61,7 +61,7 @@ impl ProfileCommands for NovoCommands {
         let prepared = result_of!(runner.run(Job::Prepare(change))?, Came::Prepared(prepared) => *prepared);
         let shown = shown(&prepared);
         let unchanged = (ITEMS.len() - prepared.plan.ops.len()) as u64;
-        let left = Unrestored { unchanged, missing: Vec::new(), redo: Vec::new() };
+        let left = UnrestoredItems { unchanged, missing: Vec::new(), redo: Vec::new() };
         write_restore(output, restore, &shown, &left, || {
             check_wear::<Novo>(&restore.consent, &prepared)?;
             let agreed = agreed(output, &restore.consent, prepared, &[&shown.text])?;

@@ -1,6 +1,6 @@
 //! Edits of a Novo encoder: kept after a crash, reviewed, written, saved and restored.
 
-use encoder_studio::app::review::{OpWords, Permit, Reviewed};
+use encoder_studio::app::review::{OperationTexts, Permit, Reviewed};
 use encoder_studio::app::session::{
     ApprovedPlanOf, Drafted, KnownProfile, ProfileFile, Saved, WithMemory, without_edits,
 };
@@ -27,8 +27,8 @@ impl Reviewed for Novo {
         change.restored?;
         permit.option(&mut change.options)
     }
-    fn op(_: &Prepared, op: &Op) -> OpWords {
-        OpWords::one(explain::plain(op.name()), explain::plain(op.from), explain::plain(op.to))
+    fn op(_: &Prepared, op: &Op) -> OperationTexts {
+        OperationTexts::one(explain::plain(op.name()), explain::plain(op.from), explain::plain(op.to))
     }
     fn cost(prepared: &Prepared) -> Text {
         TEXTS.text("novo.cost").with("cycles", prepared.plan.write_cycles())

@@ -63,7 +63,7 @@ impl TypedDeviceView for NovoView {
                         });
                     }
                 });
-                edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions);
+                edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::EditKind::Values, actions);
             }
         });
     }

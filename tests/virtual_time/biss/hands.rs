@@ -7,7 +7,7 @@ use encoder_studio::devices::biss::jobs::{
     BissJob, BissOutput, Change, Commit, Committed, JobError, OperatorPresence, Prepared,
 };
 use encoder_studio::devices::biss::procedures::procedure::{
-    Answer, Demand, Detail, OperatorChannel, ProcedureProgress, ProcedureStep, Task, Unattended,
+    Answer, Demand, OperatorChannel, ProcedureProgress, ProcedureStep, StepDetail, Task, Unattended,
 };
 use encoder_studio::devices::biss::procedures::write::{EndState, Interrupted};
 use encoder_studio::devices::biss::profile::{BissProfile, MotorSource, MountingRun, PresetParts, RestoreOptions};
@@ -46,9 +46,9 @@ impl Hands {
 
     pub(crate) fn hear(&mut self, news: &ProcedureProgress) {
         match &news.detail {
-            Detail::Begins => self.steps.push((news.op, news.step)),
-            Detail::Demand(demand) => self.follow(demand),
-            Detail::Count { .. } | Detail::Lasts { .. } => {}
+            StepDetail::Begins => self.steps.push((news.op, news.step)),
+            StepDetail::Demand(demand) => self.follow(demand),
+            StepDetail::Count { .. } | StepDetail::Lasts { .. } => {}
         }
     }
 
@@ -191,7 +191,7 @@ pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     let commit = hands.commit_of(prepared);
     let told = &mut |news: &ProcedureProgress| {
         hands.hear(news);
-        if news.detail == Detail::Begins {
+        if news.detail == StepDetail::Begins {
             begun.push((sent(), news.step));
         }
     };

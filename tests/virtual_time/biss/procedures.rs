@@ -7,7 +7,7 @@ use encoder_studio::app::Text;
 use encoder_studio::devices::biss::jobs::{Change, JobError};
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::{
-    Advice, Answer, Blocker, Detail, Failure, Outcome, ProcedureStep, Run, Task, WiegandReport, steps_of,
+    Advice, Answer, Blocker, Failure, Outcome, ProcedureStep, Run, StepDetail, Task, WiegandReport, steps_of,
 };
 use encoder_studio::devices::biss::profile::{MotorSource, MountingRun, PlanError, PresetParts};
 use encoder_studio::devices::biss::protocol::{
@@ -314,8 +314,10 @@ fn a_failed_calibration_reports_the_reason() {
         let error = bench
             .run_watched(commit, &mut |news| {
                 told.hear(news);
-                let lasts =
-                    matches!(news.detail, encoder_studio::devices::biss::procedures::procedure::Detail::Lasts { .. });
+                let lasts = matches!(
+                    news.detail,
+                    encoder_studio::devices::biss::procedures::procedure::StepDetail::Lasts { .. }
+                );
                 if let (Some(rpm), true) = (disturbed, lasts && news.step == ProcedureStep::Run(run)) {
                     seat.set_rpm(rpm);
                 }
@@ -356,7 +358,7 @@ fn the_encoder_decides_on_direction_speed_and_temperature() {
             .run_watched(commit, &mut |news| {
                 hands.hear(news);
                 if hands.steps.last() == Some(&(0, ProcedureStep::Run(Run::CalibrationCounterclockwise)))
-                    && matches!(news.detail, encoder_studio::devices::biss::procedures::procedure::Detail::Begins)
+                    && matches!(news.detail, encoder_studio::devices::biss::procedures::procedure::StepDetail::Begins)
                 {
                     encoder.with(spoil);
                 }
@@ -505,9 +507,11 @@ fn a_duplicated_answer_does_not_start_the_next_operation() {
     let mut asked = 0;
     let error = bench
         .run_watched(commit, &mut |news| match &news.detail {
-            Detail::Demand(demand) if news.op == 0 && demand.is_ready() => seat.answer(demand.task, Answer::Go),
-            Detail::Begins if (news.op, news.step) == (0, ProcedureStep::Save) => seat.answer(Task::Stand, Answer::Go),
-            Detail::Demand(demand) if news.op == 1 && demand.is_ready() => {
+            StepDetail::Demand(demand) if news.op == 0 && demand.is_ready() => seat.answer(demand.task, Answer::Go),
+            StepDetail::Begins if (news.op, news.step) == (0, ProcedureStep::Save) => {
+                seat.answer(Task::Stand, Answer::Go)
+            }
+            StepDetail::Demand(demand) if news.op == 1 && demand.is_ready() => {
                 asked += 1;
                 if asked == 3 {
                     seat.answer(demand.task, Answer::Cancel);

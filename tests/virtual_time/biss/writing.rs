@@ -12,7 +12,7 @@ use encoder_studio::devices::biss::profile::{BissProfile, Op, PlanError, PresetS
 use encoder_studio::devices::biss::protocol::{Filter, PresetValue};
 use encoder_studio::kinds::program;
 use encoder_studio::profile::{Consent, Document};
-use encoder_studio::store::{Entry, Logbook, Outcome as Noted, read_text};
+use encoder_studio::store::{Entry, Logbook, Outcome as CountedFinding, read_text};
 use encoder_studio::worker::NotBegun;
 use encoder_studio::worker::commit::ApprovedPlan;
 use jiff::Timestamp;
@@ -78,7 +78,7 @@ fn three_bytes_of_a_bank_need_three_writes_and_one_save() {
         ("0x24:0x10+2 OEM data: 0000 → 0102, 0x24:0x30 OEM data: 00 → 03", 1)
     );
     let conclusion = entry.conclusion.as_ref().unwrap();
-    assert_eq!((&conclusion.outcome, conclusion.cycles_spent), (&Noted::Done, 1));
+    assert_eq!((&conclusion.outcome, conclusion.cycles_spent), (&CountedFinding::Done, 1));
     assert!(bench.prepare(restore_of(&wanted)).unwrap().plan.is_empty());
 
     // The before-image restores it.
@@ -206,7 +206,7 @@ fn a_worn_encoder_is_written_only_by_force() {
     assert_eq!((prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT), (Some(0), 2, 1000));
     let mut logbook = Logbook::open(&bench.store().logbook_path()).unwrap();
     let id = logbook.intend(Timestamp::now(), &device_key(&prepared.identity, true), "long ago", 999, None).unwrap();
-    logbook.conclude(id, Timestamp::now(), Noted::Done, 999).unwrap();
+    logbook.conclude(id, Timestamp::now(), CountedFinding::Done, 999).unwrap();
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     assert_eq!(prepared.cycles_seen, Some(999));
     let before = bench.flash_cycles();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::Open;
-use crate::buses::bridge::sim::{Adapter, Attachable};
+use crate::buses::bridge::sim::{Adapter, AttachableKind};
 use crate::link::line::MARGIN;
 use crate::link::{Clock, LinkUrl, Scheme, UrlError};
 use crate::parameter::{Maybe, Parameters, Words};
@@ -32,7 +32,7 @@ parameters! {
 pub fn open_adapter(
     url: &LinkUrl,
     clock: Arc<dyn Clock>,
-    devices: &[&dyn Attachable],
+    devices: &[&dyn AttachableKind],
 ) -> Result<(Duration, Open), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Bridge) {
         return Err(wrong_target_error(url.scheme, "sim: and bridge:"));

@@ -8,11 +8,11 @@ use std::time::Duration;
 
 use fastrand::Rng;
 
-use super::attached::{Attached, BissDevice};
+use super::attached::{AttachedDevice, BissDevice};
 use super::bus::Bus;
 use super::clocking::{BissSetting, MAX_CLOCK_HZ, SsiSetting, actual_clock};
 use super::config::{Config, Shaft, Shared};
-use super::stream::{Analog, Clocked, Kind};
+use super::stream::{Analog, ClockedStream, Kind};
 use super::uart::Uart;
 use crate::buses::bridge::protocol::{
     BissStatus, BodyError, Capabilities, ErrorCode, Hello, Message, Operation, Packet, Receiver, Reply, Request,
@@ -33,7 +33,7 @@ pub struct Adapter {
     biss: Option<BissSetting>,
     ssi: Option<SsiSetting>,
     analog: Settings,
-    clocked: Option<Clocked>,
+    clocked: Option<ClockedStream>,
     sampled: Option<Analog>,
     uart: Option<Uart>,
     requests: u32,
@@ -66,7 +66,7 @@ impl Adapter {
     const SUPPLY_MILLIWATT: u32 = 300;
 
     /// Creates the virtual adapter from `config` with the given devices; of several at one connector, the last is used.
-    pub(super) fn new(config: &Config, shared: &Shared, shaft: &Shaft, attached: Vec<Attached>) -> Self {
+    pub(super) fn new(config: &Config, shared: &Shared, shaft: &Shaft, attached: Vec<AttachedDevice>) -> Self {
         let mut adapter = Adapter {
             bus: Bus::new(config, shared, shaft),
             faults: shared.faults.clone(),
@@ -89,9 +89,9 @@ impl Adapter {
         };
         for device in attached {
             match device {
-                Attached::Biss(device) => adapter.bus.biss = Some(device),
-                Attached::Ssi(device) => adapter.bus.ssi = Some(device),
-                Attached::Serial(device) => adapter.uart = Some(Uart::new(device)),
+                AttachedDevice::Biss(device) => adapter.bus.biss = Some(device),
+                AttachedDevice::Ssi(device) => adapter.bus.ssi = Some(device),
+                AttachedDevice::Serial(device) => adapter.uart = Some(Uart::new(device)),
             }
         }
         adapter.switch_off();
@@ -380,7 +380,7 @@ impl Adapter {
         }
         let period_us = period_us.max(least_us);
         let start = self.replied.max(self.now) + Self::LATENCY;
-        self.clocked = Some(Clocked::new(kind, start, Duration::from_micros(period_us.into()), bits));
+        self.clocked = Some(ClockedStream::new(kind, start, Duration::from_micros(period_us.into()), bits));
         period_us
     }
 }
@@ -416,7 +416,7 @@ impl ByteDevice for Adapter {
         if !self.inbox.is_empty() {
             return Some(self.now);
         }
-        let clocked = self.clocked.as_ref().map(Clocked::due);
+        let clocked = self.clocked.as_ref().map(ClockedStream::due);
         let sampled = self.sampled.as_ref().map(Analog::due);
         [self.to_host.due(), clocked, sampled].into_iter().flatten().min()
     }

@@ -83,18 +83,18 @@ impl Clone for Box<dyn SerialDevice> {
 }
 
 /// A device that hangs on an adapter, by the connector.
-pub enum Attached {
+pub enum AttachedDevice {
     Biss(Box<dyn BissDevice>),
     Ssi(Box<dyn SsiDevice>),
     Serial(Box<dyn SerialDevice>),
 }
 
 /// A kind of device that can hang on an adapter.
-pub trait Attachable: Sync {
+pub trait AttachableKind: Sync {
     /// Returns the settings of the device in a `sim:` link.
     fn keys(&self) -> &'static [&'static str];
 
     /// Creates the device from its settings, or returns `None` if they request none.⎏⎏# Errors⎏Names the key and the
     /// allowed values.
-    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError>;
+    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError>;
 }

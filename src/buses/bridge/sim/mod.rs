@@ -27,5 +27,5 @@ pub(crate) mod tests;
 mod uart;
 
 pub use adapter::Adapter;
-pub use attached::{Attachable, Attached, BissDevice, SerialDevice, SsiDevice};
+pub use attached::{AttachableKind, AttachedDevice, BissDevice, SerialDevice, SsiDevice};
 pub use settings::{entries, keys};

@@ -73,21 +73,21 @@ impl Pace {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Clocked {
+pub(super) struct ClockedStream {
     pub(super) kind: Kind,
     pace: Pace,
     width: u8,
     taken: Vec<(BissStatus, u64)>,
 }
 
-impl Clocked {
+impl ClockedStream {
     const HEAD: usize = 20;
 
     /// Creates `bits` of each value.
     pub(super) fn new(kind: Kind, start: Moment, period: Duration, bits: u8) -> Self {
         let width = bits.div_ceil(8).clamp(1, 8);
         let size = usize::from(width) + usize::from(kind == Kind::Biss);
-        Clocked { kind, pace: Pace::new(start, period, Self::HEAD, size), width, taken: Vec::new() }
+        ClockedStream { kind, pace: Pace::new(start, period, Self::HEAD, size), width, taken: Vec::new() }
     }
 
     pub(super) fn due(&self) -> Moment {

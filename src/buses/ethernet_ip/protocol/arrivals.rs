@@ -2,7 +2,7 @@
 
 /// The packets received on one connection.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Arrivals {
+pub struct PacketTracker {
     newest: Option<u32>,
     lost: u64,
     stale: u64,
@@ -10,7 +10,7 @@ pub struct Arrivals {
 
 /// The verdict on a received packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Arrival {
+pub enum PacketVerdict {
     /// The packet is new.
     New {
         /// Number of preceding packets that have not arrived. They may still arrive, and are stale then.
@@ -20,21 +20,21 @@ pub enum Arrival {
     Stale,
 }
 
-impl Arrivals {
+impl PacketTracker {
     /// Classifies a packet by its sequence number. Numbers wrap: a newer one is ahead by less than half of their range.
-    pub fn take(&mut self, sequence: u32) -> Arrival {
+    pub fn take(&mut self, sequence: u32) -> PacketVerdict {
         let ahead = match self.newest {
             None => 1,
             Some(newest) => sequence.wrapping_sub(newest),
         };
         if ahead == 0 || ahead > u32::MAX / 2 {
             self.stale += 1;
-            return Arrival::Stale;
+            return PacketVerdict::Stale;
         }
         self.newest = Some(sequence);
         let missing = ahead - 1;
         self.lost += u64::from(missing);
-        Arrival::New { missing }
+        PacketVerdict::New { missing }
     }
 
     /// Returns the number of packets that did not arrive, or arrived too late.
@@ -55,16 +55,16 @@ mod tests {
 
     #[test]
     fn packets_arriving_in_any_order_are_classified() {
-        const NEXT: Arrival = Arrival::New { missing: 0 };
-        let mut arrivals = Arrivals::default();
+        const NEXT: PacketVerdict = PacketVerdict::New { missing: 0 };
+        let mut arrivals = PacketTracker::default();
         for (sequence, expected) in [
             (u32::MAX - 1, NEXT),
             (u32::MAX, NEXT),
-            (u32::MAX, Arrival::Stale),
+            (u32::MAX, PacketVerdict::Stale),
             (0, NEXT),
-            (u32::MAX, Arrival::Stale),
-            (4, Arrival::New { missing: 3 }),
-            (2, Arrival::Stale),
+            (u32::MAX, PacketVerdict::Stale),
+            (4, PacketVerdict::New { missing: 3 }),
+            (2, PacketVerdict::Stale),
             (5, NEXT),
         ] {
             assert_eq!(arrivals.take(sequence), expected, "{sequence}");
@@ -76,10 +76,10 @@ mod tests {
         /// In any order of packets, the sequence of accepted ones never goes back.
         #[test]
         fn accepted_sequence_numbers_only_increase(start: u32, order in proptest::collection::vec(0u32..1000, 1..200)) {
-            let mut arrivals = Arrivals::default();
+            let mut arrivals = PacketTracker::default();
             let mut counted: Vec<u32> = Vec::new();
             for at in &order {
-                if matches!(arrivals.take(start.wrapping_add(*at)), Arrival::New { .. }) {
+                if matches!(arrivals.take(start.wrapping_add(*at)), PacketVerdict::New { .. }) {
                     counted.push(*at);
                 }
             }

@@ -27,7 +27,7 @@ mod tcp_ip;
 #[cfg(test)]
 mod vectors;
 
-pub use arrivals::{Arrival, Arrivals};
+pub use arrivals::{PacketTracker, PacketVerdict};
 pub use connection::{
     ConnectionTimeout, NetworkParameters, NetworkPriority, NetworkType, RequestTimeout, Transport, Trigger,
 };

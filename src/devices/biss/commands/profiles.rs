@@ -10,7 +10,7 @@ use crate::cli::args::{Common, Restore, Save};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{
-    Unrestored, restore_options, save_profile, say_missing, say_mounting_left, to_restore, write_restore,
+    UnrestoredItems, restore_options, save_profile, say_missing, say_mounting_left, to_restore, write_restore,
 };
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
@@ -45,7 +45,7 @@ impl ProfileCommands for BissCommands {
         say_missing(output, &prepared.missing);
         say_mounting_left(output, &prepared.mounting_left);
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
-        let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+        let left = UnrestoredItems { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
         let plan = shown(&prepared);
         write_restore(output, restore, &plan, &left, || {
             commit(&mut runner, output, prepared, &restore.consent, super::PATIENCE).map(|(spent, _)| spent)

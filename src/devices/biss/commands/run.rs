@@ -7,7 +7,7 @@ use crate::cli::output::say;
 use crate::cli::runner::{self, Runs, unexpected};
 use crate::cli::{Failure, Result};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobStep, ReadRegisters};
-use crate::devices::biss::procedures::procedure::{Detail, ProcedureProgress};
+use crate::devices::biss::procedures::procedure::{ProcedureProgress, StepDetail};
 use crate::devices::biss::procedures::{Identity, Transport};
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::state::explain as words;
@@ -52,13 +52,13 @@ impl Runs for Biss {
 /// Describes the details of a step: what prevents its start, or how long it takes.
 fn detail(news: &ProcedureProgress) -> String {
     match &news.detail {
-        Detail::Begins => String::new(),
-        Detail::Count { done, total } => format!("{done} of {total}"),
-        Detail::Lasts { elapsed, expected: Some(expected) } => {
+        StepDetail::Begins => String::new(),
+        StepDetail::Count { done, total } => format!("{done} of {total}"),
+        StepDetail::Lasts { elapsed, expected: Some(expected) } => {
             format!("{} of about {} s", elapsed.as_secs(), expected.as_secs())
         }
-        Detail::Lasts { elapsed, expected: None } => format!("{} s", elapsed.as_secs()),
-        Detail::Demand(demand) => {
+        StepDetail::Lasts { elapsed, expected: None } => format!("{} s", elapsed.as_secs()),
+        StepDetail::Demand(demand) => {
             let against = demand.blockers.iter().map(|blocker| words::blocker(*blocker).terminal());
             let turning = demand.motion.map(|motion| format!("{:.1} 1/min", motion.rpm));
             turning.into_iter().chain(against).collect::<Vec<_>>().join("; ")

@@ -10,7 +10,7 @@ use crate::units::Moment;
 
 /// Why a frame of a stream has no reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoReading {
+pub enum FrameReadingError {
     #[error("no encoder acknowledges on the bus")]
     NoAcknowledge,
     /// The bits are not a frame: the checksum is wrong, or the line does not change.
@@ -21,7 +21,7 @@ pub enum NoReading {
     Status(BissStatus),
 }
 
-pub type Frame = Result<PositionData, NoReading>;
+pub type Frame = Result<PositionData, FrameReadingError>;
 
 /// Consecutive frames of a stream at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +69,7 @@ impl FrameRun {
     }
 
     pub fn crc_errors(&self) -> usize {
-        let is_wrong = |frame: &&Frame| matches!(frame, Err(NoReading::Frame(FrameError::Crc { .. })));
+        let is_wrong = |frame: &&Frame| matches!(frame, Err(FrameReadingError::Frame(FrameError::Crc { .. })));
         self.frames.iter().filter(is_wrong).count()
     }
 }
@@ -81,10 +81,10 @@ pub fn frames(layout: &Layout, data: &BissData) -> Vec<Frame> {
 fn frame(layout: &Layout, status: BissStatus, raw: u64) -> Frame {
     match status {
         BissStatus::OK => Ok(layout.parse(raw)?),
-        BissStatus::NO_ACKNOWLEDGE => Err(NoReading::NoAcknowledge),
+        BissStatus::NO_ACKNOWLEDGE => Err(FrameReadingError::NoAcknowledge),
         BissStatus::STUCK_LOW => Err(FrameError::StuckLow.into()),
         BissStatus::STUCK_HIGH => Err(FrameError::StuckHigh.into()),
-        status => Err(NoReading::Status(status)),
+        status => Err(FrameReadingError::Status(status)),
     }
 }
 
@@ -101,10 +101,10 @@ mod tests {
             (BissStatus::OK, 0x000_0000_007C, Ok(PositionData { error: true, ..PositionData::default() })),
             (BissStatus::OK, 0x024_6980_00CE, Err(FrameError::Crc { expected: 0x0F, got: 0x0E }.into())),
             (BissStatus::OK, 0, Err(FrameError::StuckLow.into())),
-            (BissStatus::NO_ACKNOWLEDGE, 0x024_6980_00CF, Err(NoReading::NoAcknowledge)),
+            (BissStatus::NO_ACKNOWLEDGE, 0x024_6980_00CF, Err(FrameReadingError::NoAcknowledge)),
             (BissStatus::STUCK_LOW, 0, Err(FrameError::StuckLow.into())),
             (BissStatus::STUCK_HIGH, (1 << 41) - 1, Err(FrameError::StuckHigh.into())),
-            (BissStatus::new(9), 0x024_6980_00CF, Err(NoReading::Status(BissStatus::new(9)))),
+            (BissStatus::new(9), 0x024_6980_00CF, Err(FrameReadingError::Status(BissStatus::new(9)))),
         ];
         let values = cases.iter().map(|(status, raw, _)| (*status, *raw)).collect();
         let data = BissData { first_index: 0, t0_us: 0, period_us: 50, lost: 0, width: 6, values };

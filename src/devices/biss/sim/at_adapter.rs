@@ -1,7 +1,7 @@
 //! The kit encoder on the bus of a virtual adapter.
 
 use super::{Config, Encoder};
-use crate::buses::bridge::sim::{Attachable, Attached, BissDevice};
+use crate::buses::bridge::sim::{AttachableKind, AttachedDevice, BissDevice};
 use crate::sim::{ConfigError, Faults, Motor};
 use crate::units::Moment;
 
@@ -9,13 +9,13 @@ use crate::units::Moment;
 #[derive(Clone, Copy, Debug)]
 pub struct AtAdapter;
 
-impl Attachable for AtAdapter {
+impl AttachableKind for AtAdapter {
     fn keys(&self) -> &'static [&'static str] {
         Config::KEYS
     }
 
-    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {
-        Ok(Some(Attached::Biss(Box::new(Encoder::new(&Config::from_pairs(pairs)?)))))
+    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
+        Ok(Some(AttachedDevice::Biss(Box::new(Encoder::new(&Config::from_pairs(pairs)?)))))
     }
 }
 

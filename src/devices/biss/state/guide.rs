@@ -3,7 +3,7 @@
 
 use crate::app::Text;
 use crate::devices::biss::procedures::procedure::{
-    Answer, Demand, Detail, OperatorChannel, Outcome, ProcedureProgress, ProcedureStep, Task, steps_of,
+    Answer, Demand, OperatorChannel, Outcome, ProcedureProgress, ProcedureStep, StepDetail, Task, steps_of,
 };
 use crate::devices::biss::profile::Op;
 
@@ -74,13 +74,13 @@ impl Guide {
     }
 
     /// Returns the detail of the current step, or `None` if the procedure is not running.
-    pub fn detail(&self) -> Option<&Detail> {
+    pub fn detail(&self) -> Option<&StepDetail> {
         self.progress.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
     }
 
     pub fn demand(&self) -> Option<&Demand> {
         match self.detail()? {
-            Detail::Demand(demand) => Some(demand),
+            StepDetail::Demand(demand) => Some(demand),
             _ => None,
         }
     }
@@ -166,7 +166,7 @@ mod tests {
         let mut guide = Guide::new(vec![Op::Calibrate]);
         reported
             .iter()
-            .for_each(|step| guide.take_progress(ProcedureProgress { op: 0, step: *step, detail: Detail::Begins }));
+            .for_each(|step| guide.take_progress(ProcedureProgress { op: 0, step: *step, detail: StepDetail::Begins }));
         guide.cut = cut;
         guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back, cancelled: false });
         guide.steps().iter().map(|own| own.reached).collect()
@@ -185,11 +185,11 @@ mod tests {
             guide.take_progress(ProcedureProgress {
                 op: 0,
                 step: ProcedureStep::Await(Task::Turn(task)),
-                detail: Detail::Begins,
+                detail: StepDetail::Begins,
             });
             guide.answer(Task::Turn(task), Answer::Skip);
             let next = ProcedureStep::Await(Task::Turn(Run::WiegandClockwise));
-            guide.take_progress(ProcedureProgress { op: 1, step: next, detail: Detail::Begins });
+            guide.take_progress(ProcedureProgress { op: 1, step: next, detail: StepDetail::Begins });
             assert_eq!(states(&guide), [&expected[..], &[Runs], &[Ahead; 6]].concat());
             guide.end = Some(End::Done(vec![Outcome::Skipped { after }, Outcome::Skipped { after: None }]));
             assert_eq!(states(&guide), [&expected[..], &[Skipped; 7]].concat());
@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn a_cancelled_procedure_has_not_failed() {
         let mut guide = Guide::new(vec![Op::Calibrate]);
-        guide.take_progress(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: Detail::Begins });
+        guide.take_progress(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: StepDetail::Begins });
         guide.cut = Some(ProcedureStep::Conditions);
         let (texts, before) = (Vec::new(), Vec::new());
         guide.end = Some(End::Failed { texts, before, may_lead_back: false, cancelled: true });

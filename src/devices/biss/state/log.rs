@@ -1,7 +1,7 @@
 //! Log entries of an encoder: its identity and link, the start of a write, and the results of operations.
 
 use super::encoder::Encoder;
-use crate::app::review::{ChangeWords, OpWords};
+use crate::app::review::{ChangeTexts, OperationTexts};
 use crate::app::services::Services;
 use crate::app::{Severity, Text, explain};
 use crate::bits::ByteOrder;
@@ -26,7 +26,7 @@ impl Encoder {
             // A run of consecutive registers is represented by the first one only.
             Op::StoreData { .. } => vec![explain::plain(op.note(&identity.description))],
             op => {
-                let OpWords { item, changes } = words::op(op, &identity.layout);
+                let OperationTexts { item, changes } = words::op(op, &identity.layout);
                 changes.into_iter().map(|change| operation(&item, change)).collect()
             }
         });
@@ -42,7 +42,7 @@ impl Encoder {
 }
 
 /// Returns the log text for one changed value, old and new.
-fn operation(item: &Text, ChangeWords { part, old, new }: ChangeWords) -> Text {
+fn operation(item: &Text, ChangeTexts { part, old, new }: ChangeTexts) -> Text {
     let text = match part {
         None => TEXTS.text("log.operation"),
         Some(part) => TEXTS.text("log.operation_part").with_text("part", part),

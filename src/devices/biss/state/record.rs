@@ -9,7 +9,7 @@ use jiff::Zoned;
 use crate::analysis::history::Value;
 use crate::app::explain::plain;
 use crate::app::recorder::{GroupId, Recorder, Scale, Series};
-use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
+use crate::app::track::{Meaning, PositionSample, Track, Watchable, WatchedValue};
 use crate::app::{Recording, Text};
 use crate::devices::biss::procedures::{Error, FrameRun, PositionReading, Sample, WatchedReading};
 use crate::devices::biss::protocol::{Decoded, Decoding, Register};
@@ -166,7 +166,7 @@ impl Record {
             Err(Error::NotWatched { .. }) => Some(TEXTS.text("recorder.data")),
             _ => None,
         };
-        let watching = Watching { at: reading.at, value, is_warned: false, never };
+        let watching = WatchedValue { at: reading.at, value, is_warned: false, never };
         self.track.add_watched(&register, &watching);
     }
 

@@ -1,7 +1,7 @@
 //! Review of a write to a BiSS encoder: permissions, warnings and costs of the plan.
 
 use crate::app::explain::plain;
-use crate::app::review::{self, ExecutionMode, OpWords, Permit, Reviewed};
+use crate::app::review::{self, ExecutionMode, OperationTexts, Permit, Reviewed};
 use crate::app::{Text, explain};
 use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::write::Written;
@@ -31,7 +31,7 @@ impl Reviewed for Biss {
         permit.option(options)
     }
 
-    fn op(prepared: &Prepared, op: &Op) -> OpWords {
+    fn op(prepared: &Prepared, op: &Op) -> OperationTexts {
         words::op(op, &prepared.identity.layout)
     }
 

@@ -18,7 +18,7 @@ use crate::devices::biss::profile::{
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::devices::biss::state::explain as words;
 use crate::profile::{Body, PlanId, ProfileError};
-use crate::worker::EndedEarly;
+use crate::worker::JobInterruption;
 
 /// Patience for a shaft to come to rest when no operator is present.
 const UNATTENDED: Unattended = Unattended { patience: Duration::from_secs(3) };
@@ -57,7 +57,7 @@ impl Encoder {
         if !self.guide.as_ref().is_some_and(Guide::is_running) {
             return false;
         }
-        if error.is_some_and(EndedEarly::has_begun) {
+        if error.is_some_and(JobInterruption::has_begun) {
             self.reads_again();
         }
         let Some(guide) = &mut self.guide else { return false };

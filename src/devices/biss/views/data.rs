@@ -32,7 +32,7 @@ pub(super) fn page_ui(
         return;
     };
     egui::Panel::bottom("data_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Bytes, actions);
+        edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::EditKind::Bytes, actions);
     });
     super::messages_ui(ui, theme, encoder, actions);
     let shown = encoder.visible_part(area);

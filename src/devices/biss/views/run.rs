@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::motor;
 use crate::app::{Action, Severity};
-use crate::devices::biss::procedures::procedure::{Advice, Answer, Demand, Detail, Run, Task};
+use crate::devices::biss::procedures::procedure::{Advice, Answer, Demand, Run, StepDetail, Task};
 use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::explain as says;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, End, Guide, Reached, TEXTS};
@@ -80,18 +80,18 @@ fn step(
     };
     let mut step = StepRow { title, state, word: say(theme, word), ..StepRow::default() };
     match (reached, guide.detail()) {
-        (Reached::Waits, Some(Detail::Demand(demand))) => {
+        (Reached::Waits, Some(StepDetail::Demand(demand))) => {
             // The recommended speed is marked on the gauges, which stay in place.
             let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
             let notes: Vec<String> = lasting.map(|own| theme.words(&says::advice(*own))).collect();
             step.note = notes.join("\n");
             step.gauges = gauges(theme, demand);
         }
-        (Reached::Runs, Some(Detail::Count { done, total })) => {
+        (Reached::Runs, Some(StepDetail::Count { done, total })) => {
             step.progress = Some(*done as f32 / (*total).max(1) as f32);
             step.note = format!("{done}/{total}");
         }
-        (Reached::Runs, Some(Detail::Lasts { elapsed, expected })) => {
+        (Reached::Runs, Some(StepDetail::Lasts { elapsed, expected })) => {
             step.progress = expected.map(|expected| (elapsed.as_secs_f32() / expected.as_secs_f32().max(0.1)).min(1.0));
             step.note = format!("{} s", theme.number(elapsed.as_secs_f64(), 0));
         }

@@ -8,7 +8,7 @@ use super::run::Runner;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Unrestored, restore_options, save_profile, to_restore, write_restore};
+use crate::cli::profiles::{UnrestoredItems, restore_options, save_profile, to_restore, write_restore};
 use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
@@ -47,7 +47,7 @@ impl ProfileCommands for HiperdriveCommands {
             output.remark(&format!("{item} belongs to the mounting and is not restored: {how}"));
         }
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
-        let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+        let left = UnrestoredItems { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
         let plan = shown(&prepared);
         write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
     }

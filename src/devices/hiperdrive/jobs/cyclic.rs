@@ -16,7 +16,7 @@ use super::motion::Motion;
 use crate::devices::hiperdrive::procedures::Opened;
 use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, Drives};
 use crate::devices::hiperdrive::protocol::DriveNumber;
-use crate::link::{Clock, Datagrams, wake_before_others};
+use crate::link::{Clock, DatagramChannel, wake_before_others};
 
 /// A cyclic connection on its own thread. Dropping it stops the drives and ends the thread; [`close`](Self::close) also
 /// waits until the thread has ended.
@@ -37,9 +37,9 @@ struct CyclicCommands {
 enum Never {}
 
 /// A cyclic connection without a thread, driven by its owner; tests run it in virtual time.
-pub struct Pump {
+pub struct CyclicPump {
     drives: Drives,
-    port: Box<dyn Datagrams>,
+    port: Box<dyn DatagramChannel>,
     clock: Arc<dyn Clock>,
     motion: Motion,
     commands: Arc<CyclicCommands>,
@@ -58,13 +58,13 @@ impl Cyclic {
     /// # Errors
     /// If the system cannot create a thread; nothing has been sent then.
     pub fn start(
-        port: Box<dyn Datagrams>,
+        port: Box<dyn DatagramChannel>,
         opened: &Opened,
         drives: &[DriveNumber],
         clock: Arc<dyn Clock>,
         motion: &Motion,
     ) -> std::io::Result<Self> {
-        let mut pump = Pump::new(port, opened, drives, clock, motion);
+        let mut pump = CyclicPump::new(port, opened, drives, clock, motion);
         let commands = pump.commands.clone();
         let (alive, ended) = bounded(0);
         let failed = motion.clone();
@@ -110,10 +110,10 @@ impl Drop for Cyclic {
     }
 }
 
-impl Pump {
+impl CyclicPump {
     /// Creates the pump for a newly opened connection; `port` must be directed at the target.
     pub fn new(
-        port: Box<dyn Datagrams>,
+        port: Box<dyn DatagramChannel>,
         opened: &Opened,
         drives: &[DriveNumber],
         clock: Arc<dyn Clock>,
@@ -122,7 +122,7 @@ impl Pump {
         let drives = Drives::new(opened, drives, motion.open(), clock.now());
         motion.publish(&drives);
         let (motion, commands) = (motion.clone(), Arc::default());
-        Pump { drives, port, clock, motion, commands, packet: Vec::new() }
+        CyclicPump { drives, port, clock, motion, commands, packet: Vec::new() }
     }
 
     /// Requests that the drives stop and the connection end; [`turn`](Self::turn) carries this out.

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use control::Control;
-pub use cyclic::{Cyclic, Pump};
+pub use cyclic::{Cyclic, CyclicPump};
 pub use job::{
     Change, ChangeKind, Commit, Committed, DeviceMessage, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Prepared,
     WEAR_WARNING, device_key,

@@ -11,8 +11,8 @@ use crate::analysis::check;
 use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, POSITION, TIMEOUT, UPPER};
 use crate::devices::hiperdrive::protocol::{
-    AddressSwitch, DriveNumber, ErrorCode, ParameterNumber, PositionScale, Reach, State, StatusBit, Topology, Travel,
-    Variant,
+    AddressSwitch, DriveNumber, ErrorCode, ParameterNumber, PositionScale, State, StatusBit, StepLimit, Topology,
+    Travel, Variant,
 };
 
 pub use crate::analysis::check::Verdict;
@@ -325,7 +325,7 @@ fn range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict,
         Some(scale) => {
             let family = drive.variant.row().map(|row| row.family);
             let travel = Travel { family, scale: Some(scale) };
-            if let Some((family, steps)) = family.zip(travel.steps(Reach::Position)) {
+            if let Some((family, steps)) = family.zip(travel.steps(StepLimit::Position)) {
                 let beyond = [lower, upper].into_iter().filter(|limit| limit.abs() > steps);
                 findings.extend(beyond.map(|limit| {
                     let (turns, most) = (limit as f64 / scale.steps_per_turn(), family.most_turns());

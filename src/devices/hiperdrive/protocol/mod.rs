@@ -37,7 +37,7 @@ pub use error_code::{ERROR_CODES, ErrorCode, ErrorCodeRow};
 pub use leds::{
     BUS_LEDS, BusLamp, BusLedRow, BusLight, DriveLight, LedRow, LedSubject, PORT_LEDS, PortLedRow, PortLight,
 };
-pub use parameter::{Access, DriveNumber, Factory, OutOfRange, ParameterNumber, ParameterRow, Range, SlowSet};
+pub use parameter::{Access, DriveNumber, Factory, OutOfRange, ParameterNumber, ParameterRow, Range, SlowValue};
 pub use parameters::{PARAMETERS, STORES};
 pub use pkw::{Answer, Pkw, PkwError, Task};
 pub use process_data::{
@@ -48,6 +48,6 @@ pub use scaling::{Family, Length, PositionScale, ScaleError, SpeedScale, effecti
 pub use state::{State, TRANSITIONS, Transition, Trigger};
 pub use status_word::{StatusBit, StatusWord};
 pub use switches::AddressSwitch;
-pub use travel::{Reach, Travel};
+pub use travel::{StepLimit, Travel};
 pub use value::{Kind, Value, ValueError, nominal};
 pub use variant::{VARIANTS, Variant, VariantRow};

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::process_data::Topology;
 use super::scaling::{Family, PositionScale};
-use super::travel::{Reach, Travel};
+use super::travel::{StepLimit, Travel};
 use super::value::Kind;
 
 /// Number of a drive: 1 to 8 at a hub. An adapter has only drive 1.
@@ -37,16 +37,16 @@ pub struct ParameterRow {
     /// Allowed values.
     pub range: Range,
     /// Range in turns of the drive around 0, in addition to `range`; `None` if turns do not limit the value.
-    pub reach: Option<Reach>,
+    pub reach: Option<StepLimit>,
     /// Factory value.
     pub factory: Factory,
     /// Values that take the device long to apply; the reply to any other takes as long as to a read.
-    pub slow: &'static [SlowSet],
+    pub slow: &'static [SlowValue],
 }
 
 /// A value whose reply is sent only after the device has applied it, with the maximum time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SlowSet {
+pub struct SlowValue {
     /// Written value.
     pub value: i64,
     /// Maximum time with an adapter.

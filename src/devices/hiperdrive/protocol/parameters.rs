@@ -11,8 +11,8 @@ use super::drive_parameter::{
     REFERENCE, REQUESTED, RESET, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, SPEED_DENOMINATOR, SPEED_NUMERATOR,
     TIMEOUT, UPPER, VARIANT,
 };
-use super::parameter::{Access, Factory, ParameterRow, Range, SlowSet};
-use super::travel::Reach;
+use super::parameter::{Access, Factory, ParameterRow, Range, SlowValue};
+use super::travel::StepLimit;
 use super::value::Kind;
 
 const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -> ParameterRow {
@@ -46,11 +46,11 @@ impl ParameterRow {
         ParameterRow { saved: true, ..self.written(range, factory) }
     }
 
-    const fn reaching(self, reach: Reach) -> Self {
+    const fn reaching(self, reach: StepLimit) -> Self {
         ParameterRow { reach: Some(reach), ..self }
     }
 
-    const fn slow(self, slow: &'static [SlowSet]) -> Self {
+    const fn slow(self, slow: &'static [SlowValue]) -> Self {
         ParameterRow { slow, ..self }
     }
 }
@@ -63,25 +63,25 @@ const DRIVE_RESETS: Duration = Duration::from_secs(2);
 /// Maximum time to reset all drives of a hub.
 const HUB_RESETS: Duration = Duration::from_secs(8);
 
-const fn stores(value: i64) -> SlowSet {
-    SlowSet { value, adapter: STORES, hub: STORES }
+const fn stores(value: i64) -> SlowValue {
+    SlowValue { value, adapter: STORES, hub: STORES }
 }
 
-const fn all_drives(value: i64) -> SlowSet {
-    SlowSet { value, adapter: DRIVE_RESETS, hub: HUB_RESETS }
+const fn all_drives(value: i64) -> SlowValue {
+    SlowValue { value, adapter: DRIVE_RESETS, hub: HUB_RESETS }
 }
 
-const fn one_drive(value: i64) -> SlowSet {
-    SlowSet { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
+const fn one_drive(value: i64) -> SlowValue {
+    SlowValue { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
 }
 
 /// Slow values of parameter 47. The manual states no time for −3, −2 and −1 (`D`: as for −4, since they send all
 /// parameters to all drives over RS-485).
-const SAVE_AND_RESET: &[SlowSet] = &[all_drives(-4), all_drives(-3), all_drives(-2), all_drives(-1), stores(1)];
+const SAVE_AND_RESET: &[SlowValue] = &[all_drives(-4), all_drives(-3), all_drives(-2), all_drives(-1), stores(1)];
 /// Slow values of parameter 152: 0 → 1 resets the drive (`D`: the time).
-const REQUEST: &[SlowSet] = &[one_drive(1)];
+const REQUEST: &[SlowValue] = &[one_drive(1)];
 /// Slow values of parameter 199 (`D`: the time).
-const RESET_DRIVE: &[SlowSet] = &[one_drive(0), one_drive(1)];
+const RESET_DRIVE: &[SlowValue] = &[one_drive(0), one_drive(1)];
 
 const fn text(number: u16, name: &'static str, unit: &'static str) -> ParameterRow {
     read(number, name, Text, unit)
@@ -164,15 +164,15 @@ pub const PARAMETERS: &[ParameterRow] = &[
         .slow(REQUEST),
     scale(NUMERATOR, "position scale numerator", 256),
     scale(DENOMINATOR, "position scale denominator", 1),
-    read(LOWER, "lower limit", I32, "steps").kept(Any, Factory::Turns(-1)).reaching(Reach::Position),
-    read(UPPER, "upper limit", I32, "steps").kept(Any, Factory::Turns(1)).reaching(Reach::Position),
+    read(LOWER, "lower limit", I32, "steps").kept(Any, Factory::Turns(-1)).reaching(StepLimit::Position),
+    read(UPPER, "upper limit", I32, "steps").kept(Any, Factory::Turns(1)).reaching(StepLimit::Position),
     scale(SPEED_NUMERATOR, "speed scale numerator", 10),
     scale(SPEED_DENOMINATOR, "speed scale denominator", 1),
     read(MAXIMUM_SPEED, "maximum speed", U16, "0.1 rpm").kept(within(MAXIMUM_SPEEDS), Factory::Number(350)),
-    read(170, "jog 1 step", I32, "steps").written(Any, Factory::Number(4096)).reaching(Reach::Step),
+    read(170, "jog 1 step", I32, "steps").written(Any, Factory::Number(4096)).reaching(StepLimit::Step),
     percent(172, "jog 1 speed"),
     percent(174, "jog 1 torque"),
-    read(176, "jog 2 step", I32, "steps").written(Any, Factory::Number(-4096)).reaching(Reach::Step),
+    read(176, "jog 2 step", I32, "steps").written(Any, Factory::Number(-4096)).reaching(StepLimit::Step),
     percent(178, "jog 2 speed"),
     percent(180, "jog 2 torque"),
     read(HAND_DRIVE_WAIT, "wait before hand drive", U16, "ms").written(Within(100, 10000), Factory::Number(1000)),
@@ -183,7 +183,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
         .in_device(),
     read(RS485_COMPLETE, "RS-485 complete time", U16, "ms").kept(Any, Factory::Automatic),
     read(ACKNOWLEDGE, "faults since the acknowledgement", U8, "").written(Within(0, 0), Factory::None),
-    read(REFERENCE, "set actual position", I32, "steps").kept(Any, Factory::Number(0)).reaching(Reach::Position),
+    read(REFERENCE, "set actual position", I32, "steps").kept(Any, Factory::Number(0)).reaching(StepLimit::Position),
     ParameterRow { access: Access::Write, ..read(RESET, "reset drive", U8, "").written(Within(0, 1), Factory::None) }
         .slow(RESET_DRIVE),
 ];

@@ -14,7 +14,7 @@ pub struct Travel {
 
 /// Limit of a number of steps, relative to 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
+pub enum StepLimit {
     /// Position: the number of turns of the drive in either direction (158, 160, 198).
     Position,
     /// Step: no longer than from one end of the turns to the other (170, 176; `D`: the manual gives only 32 bits, and a
@@ -27,11 +27,11 @@ impl Travel {
     pub const UNKNOWN: Travel = Travel { family: None, scale: None };
 
     /// Returns the maximum whole steps in either direction, or `None` if turns or scale are unknown.
-    pub fn steps(self, reach: Reach) -> Option<i64> {
+    pub fn steps(self, reach: StepLimit) -> Option<i64> {
         let turns = self.family?.most_turns();
         Some(self.scale?.whole_steps(match reach {
-            Reach::Position => turns,
-            Reach::Step => 2 * turns,
+            StepLimit::Position => turns,
+            StepLimit::Step => 2 * turns,
         }))
     }
 }

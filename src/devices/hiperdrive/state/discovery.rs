@@ -98,7 +98,7 @@ pub enum DiscoveryAction {
     Choose(usize),
 }
 
-pub struct Answers {
+pub struct DiscoveryReplies {
     number: u32,
     found: Result<Vec<FoundDevice>, Text>,
 }
@@ -106,7 +106,7 @@ pub struct Answers {
 impl Finder for DiscoveryFinder {
     type Form = HiperdriveForm;
     type Action = DiscoveryAction;
-    type Done = Answers;
+    type Done = DiscoveryReplies;
 
     fn act(&mut self, action: DiscoveryAction, form: &mut HiperdriveForm, context: &mut FinderContext<'_>) {
         match action {
@@ -119,7 +119,7 @@ impl Finder for DiscoveryFinder {
                     let found = given.map_or_else(ask_all, |discover| (discover.0)());
                     let found = found.map(|found| found.iter().map(FoundDevice::of).collect());
                     let found = found.map_err(|error| words::device(&error));
-                    Action::Done(Done::finder::<DiscoveryFinder>(Unit::TAB, Answers { number, found }))
+                    Action::Done(Done::finder::<DiscoveryFinder>(Unit::TAB, DiscoveryReplies { number, found }))
                 });
             }
             DiscoveryAction::Choose(at) => {
@@ -133,8 +133,8 @@ impl Finder for DiscoveryFinder {
     }
 
     /// Handles the replies, those of HIPERDRIVE first.
-    fn done(finder: Option<&mut Self>, done: Answers, _services: &mut Services) {
-        let Answers { number, found } = done;
+    fn done(finder: Option<&mut Self>, done: DiscoveryReplies, _services: &mut Services) {
+        let DiscoveryReplies { number, found } = done;
         let discovery = finder.and_then(|finder| finder.discovery.as_mut());
         let Some(discovery) = discovery.filter(|own| own.number == number) else { return };
         discovery.found = Some(found.map(|mut found| {

@@ -8,9 +8,7 @@ use crate::app::live_session::LiveSession;
 use crate::app::recorder::Recorder;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::SessionEvents;
-use crate::app::{
-    ActContext, DeviceMemory, DeviceModel, EditStep, MotionControl, Recording, RemembersDrives, Tab, Text,
-};
+use crate::app::{ActContext, DeviceMemory, DeviceModel, DriveMemory, EditStep, MotionControl, Recording, Tab, Text};
 use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 
@@ -101,7 +99,7 @@ impl DeviceModel for Unit {
         Some(self)
     }
 
-    fn remembers_drives(&mut self) -> Option<&mut dyn RemembersDrives> {
+    fn remembers_drives(&mut self) -> Option<&mut dyn DriveMemory> {
         Some(self)
     }
 }

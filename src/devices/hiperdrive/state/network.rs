@@ -24,7 +24,7 @@ pub struct Form {
 
 /// Source of the address after the next power-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PowerUp {
+pub enum PowerUpAddress {
     Fixed(Ipv4Addr),
     Stored(Ipv4Addr),
     /// The stored address is selected, but no address is stored.
@@ -116,24 +116,24 @@ pub fn refused(error: &AddressError) -> Text {
     }
 }
 
-impl PowerUp {
+impl PowerUpAddress {
     /// Returns the source of the address for these switches and settings. Unreadable switches count as 0, since not all
     /// devices have any.
     pub fn of(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
         let stored = match settings.interface.address {
-            address if address.is_unspecified() => PowerUp::NothingStored,
-            address => PowerUp::Stored(address),
+            address if address.is_unspecified() => PowerUpAddress::NothingStored,
+            address => PowerUpAddress::Stored(address),
         };
         match switch.unwrap_or(AddressSwitch::Object) {
-            AddressSwitch::Fixed(address) => PowerUp::Fixed(address),
+            AddressSwitch::Fixed(address) => PowerUpAddress::Fixed(address),
             AddressSwitch::Stored => stored,
-            AddressSwitch::Bootp => PowerUp::Bootp,
-            AddressSwitch::Dhcp => PowerUp::Dhcp,
+            AddressSwitch::Bootp => PowerUpAddress::Bootp,
+            AddressSwitch::Dhcp => PowerUpAddress::Dhcp,
             AddressSwitch::Object => match settings.source {
                 AddressSource::Stored => stored,
-                AddressSource::Bootp => PowerUp::Bootp,
-                AddressSource::Dhcp => PowerUp::Dhcp,
-                AddressSource::Unknown(number) => PowerUp::Unknown(number),
+                AddressSource::Bootp => PowerUpAddress::Bootp,
+                AddressSource::Dhcp => PowerUpAddress::Dhcp,
+                AddressSource::Unknown(number) => PowerUpAddress::Unknown(number),
             },
         }
     }
@@ -141,19 +141,22 @@ impl PowerUp {
     /// Returns the future address, if already known.
     pub const fn address(self) -> Option<Ipv4Addr> {
         match self {
-            PowerUp::Fixed(address) | PowerUp::Stored(address) => Some(address),
-            PowerUp::NothingStored | PowerUp::Bootp | PowerUp::Dhcp | PowerUp::Unknown(_) => None,
+            PowerUpAddress::Fixed(address) | PowerUpAddress::Stored(address) => Some(address),
+            PowerUpAddress::NothingStored
+            | PowerUpAddress::Bootp
+            | PowerUpAddress::Dhcp
+            | PowerUpAddress::Unknown(_) => None,
         }
     }
 
     pub fn words(self) -> Text {
         match self {
-            PowerUp::Fixed(address) => TEXTS.text("hd_net.up_fixed").with("address", address),
-            PowerUp::Stored(address) => TEXTS.text("hd_net.up_stored").with("address", address),
-            PowerUp::NothingStored => TEXTS.text("hd_net.up_nothing"),
-            PowerUp::Bootp => TEXTS.text("hd_net.up_bootp"),
-            PowerUp::Dhcp => TEXTS.text("hd_net.up_dhcp"),
-            PowerUp::Unknown(number) => TEXTS.text("hd_net.up_unknown").with("number", number),
+            PowerUpAddress::Fixed(address) => TEXTS.text("hd_net.up_fixed").with("address", address),
+            PowerUpAddress::Stored(address) => TEXTS.text("hd_net.up_stored").with("address", address),
+            PowerUpAddress::NothingStored => TEXTS.text("hd_net.up_nothing"),
+            PowerUpAddress::Bootp => TEXTS.text("hd_net.up_bootp"),
+            PowerUpAddress::Dhcp => TEXTS.text("hd_net.up_dhcp"),
+            PowerUpAddress::Unknown(number) => TEXTS.text("hd_net.up_unknown").with("number", number),
         }
     }
 }
@@ -166,7 +169,7 @@ pub fn consequences(
     wanted: &NetworkSettings,
     host: Option<Ipv4Addr>,
 ) -> Vec<(Severity, Text)> {
-    let after = PowerUp::of(switch, wanted);
+    let after = PowerUpAddress::of(switch, wanted);
     let mut texts = Vec::new();
     let decides = switch.filter(|own| *own != AddressSwitch::Object);
     // At 97 the stored addresses count, and their source does not.
@@ -175,7 +178,7 @@ pub fn consequences(
         texts.push((Severity::Warning, TEXTS.text("hd_net.switch_decides").with("digits", own.number())));
     }
     let severity = match after {
-        PowerUp::NothingStored | PowerUp::Unknown(_) => Severity::Warning,
+        PowerUpAddress::NothingStored | PowerUpAddress::Unknown(_) => Severity::Warning,
         _ => Severity::Note,
     };
     texts.push((severity, after.words()));
@@ -235,18 +238,20 @@ mod tests {
     fn the_switches_select_the_address_source() {
         let stored = Ipv4Addr::new(10, 0, 0, 7);
         let sources = [AddressSource::Stored, AddressSource::Bootp, AddressSource::Dhcp, AddressSource::Unknown(7)];
-        let with =
-            |digits: u8| sources.map(|own| PowerUp::of(AddressSwitch::parse(digits), &settings(own, "10.0.0.7")));
-        let object = [PowerUp::Stored(stored), PowerUp::Bootp, PowerUp::Dhcp, PowerUp::Unknown(7)];
+        let with = |digits: u8| {
+            sources.map(|own| PowerUpAddress::of(AddressSwitch::parse(digits), &settings(own, "10.0.0.7")))
+        };
+        let object =
+            [PowerUpAddress::Stored(stored), PowerUpAddress::Bootp, PowerUpAddress::Dhcp, PowerUpAddress::Unknown(7)];
         assert_eq!(with(0), object);
-        assert_eq!(with(12), [PowerUp::Fixed(Ipv4Addr::new(192, 168, 1, 12)); 4]);
-        assert_eq!(with(97), [PowerUp::Stored(stored); 4]);
-        assert_eq!(with(98), [PowerUp::Bootp; 4]);
-        assert_eq!(with(99), [PowerUp::Dhcp; 4]);
+        assert_eq!(with(12), [PowerUpAddress::Fixed(Ipv4Addr::new(192, 168, 1, 12)); 4]);
+        assert_eq!(with(97), [PowerUpAddress::Stored(stored); 4]);
+        assert_eq!(with(98), [PowerUpAddress::Bootp; 4]);
+        assert_eq!(with(99), [PowerUpAddress::Dhcp; 4]);
         // A device without switches.
-        assert_eq!(sources.map(|own| PowerUp::of(None, &settings(own, "10.0.0.7"))), object);
+        assert_eq!(sources.map(|own| PowerUpAddress::of(None, &settings(own, "10.0.0.7"))), object);
         let empty = settings(AddressSource::Stored, "0.0.0.0");
-        assert_eq!(PowerUp::of(AddressSwitch::parse(0), &empty), PowerUp::NothingStored);
+        assert_eq!(PowerUpAddress::of(AddressSwitch::parse(0), &empty), PowerUpAddress::NothingStored);
     }
 
     #[test]

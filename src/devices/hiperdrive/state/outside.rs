@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, nearest_refer
 use crate::devices::hiperdrive::state::TEXTS;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OutsideSeen {
+pub struct OutOfRangePosition {
     pub outside: Outside,
     /// In scaled steps.
     pub position: i32,
@@ -23,7 +23,7 @@ pub struct OutsideSeen {
 impl Unit {
     /// Returns how a drive is outside its limits, by its position or by status bit 15, or `None` if it is inside or
     /// either is unknown.
-    pub fn outside(&self, drive: DriveNumber) -> Option<OutsideSeen> {
+    pub fn outside(&self, drive: DriveNumber) -> Option<OutOfRangePosition> {
         let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
         let degree = self.drive_limits(drive).map_or(1, |own| own.degree());
         let permit = Permit { limits: Some(limits), degree, ..Permit::default() };
@@ -32,7 +32,7 @@ impl Unit {
             Outside::At(side) => side.beyond(actual.position, limits).unsigned_abs() > u64::from(degree),
             Outside::Unclear => true,
         };
-        Some(OutsideSeen { outside, position: actual.position, limits, is_far })
+        Some(OutOfRangePosition { outside, position: actual.position, limits, is_far })
     }
 
     /// Returns the message for a drive outside its limits, or `None` inside and at the end of the range.

@@ -7,7 +7,7 @@ use jiff::Zoned;
 use super::ruler::{Measure, Ruler};
 use crate::analysis::history::Value;
 use crate::app::recorder::{GroupId, Scale, Series};
-use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
+use crate::app::track::{Meaning, PositionSample, Track, Watchable, WatchedValue};
 use crate::devices::hiperdrive::procedures::{DriveReading, Temperature, TemperatureReading};
 use crate::devices::hiperdrive::protocol::SpeedScale;
 
@@ -55,7 +55,7 @@ impl Record {
         beside.extend(has_target.then_some(RecordedValue::Target(ruler)));
         beside.extend(self.temperatures.iter().copied().map(RecordedValue::Temperature));
         self.track.watch(&beside);
-        let watching = |value| Watching { at, value: Some(value), is_warned: false, never: None };
+        let watching = |value| WatchedValue { at, value: Some(value), is_warned: false, never: None };
         self.track.add_watched(&RecordedValue::Speed, &watching(Value::Real(speed.rpm(actual.speed))));
         if let Some(target) = target {
             self.track.add_watched(&RecordedValue::Target(ruler), &watching(Value::Whole(i64::from(target))));
@@ -75,7 +75,7 @@ impl Record {
     pub(super) fn add_temperature(&mut self, reading: TemperatureReading) {
         let never = reading.celsius.is_none().then(|| TEXTS.text("hd_watch.never"));
         let value = reading.celsius.map(Value::Whole);
-        let watching = Watching { at: reading.at, value, is_warned: false, never };
+        let watching = WatchedValue { at: reading.at, value, is_warned: false, never };
         self.track.add_watched(&RecordedValue::Temperature(reading.what), &watching);
     }
 

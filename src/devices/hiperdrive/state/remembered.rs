@@ -4,12 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::ruler::Measure;
 use super::unit::Unit;
-use crate::app::{RememberedDrives, RemembersDrives, SettingsReadState};
+use crate::app::{DriveMemory, RememberedDrives, SettingsReadState};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 
 /// Values last exchanged between a device's session and the settings.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Exchanged {
+pub(super) struct ExchangedValues {
     kept: RememberedDrives,
     pitches: BTreeMap<u8, u64>,
     measure: Measure,
@@ -19,7 +19,7 @@ pub(super) struct Exchanged {
     scales: BTreeMap<DriveNumber, (i64, i64)>,
 }
 
-impl RemembersDrives for Unit {
+impl DriveMemory for Unit {
     fn remembered_as(&self) -> Option<String> {
         let own = self.identity()?;
         let kind = if self.session.is_virtual() { "virtual " } else { "" };
@@ -51,7 +51,7 @@ impl RemembersDrives for Unit {
         }
         let elsewhere = kept.newly_marked(&before.kept);
         elsewhere.into_iter().filter_map(DriveNumber::new).for_each(|drive| self.moves.unconfirm(drive));
-        self.exchanged = Some(Exchanged { kept: next.clone(), ..self.remembered_values() });
+        self.exchanged = Some(ExchangedValues { kept: next.clone(), ..self.remembered_values() });
         (next != *kept).then_some(next)
     }
 
@@ -74,7 +74,7 @@ impl RemembersDrives for Unit {
 }
 
 impl Unit {
-    fn take_remembered(&mut self, kept: &RememberedDrives) -> Exchanged {
+    fn take_remembered(&mut self, kept: &RememberedDrives) -> ExchangedValues {
         for (drive, nanometres) in &kept.pitches {
             if let Some(drive) = DriveNumber::new(*drive) {
                 self.pitches.entry(drive).or_insert(Length { nanometres: *nanometres });
@@ -82,18 +82,18 @@ impl Unit {
         }
         self.measure = kept.measure;
         self.unsaved.extend(&kept.unsaved);
-        Exchanged {
+        ExchangedValues {
             pitches: kept.pitches.clone(),
             measure: kept.measure,
             unsaved: kept.unsaved.clone(),
-            ..Exchanged::default()
+            ..ExchangedValues::default()
         }
     }
 
-    fn remembered_values(&self) -> Exchanged {
+    fn remembered_values(&self) -> ExchangedValues {
         let unconfirmed = self.moves.unconfirmed();
         let scale = |drive: &DriveNumber| Some((*drive, self.drive_limits(*drive)?.seen()?.scale));
-        Exchanged {
+        ExchangedValues {
             kept: RememberedDrives::default(),
             pitches: self.pitches.iter().map(|(drive, pitch)| (drive.get(), pitch.nanometres)).collect(),
             measure: self.measure,

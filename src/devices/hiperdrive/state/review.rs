@@ -1,12 +1,12 @@
 //! Review of a write to a HIPERDRIVE: permits, warnings and cost of its plan.
 
 use super::axis::words::millimetres;
-use super::network::PowerUp;
+use super::network::PowerUpAddress;
 use super::ruler::{Measure, Ruler};
 use super::words;
 use crate::app::explain::plain;
 use crate::app::number::decimals_of;
-use crate::app::review::{self, OpWords, Permit, Reviewed};
+use crate::app::review::{self, OperationTexts, Permit, Reviewed};
 use crate::app::{Text, explain};
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, Prepared};
 use crate::devices::hiperdrive::procedures::write::Written;
@@ -34,7 +34,7 @@ impl Reviewed for Hiperdrive {
         permit.option(options)
     }
 
-    fn op(prepared: &Prepared, op: &Op) -> OpWords {
+    fn op(prepared: &Prepared, op: &Op) -> OperationTexts {
         op_words(prepared, op, |_| None)
     }
 
@@ -96,7 +96,7 @@ impl Reviewed for Hiperdrive {
 }
 
 /// Describes an operation, with positions in millimetres if the spindle pitch of the drive is known.
-pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber) -> Option<Length>) -> OpWords {
+pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber) -> Option<Length>) -> OperationTexts {
     let mut words = explained::op(op);
     if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
         let now = prepared.plan.base.image();
@@ -137,5 +137,5 @@ fn power_up(plan: &Plan<Base, Op>) -> Option<Text> {
     })?;
     let digits = ParameterNumber::new(12).and_then(|number| plan.base.values.get(&number));
     let switch = digits.and_then(|digits| AddressSwitch::parse(u8::try_from(*digits).ok()?));
-    Some(TEXTS.text("hd_review.power_up").with_text("what", PowerUp::of(switch, to).words()))
+    Some(TEXTS.text("hd_review.power_up").with_text("what", PowerUpAddress::of(switch, to).words()))
 }

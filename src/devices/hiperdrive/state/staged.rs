@@ -18,7 +18,7 @@ pub use edit::{Edit, EditError, LimitsPolicy};
 pub use mark::Mark;
 
 use crate::app::history::History;
-use crate::app::{Stepped, SteppedParts};
+use crate::app::{SteppedEdits, SteppedParts};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, ParameterNumber, ParameterRow, Travel};
 
@@ -217,7 +217,7 @@ impl Staged {
     }
 }
 
-impl Stepped for Staged {
+impl SteppedEdits for Staged {
     type Values = Image;
 
     fn differences_count(&self) -> usize {

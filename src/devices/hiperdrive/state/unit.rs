@@ -8,7 +8,7 @@ use jiff::Zoned;
 use super::axis::Axis;
 use super::moves::Moves;
 use super::record::Record;
-use super::remembered::Exchanged;
+use super::remembered::ExchangedValues;
 use super::ruler::{Measure, Ruler};
 use super::staged::{Mark, Staged};
 use super::unsaved::Unsaved;
@@ -54,7 +54,7 @@ pub struct Unit {
     pub(super) switched: bool,
     pub(super) unsaved: Unsaved,
     /// Values exchanged with the settings, or `None` before the first exchange.
-    pub(super) exchanged: Option<Exchanged>,
+    pub(super) exchanged: Option<ExchangedValues>,
     /// Limits marked by another window since control was taken.
     pub(super) marks: SettingsReadState,
     /// Last reading of each drive without control.

@@ -6,7 +6,7 @@ use super::ruler::Measure;
 use super::unit::Unit;
 use super::unsaved::Unsaved;
 use super::words;
-use crate::app::review::OpWords;
+use crate::app::review::OperationTexts;
 use crate::app::services::Services;
 use crate::app::session::{ApprovedPlanOf, KnownProfile, Saved, WithMemory, some, without_edits};
 use crate::app::{PendingEdits, Text};
@@ -25,7 +25,7 @@ impl Unit {
 }
 
 impl WithMemory for Unit {
-    fn op(&self, prepared: &Prepared, op: &Op) -> OpWords {
+    fn op(&self, prepared: &Prepared, op: &Op) -> OperationTexts {
         op_words(prepared, op, |drive| self.pitch(drive))
     }
 

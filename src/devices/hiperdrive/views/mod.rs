@@ -119,7 +119,7 @@ impl TypedDeviceView for HiperdriveView {
             egui::Panel::bottom(id.with("hiperdrive_foot"))
                 .frame(egui::Frame::NONE.inner_margin(sides(0, 8)))
                 .show_separator_line(false)
-                .show(ui, |ui| edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions));
+                .show(ui, |ui| edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::EditKind::Values, actions));
         }
         let drive = unit.drive();
         if page == Page::Parameters {

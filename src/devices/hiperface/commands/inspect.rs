@@ -17,7 +17,7 @@ use crate::devices::hiperface::commands::table::Table;
 use crate::devices::hiperface::jobs::{
     Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value, may_have_other_master,
 };
-use crate::devices::hiperface::procedures::find::{FindOptions, Findings, FoundEncoder};
+use crate::devices::hiperface::procedures::find::{FindOptions, FoundEncoder, SearchFindings};
 use crate::devices::hiperface::procedures::{Identity, PositionReading};
 use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::{EncoderTypes, KIND, LineSettings, StatusCode};
@@ -44,7 +44,7 @@ pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
     );
     let options = FindOptions { one_encoder: find.one_encoder, power_cycle };
     match runner.run(HiperfaceJob::Find(options))? {
-        HiperfaceOutput::Found(Findings::Searched { found, complete }) => {
+        HiperfaceOutput::Found(SearchFindings::Searched { found, complete }) => {
             show_found(output, &found)?;
             if !complete {
                 return Err(Failure::Failed(vec![
@@ -60,7 +60,7 @@ pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
             }
             Ok(Done::Well)
         }
-        HiperfaceOutput::Found(Findings::ForeignTraffic { bytes }) => Err(Failure::Failed(vec![format!(
+        HiperfaceOutput::Found(SearchFindings::ForeignTraffic { bytes }) => Err(Failure::Failed(vec![format!(
             "Another device sends on this line ({bytes} bytes in one second), so nothing was sent. Disconnect the \
              drive or controller, then try again."
         )])),

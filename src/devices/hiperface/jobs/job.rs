@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::devices::hiperface::procedures::check::HiperfaceStepResult;
-use crate::devices::hiperface::procedures::find::{Attempt, FindOptions, Findings, FoundEncoder};
+use crate::devices::hiperface::procedures::find::{Attempt, FindOptions, FoundEncoder, SearchFindings};
 use crate::devices::hiperface::procedures::write::{Interrupted, Written};
 use crate::devices::hiperface::procedures::{Error, Identity, LineQuality, PositionReading, Rest, SaveOptions, Survey};
 use crate::devices::hiperface::profile::{
@@ -228,7 +228,7 @@ pub enum HiperfaceOutput {
     Saved(Box<SavedProfile>),
     Check(Vec<HiperfaceStepResult>),
     Reset(Vec<StatusCode>),
-    Found(Findings),
+    Found(SearchFindings),
     Configured,
     CodeNoted,
     Prepared(Box<Prepared>),

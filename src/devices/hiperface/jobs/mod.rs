@@ -16,7 +16,7 @@ pub use job::{
     Prepared, SavedProfile, Value, WEAR_LIMIT,
 };
 pub use open::{check, may_have_other_master, open};
-pub use types::{BrokenTypes, encoder_types};
+pub use types::{BrokenTypeTable, encoder_types};
 
 use status::StatusKeeper;
 

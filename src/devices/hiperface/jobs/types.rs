@@ -9,7 +9,7 @@ use crate::store::{FileError, FileProblem, Store, StoreError, read_text};
 /// The user's own table of encoder types is broken.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}, {cause}", path.display())]
-pub struct BrokenTypes {
+pub struct BrokenTypeTable {
     pub path: PathBuf,
     pub cause: TypeTableError,
 }
@@ -17,7 +17,7 @@ pub struct BrokenTypes {
 /// Returns the table of encoder types, in which user-defined rows precede the built-in ones.
 ///
 /// # Errors
-/// The user's file exists but cannot be read or parsed ([`BrokenTypes`]). [`EncoderTypes::built_in`] can be used
+/// The user's file exists but cannot be read or parsed ([`BrokenTypeTable`]). [`EncoderTypes::built_in`] can be used
 /// instead.
 pub fn encoder_types(store: &Store) -> Result<EncoderTypes, StoreError> {
     let built_in = EncoderTypes::built_in();
@@ -29,7 +29,7 @@ pub fn encoder_types(store: &Store) -> Result<EncoderTypes, StoreError> {
     };
     match EncoderTypes::parse(&text) {
         Ok(own) => Ok(built_in.overlaid_with(own)),
-        Err(cause) => Err(StoreError::Refused(Cause::new(BrokenTypes { path, cause }))),
+        Err(cause) => Err(StoreError::Refused(Cause::new(BrokenTypeTable { path, cause }))),
     }
 }
 
@@ -67,7 +67,7 @@ mod tests {
         let (_root, store) = store_with(b"(types: [\n  (code: 0x37, nam: \"own\")])");
         let error = encoder_types(&store).unwrap_err();
         let StoreError::Refused(cause) = &error else { panic!("{error:?}") };
-        let broken = cause.get::<BrokenTypes>().unwrap();
+        let broken = cause.get::<BrokenTypeTable>().unwrap();
         assert!(matches!(broken.cause, TypeTableError::Syntax { line: 2, .. }));
         let text = error.to_string();
         assert!(text.contains("hiperface.ron, line 2, column "), "{text}");

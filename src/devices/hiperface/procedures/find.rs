@@ -61,7 +61,7 @@ pub enum SearchProgress<'a> {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Findings {
+pub enum SearchFindings {
     /// Another device is sending on this line, so nothing was sent.
     ForeignTraffic {
         /// Bytes received while listening.
@@ -84,7 +84,7 @@ pub fn find(
     master: &mut Master<'_>,
     options: &FindOptions,
     watch: &mut dyn FnMut(SearchProgress<'_>),
-) -> Result<Findings, Error> {
+) -> Result<SearchFindings, Error> {
     let before = (master.station().address, master.station().format);
     let mut search = Search { found: Vec::new(), watch };
     let result = search.run(master, options);
@@ -93,9 +93,9 @@ pub fn find(
         master.set_format(before.1)
     })?;
     match result {
-        Ok(Some(bytes)) => Ok(Findings::ForeignTraffic { bytes }),
-        Ok(None) => Ok(Findings::Searched { found: search.found, complete: true }),
-        Err(Error::Cancelled) => Ok(Findings::Searched { found: search.found, complete: false }),
+        Ok(Some(bytes)) => Ok(SearchFindings::ForeignTraffic { bytes }),
+        Ok(None) => Ok(SearchFindings::Searched { found: search.found, complete: true }),
+        Err(Error::Cancelled) => Ok(SearchFindings::Searched { found: search.found, complete: false }),
         Err(error) => Err(error),
     }
 }

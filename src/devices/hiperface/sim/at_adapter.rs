@@ -1,7 +1,7 @@
 //! The encoder on the serial line of a virtual adapter, if requested.
 
 use super::{Bus, Config};
-use crate::buses::bridge::sim::{Attachable, Attached, SerialDevice};
+use crate::buses::bridge::sim::{AttachableKind, AttachedDevice, SerialDevice};
 use crate::parameter::{Parameters, Words};
 use crate::parameters;
 use crate::sim::ConfigError;
@@ -17,14 +17,14 @@ parameters! {
 #[derive(Clone, Copy, Debug)]
 pub struct AtAdapter;
 
-impl Attachable for AtAdapter {
+impl AttachableKind for AtAdapter {
     fn keys(&self) -> &'static [&'static str] {
         Settings::KEYS
     }
 
-    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {
+    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
         let is_there = Settings::read(pairs)?.is_there;
-        Ok(is_there.then(|| Attached::Serial(Box::new(Bus::new(&Config::default())))))
+        Ok(is_there.then(|| AttachedDevice::Serial(Box::new(Bus::new(&Config::default())))))
     }
 }
 

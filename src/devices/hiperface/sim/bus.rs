@@ -20,10 +20,10 @@ pub struct Bus {
     echo: bool,
     wires: Wires,
     /// Characters on their way to the encoders, by start time.
-    to_encoders: Queue<Travelling>,
+    to_encoders: Queue<CharacterInTransit>,
     /// Characters on their way to the host, by end time.
-    to_host: Queue<Travelling>,
-    talks: Vec<Talk>,
+    to_host: Queue<CharacterInTransit>,
+    talks: Vec<LineOccupation>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ enum Talker {
 }
 
 #[derive(Clone, Copy)]
-struct Travelling {
+struct CharacterInTransit {
     talker: Talker,
     character: Character,
     format: CharacterFormat,
@@ -41,7 +41,7 @@ struct Travelling {
 
 /// A device drives the line from `start` to `end`.
 #[derive(Clone, Copy, Debug)]
-struct Talk {
+struct LineOccupation {
     talker: Talker,
     start: Moment,
     end: Moment,
@@ -99,7 +99,7 @@ impl Bus {
         }
         // An encoder without power stops sending.
         let now = self.wires.now;
-        let is_sent = |own: &Travelling| own.talker == Talker::Host || own.character.start < now;
+        let is_sent = |own: &CharacterInTransit| own.talker == Talker::Host || own.character.start < now;
         self.to_encoders.retain(is_sent);
         self.to_host.retain(is_sent);
     }
@@ -140,7 +140,7 @@ impl Bus {
     /// Puts bytes on the line, one character after another; returns when the last one has been transmitted.
     fn drive(&mut self, talker: Talker, start: Moment, format: CharacterFormat, bytes: &[u8]) -> Moment {
         let sent = self.wires.send(start, format.character_time(), bytes);
-        let on_the_way = |character: Character| Travelling { talker, character, format };
+        let on_the_way = |character: Character| CharacterInTransit { talker, character, format };
         for heard in sent.heard.into_iter().map(on_the_way) {
             if talker != Talker::Host {
                 self.to_host.insert(heard.character.end, heard);
@@ -155,13 +155,13 @@ impl Bus {
         }
         let now = self.wires.now;
         self.talks.retain(|talk| talk.end + Self::LONGEST_CHARACTER > now);
-        self.talks.push(Talk { talker, start, end: sent.end });
+        self.talks.push(LineOccupation { talker, start, end: sent.end });
         sent.end
     }
 
     /// Returns whether another device drives the line during this character.
-    fn collides(&self, Travelling { talker, character, .. }: &Travelling) -> bool {
-        let other = |talk: &&Talk| talk.talker != *talker;
+    fn collides(&self, CharacterInTransit { talker, character, .. }: &CharacterInTransit) -> bool {
+        let other = |talk: &&LineOccupation| talk.talker != *talker;
         self.talks.iter().filter(other).any(|talk| talk.start < character.end && character.start < talk.end)
     }
 }

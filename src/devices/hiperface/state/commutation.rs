@@ -17,7 +17,7 @@ use crate::devices::hiperface::procedures::Rest;
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::TEXTS;
 
-pub use form::{Form, Inputs, Slot, Source, Storage, Vector};
+pub use form::{Form, OffsetInputs, Slot, Source, Storage, Vector};
 pub use offset_location::OffsetLocation;
 pub use outcome::{Offset, Setting, Stored, may_read, stored};
 pub use report::kind_words;

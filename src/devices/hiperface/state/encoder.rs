@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::commutation::Commutation;
 use super::meaning::Meaning;
 use super::record::Record;
-use super::rest::RestAsked;
+use super::rest::RequestedRest;
 use super::{Staged, rules};
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Saved, Session, Source, WithMemory};
@@ -34,7 +34,7 @@ pub struct Encoder {
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
     pub record: Record,
     pub commutation: Commutation,
-    pub(super) rest: RestAsked,
+    pub(super) rest: RequestedRest,
     pub(super) meaning: Meaning,
     /// Access codes that the user entered or changed, with which the next session with this encoder begins.
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
@@ -62,7 +62,7 @@ impl Encoder {
             analogue: BTreeMap::new(),
             record: Record::default(),
             commutation: Commutation::default(),
-            rest: RestAsked::default(),
+            rest: RequestedRest::default(),
             meaning: Meaning::default(),
             access_codes: Vec::new(),
             asked: None,

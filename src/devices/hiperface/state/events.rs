@@ -19,7 +19,7 @@ use crate::devices::hiperface::state::explain as explained;
 use crate::link::{LinkUrl, TraceEntry};
 use crate::profile::Body;
 use crate::store::Store;
-use crate::worker::{EndedEarly as _, JobId, OpenError, Session};
+use crate::worker::{JobId, JobInterruption as _, OpenError, Session};
 
 impl Kind for Hiperface {
     const KIND: &'static str = KIND;

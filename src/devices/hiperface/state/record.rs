@@ -7,7 +7,7 @@ use jiff::Zoned;
 use crate::analysis::history::Value;
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Scale, Series};
-use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
+use crate::app::track::{Meaning, PositionSample, Track, Watchable, WatchedValue};
 use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 
@@ -91,8 +91,8 @@ fn meaning(geometry: Option<Geometry>) -> Meaning {
     }
 }
 
-fn watching(reading: &WatchedReading) -> Watching {
-    Watching {
+fn watching(reading: &WatchedReading) -> WatchedValue {
+    WatchedValue {
         at: reading.at,
         value: reading.value.as_ref().ok().map(|value| Value::Whole(*value)),
         is_warned: !reading.codes.is_empty(),

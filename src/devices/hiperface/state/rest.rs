@@ -10,7 +10,7 @@ use crate::devices::hiperface::protocol::Geometry;
 
 /// A reading requested by the user rather than by the assistant.
 #[derive(Debug, Default)]
-pub(super) struct RestAsked {
+pub(super) struct RequestedRest {
     is_under_way: bool,
     result: Option<Result<Rest, Text>>,
 }

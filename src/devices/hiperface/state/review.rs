@@ -1,7 +1,7 @@
 //! Review of a write to a HIPERFACE encoder: permits, warnings and cost of its plan.
 
 use crate::app::Text;
-use crate::app::review::{self, OpWords, Permit, Question, Reviewed};
+use crate::app::review::{self, OperationTexts, Permit, Question, Reviewed};
 use crate::devices::hiperface::jobs::{Change, Hiperface, Prepared};
 use crate::devices::hiperface::procedures::write::Written;
 use crate::devices::hiperface::profile::{Op, RestoreOptions, UnknownField};
@@ -41,7 +41,7 @@ impl Reviewed for Hiperface {
         }
     }
 
-    fn op(_: &Prepared, op: &Op) -> OpWords {
+    fn op(_: &Prepared, op: &Op) -> OperationTexts {
         words::op(op)
     }
 

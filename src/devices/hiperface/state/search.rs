@@ -3,7 +3,7 @@
 
 use crossbeam_channel::Receiver;
 
-use crate::app::action::{AnyOpened, Done, OpenFailed, Opened};
+use crate::app::action::{Done, OpenFailure, Opened, OpenedSession};
 use crate::app::connect::context::FinderContext;
 use crate::app::connect::form::Finder;
 use crate::app::live_session::LiveSession;
@@ -15,7 +15,7 @@ use crate::app::{DeviceModel, Text, explain};
 use crate::devices::hiperface::jobs::{
     DeviceMessage, Hiperface, HiperfaceJob, HiperfaceOutput, JobStep, may_have_other_master,
 };
-use crate::devices::hiperface::procedures::find::{FindOptions, Findings, FoundEncoder};
+use crate::devices::hiperface::procedures::find::{FindOptions, FoundEncoder, SearchFindings};
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, LinkForm, TEXTS};
 use crate::link::LinkUrl;
@@ -50,7 +50,7 @@ impl Search {
         url
     }
 
-    pub(crate) fn opened(&mut self, result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>, services: &Services) {
+    pub(crate) fn opened(&mut self, result: Result<Box<Opened<Hiperface>>, Box<OpenFailure>>, services: &Services) {
         match result {
             Ok(opened) => {
                 let mut line = LiveSession::new(*opened);
@@ -87,7 +87,7 @@ impl Search {
 
     fn finish(&mut self, output: HiperfaceOutput) {
         self.end = Some(match output {
-            HiperfaceOutput::Found(Findings::Searched { found, complete }) => {
+            HiperfaceOutput::Found(SearchFindings::Searched { found, complete }) => {
                 let id = match (found.is_empty(), complete) {
                     (true, true) => "find.nothing",
                     (false, true) => "find.done",
@@ -97,7 +97,7 @@ impl Search {
                 self.found = found;
                 text
             }
-            HiperfaceOutput::Found(Findings::ForeignTraffic { bytes }) => {
+            HiperfaceOutput::Found(SearchFindings::ForeignTraffic { bytes }) => {
                 TEXTS.text("find.foreign_traffic").with("bytes", bytes)
             }
             _ => Text::new("session.ended"),
@@ -126,15 +126,15 @@ pub enum SearchAction {
     Choose(usize),
 }
 
-pub struct OpenedForSearch {
+pub struct SearchLinkOpened {
     number: u32,
-    result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>,
+    result: Result<Box<Opened<Hiperface>>, Box<OpenFailure>>,
 }
 
 impl Finder for SearchFinder {
     type Form = LinkForm;
     type Action = SearchAction;
-    type Done = OpenedForSearch;
+    type Done = SearchLinkOpened;
 
     fn act(&mut self, action: SearchAction, _form: &mut LinkForm, context: &mut FinderContext<'_>) {
         match action {
@@ -165,13 +165,13 @@ impl Finder for SearchFinder {
             Err(problem) => return context.refuse(problem),
         };
         let number = context.new_number();
-        let done = move |result| Done::finder::<SearchFinder>(Encoder::TAB, OpenedForSearch { number, result });
+        let done = move |result| Done::finder::<SearchFinder>(Encoder::TAB, SearchLinkOpened { number, result });
         let over = context.services().open_task::<Hiperface>(url.clone(), earlier, |_| (), done);
         self.search = Some(Search { number, url, options, line: None, over, found: Vec::new(), end: None });
     }
 
-    fn done(finder: Option<&mut Self>, done: OpenedForSearch, services: &mut Services) {
-        let OpenedForSearch { number, result } = done;
+    fn done(finder: Option<&mut Self>, done: SearchLinkOpened, services: &mut Services) {
+        let SearchLinkOpened { number, result } = done;
         let search = finder.and_then(|finder| finder.search.as_mut());
         match (search.filter(|search| search.number == number && search.is_running()), result) {
             (Some(search), result) => search.opened(result, services),

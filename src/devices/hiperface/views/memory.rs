@@ -59,7 +59,7 @@ pub(super) fn page_ui(
         return;
     }
     egui::Panel::bottom("memory_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Bytes, actions);
+        edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::EditKind::Bytes, actions);
     });
     map(ui, theme, encoder, &wanted, memory, view, actions);
     ui.add_space(theme.space.between);

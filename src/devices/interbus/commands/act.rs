@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::Disturbs;
+use super::Disturbance;
 use super::args::InterbusAction;
 use super::inspect::mode;
 use super::plan::{change_lines, commit, operations, prepare};
@@ -52,13 +52,13 @@ fn preset(runner: &mut Runner) -> Result<u32> {
 
 fn check_device(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbs::Reading.announce(output);
+    Disturbance::Reading.announce(output);
     result_of!(runner.run(InterbusJob::Check)?, InterbusOutput::Check(lines) => check::show(output, &words::check(&lines)))
 }
 
 fn lead_back(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbs::LeadingBack.announce(output);
+    Disturbance::LeadingBack.announce(output);
     let now = result_of!(runner.run(InterbusJob::LeadBack)?, InterbusOutput::LedBack(now) => now);
     let reading = result_of!(runner.run(InterbusJob::Position)?, InterbusOutput::Position(reading) => reading);
     let (is, word) = (words::startup(now).terminal(), format!("0x{:08X}", reading.word));
@@ -75,7 +75,7 @@ fn lead_back(common: &Common, output: &Output) -> Result {
 fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut Runner) -> Result<Change>) -> Result {
     require_consent(&act.consent)?;
     let mut runner = Runner::open(common)?;
-    Disturbs::Reading.announce(output);
+    Disturbance::Reading.announce(output);
     let change = change(&mut runner)?;
     let prepared = prepare(&mut runner, output, change)?;
     let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));

@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use super::Disturbs;
+use super::Disturbance;
 use super::run::{Runner, identity};
 use crate::cli::args::Common;
 use crate::cli::output::{Lines, Output};
@@ -16,7 +16,7 @@ use crate::result_of;
 
 pub(super) fn identify(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbs::Reading.announce(output);
+    Disturbance::Reading.announce(output);
     let identity = identity(&mut runner)?;
     let json = json!({
         "device": KIND,
@@ -66,7 +66,7 @@ pub(super) fn mode(mode: StartupMode) -> String {
 
 pub(super) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbs::Reading.announce(output);
+    Disturbance::Reading.announce(output);
     let status = result_of!(runner.run(InterbusJob::Status)?, InterbusOutput::Status(status) => *status);
     let errors: Vec<Json> = status
         .error
@@ -119,7 +119,7 @@ pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
     let item = super::item(item)?;
     let mut runner = Runner::open(common)?;
     let disturbs =
-        if item.parameter().is_some() || !item.is_writable() { Disturbs::Reading } else { Disturbs::Programs };
+        if item.parameter().is_some() || !item.is_writable() { Disturbance::Reading } else { Disturbance::Programs };
     disturbs.begin(common, output, None)?;
     let value = result_of!(runner.run(InterbusJob::Read(item))?, InterbusOutput::Item(value) => value);
     let own = match value {

@@ -112,7 +112,7 @@ fn item(text: &str) -> Result<Item> {
 
 /// How a command disturbs the process data used by a machine.
 #[derive(Clone, Copy)]
-enum Disturbs {
+enum Disturbance {
     Reading,
     /// Also select all cam programs one after another.
     Programs,
@@ -120,14 +120,14 @@ enum Disturbs {
     LeadingBack,
 }
 
-impl Disturbs {
+impl Disturbance {
     /// Announces the disturbance in advance. Switching live outputs requires a confirmation on a terminal, unless a
     /// write was consented to or the encoder is virtual; without a terminal, the command continues.
     fn begin(self, common: &Common, output: &Output, consent: Option<&Consenting>) -> Result<()> {
         self.announce(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == Scheme::Sim);
         let consented = consent.is_some_and(|consent| consent.yes);
-        if !matches!(self, Disturbs::Programs) || is_virtual || consented || !can_ask() {
+        if !matches!(self, Disturbance::Programs) || is_virtual || consented || !can_ask() {
             return Ok(());
         }
         if ask("Does the machine stand still? [y/N] ") {
@@ -138,9 +138,9 @@ impl Disturbs {
 
     fn announce(self, output: &Output) {
         let id = match self {
-            Disturbs::Reading => "ib_disturbs.reading",
-            Disturbs::Programs => "ib_disturbs.programs",
-            Disturbs::LeadingBack => "ib_disturbs.lead_back",
+            Disturbance::Reading => "ib_disturbs.reading",
+            Disturbance::Programs => "ib_disturbs.programs",
+            Disturbance::LeadingBack => "ib_disturbs.lead_back",
         };
         output.remark(&TEXTS.text(id).terminal());
     }

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::Disturbs;
+use super::Disturbance;
 use super::inspect::mode;
 use super::run::{Runner, identity, programs};
 use crate::cli::Result;
@@ -18,7 +18,7 @@ use crate::result_of;
 /// is read.
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbs::Reading.announce(output);
+    Disturbance::Reading.announce(output);
     let identity = identity(&mut runner)?;
     if let StartupMode::Cams(_) = identity.mode {
         // The window determines the visible bits of the position; no program is selected to read it.

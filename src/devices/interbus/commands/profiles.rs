@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::Disturbs;
+use super::Disturbance;
 use super::InterbusCommands;
 use super::plan::{commit, prepare, shown};
 use super::run::{Runner, programs, survey};
@@ -10,7 +10,7 @@ use crate::cli::args::{Common, Restore, Save};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{
-    Unrestored, restore_options, save_profile, say_missing, say_mounting_left, to_restore, write_restore,
+    UnrestoredItems, restore_options, save_profile, say_missing, say_mounting_left, to_restore, write_restore,
 };
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
@@ -33,7 +33,7 @@ impl ProfileCommands for InterbusCommands {
         let options = restore_options(restore)?;
         let profile = to_restore::<InterbusProfile>(restore, profile)?;
         let mut runner = Runner::open(common)?;
-        let disturbs = if programs_needed(&profile).is_empty() { Disturbs::Reading } else { Disturbs::Programs };
+        let disturbs = if programs_needed(&profile).is_empty() { Disturbance::Reading } else { Disturbance::Programs };
         disturbs.begin(common, output, Some(&restore.consent))?;
         let prepared = prepare(&mut runner, output, Change::Restore { profile: Box::new(profile), options })?;
         if let Some(types) = prepared.other_type {
@@ -42,7 +42,7 @@ impl ProfileCommands for InterbusCommands {
         say_missing(output, &prepared.missing);
         say_mounting_left(output, &prepared.mounting_left);
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
-        let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+        let left = UnrestoredItems { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
         let plan = shown(&prepared);
         write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
     }
@@ -75,7 +75,7 @@ impl ProfileCommands for InterbusCommands {
 
 fn saved(common: &Common, output: &Output) -> Result<InterbusProfile> {
     let mut runner = Runner::open(common)?;
-    Disturbs::Programs.begin(common, output, None)?;
+    Disturbance::Programs.begin(common, output, None)?;
     match runner.run(InterbusJob::Save { programs: true })? {
         InterbusOutput::Saved(profile) => Ok(*profile),
         other => Err(unexpected(&other)),
@@ -85,7 +85,7 @@ fn saved(common: &Common, output: &Output) -> Result<InterbusProfile> {
 fn as_far_as(common: &Common, output: &Output, profile: &InterbusProfile) -> Result<InterbusProfile> {
     let needed = programs_needed(profile);
     let mut runner = Runner::open(common)?;
-    let disturbs = if needed.is_empty() { Disturbs::Reading } else { Disturbs::Programs };
+    let disturbs = if needed.is_empty() { Disturbance::Reading } else { Disturbance::Programs };
     disturbs.begin(common, output, None)?;
     let survey = survey(&mut runner)?;
     let mut image = Image::of(survey.parameters);

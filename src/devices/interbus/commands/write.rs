@@ -3,7 +3,7 @@
 use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;
 use super::value::value;
-use super::{Disturbs, item};
+use super::{Disturbance, item};
 use crate::cli::Result;
 use crate::cli::args::{Common, Write};
 use crate::cli::consent::require_consent;
@@ -16,7 +16,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let value = value(item, &write.value)?;
     require_consent(&write.consent)?;
     let mut runner = Runner::open(common)?;
-    let disturbs = if item.parameter().is_some() { Disturbs::Reading } else { Disturbs::Programs };
+    let disturbs = if item.parameter().is_some() { Disturbance::Reading } else { Disturbance::Programs };
     disturbs.begin(common, output, Some(&write.consent))?;
     let prepared = prepare(&mut runner, output, Change::Item(item, value))?;
     let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));

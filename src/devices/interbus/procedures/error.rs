@@ -114,7 +114,7 @@ pub enum Damage {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Awaited {
+pub enum AwaitedWord {
     Echo,
     Value,
     /// A running word: a position, a speed, or cam outputs.
@@ -123,13 +123,13 @@ pub enum Awaited {
     Preset,
 }
 
-impl fmt::Display for Awaited {
+impl fmt::Display for AwaitedWord {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Awaited::Echo => "acknowledgement",
-            Awaited::Value => "value",
-            Awaited::Run => "position",
-            Awaited::Preset => "preset as position",
+            AwaitedWord::Echo => "acknowledgement",
+            AwaitedWord::Value => "value",
+            AwaitedWord::Run => "position",
+            AwaitedWord::Preset => "preset as position",
         })
     }
 }
@@ -176,7 +176,7 @@ pub enum Error {
     /// The encoder did not react to a word within the handshake time.
     #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", other_echo(*input))]
     TimeOut {
-        awaited: Awaited,
+        awaited: AwaitedWord,
         sent: u32,
         input: u32,
         /// Time waited, in milliseconds.

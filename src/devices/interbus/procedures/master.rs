@@ -12,7 +12,7 @@ use notes::Notes;
 use stability::{CycleResult, Held, LEAST_PATIENCE};
 
 use super::data::ProcessData;
-use super::error::{Awaited, RequestedItem};
+use super::error::{AwaitedWord, RequestedItem};
 use super::handshake::{Handshake, LeftState, WordReply, is_echo};
 use super::reading::{swapped, unexplained_swapped_word};
 use super::{Error, Gateway, KnownState, Station, WordReading};
@@ -158,13 +158,15 @@ impl<'a> Master<'a> {
         self.leave_value()?;
         self.ensure_legal(command)?;
         let (before, found) = (self.input, self.found_error);
-        self.until(command, Awaited::Value, self.patience, |CycleResult { word, same, .. }| match Reply::parse(word) {
-            Reply::ReadOut(value) if same.is_stable() => Some(Ok(value)),
-            Reply::UnknownReadOut(_) if same.is_stable() => Some(Err(Error::UnknownReadOut { command })),
-            Reply::Error(error) if word != before && Some(word) != found && same.is_stable() => {
-                Some(Err(Error::Refused { sent: command, error }))
+        self.until(command, AwaitedWord::Value, self.patience, |CycleResult { word, same, .. }| {
+            match Reply::parse(word) {
+                Reply::ReadOut(value) if same.is_stable() => Some(Ok(value)),
+                Reply::UnknownReadOut(_) if same.is_stable() => Some(Err(Error::UnknownReadOut { command })),
+                Reply::Error(error) if word != before && Some(word) != found && same.is_stable() => {
+                    Some(Err(Error::Refused { sent: command, error }))
+                }
+                _ => None,
             }
-            _ => None,
         })
     }
 
@@ -201,7 +203,7 @@ impl<'a> Master<'a> {
     fn running(&mut self, command: Command, patience: Duration) -> Result<(), Error> {
         self.ensure_legal(command)?;
         let (mut runs, found) = (Held::new(self.recorded), self.found_error);
-        self.until(command, Awaited::Run, patience, |CycleResult { now, word, same }| {
+        self.until(command, AwaitedWord::Run, patience, |CycleResult { now, word, same }| {
             runs.go_on(matches!(Reply::parse(word), Reply::Run { .. }), now);
             (runs.is_stable() || Some(word) == found && same.is_settled()).then_some(Ok(()))
         })
@@ -216,11 +218,12 @@ impl<'a> Master<'a> {
         self.normal()?;
         self.ensure_legal(Command::Preset)?;
         let (mut sent, mut there) = (Held::new(self.recorded), Held::new(self.recorded));
-        let fired = self.until(Command::Preset, Awaited::Preset, self.patience, |CycleResult { now, word, .. }| {
-            sent.go_on(true, now);
-            there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
-            (sent.is_settled() && there.is_stable()).then_some(Ok(()))
-        });
+        let fired =
+            self.until(Command::Preset, AwaitedWord::Preset, self.patience, |CycleResult { now, word, .. }| {
+                sent.go_on(true, now);
+                there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
+                (sent.is_settled() && there.is_stable()).then_some(Ok(()))
+            });
         self.shielded(Self::normal).and(fired)
     }
 
@@ -229,7 +232,7 @@ impl<'a> Master<'a> {
     fn until<T>(
         &mut self,
         command: Command,
-        awaited: Awaited,
+        awaited: AwaitedWord,
         patience: Duration,
         mut judge: impl FnMut(CycleResult) -> Option<Result<T, Error>>,
     ) -> Result<T, Error> {
@@ -293,7 +296,7 @@ impl<'a> Master<'a> {
     }
 
     /// Returns the most likely reason for a missing reply.
-    fn timeout_error(&mut self, command: Command, awaited: Awaited, input: u32, patience: Duration) -> Error {
+    fn timeout_error(&mut self, command: Command, awaited: AwaitedWord, input: u32, patience: Duration) -> Error {
         let sent = command.emit();
         match self.shielded(|master| master.data.output()) {
             Ok(Some(word)) if word != sent => return Error::OtherMaster { sent, output: word },

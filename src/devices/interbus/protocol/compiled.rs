@@ -6,7 +6,7 @@ use super::value::Value;
 
 /// Programs as a list of sections with constant outputs. A preview evaluates them for millions of positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Compiled {
+pub struct CompiledPrograms {
     /// Section starts in ascending order. The outputs before the first section are in `before`.
     starts: Vec<u32>,
     /// Outputs of each section, one byte per program with the first program lowest.
@@ -14,7 +14,7 @@ pub struct Compiled {
     before: u64,
 }
 
-impl Compiled {
+impl CompiledPrograms {
     /// Compiles eight programs.
     pub fn new(programs: &[Program; ProgramNumber::COUNT]) -> Self {
         let at = |position: u32| u64::from_le_bytes(programs.map(|program| program.outputs(Value::of_word(position))));
@@ -25,7 +25,7 @@ impl Compiled {
         // No section begins after the last position.
         starts.retain(|start| (1..=Value::MAX.get()).contains(start));
         let outputs = starts.iter().map(|start| at(*start)).collect();
-        Compiled { starts, outputs, before: at(0) }
+        CompiledPrograms { starts, outputs, before: at(0) }
     }
 
     /// Returns the outputs at a position: a byte per program, bit i for cam i. The result equals [`Program::outputs`]

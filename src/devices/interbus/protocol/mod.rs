@@ -42,7 +42,7 @@ pub use cam::{Cam, CamNumber, Program, ProgramNumber};
 pub use cam_output::{CamBit, CamOutput, CamOutputError, WindowShift};
 pub use class::{Class, Interface, Single, class_of_id, id_code};
 pub use command::{Command, Refused};
-pub use compiled::Compiled;
+pub use compiled::CompiledPrograms;
 pub use gear::{Gear, GearError, STEPS_PER_TURN, TURNS};
 pub use leds::{LEDS, LedRow, LedState, Leds};
 pub use mode::Mode;

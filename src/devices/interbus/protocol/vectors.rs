@@ -394,7 +394,7 @@ proptest! {
     /// The result equals that of the plain programs: at edges, next to them and anywhere.
     #[test]
     fn compiled_programs_equal_plain_ones(programs in any_programs(), anywhere in 0..=0x1FF_FFFF_u32) {
-        let compiled = Compiled::new(&programs);
+        let compiled = CompiledPrograms::new(&programs);
         let cams = programs.iter().flat_map(|program| program.cams.iter().flatten());
         let edges = cams.flat_map(|cam| [cam.start.get(), cam.stop.get()]);
         let near = edges.flat_map(|edge| [edge.saturating_sub(1), edge, (edge + 1).min(0x1FF_FFFF)]);

@@ -18,7 +18,7 @@ pub use write::{change, op, other_type, plan, wear, weight, written};
 use crate::app::Text;
 use crate::app::explain::{link, plain};
 use crate::devices::interbus::jobs::{JobError, JobStep};
-use crate::devices::interbus::procedures::{Awaited, Error, Implausible, LeftState};
+use crate::devices::interbus::procedures::{AwaitedWord, Error, Implausible, LeftState};
 use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
 use crate::link::LinkError;
 
@@ -111,12 +111,12 @@ pub fn encoder(error: &Error) -> Text {
     }
 }
 
-fn time_out(awaited: Awaited) -> Text {
+fn time_out(awaited: AwaitedWord) -> Text {
     TEXTS.text(match awaited {
-        Awaited::Echo => "interbus.no_echo",
-        Awaited::Value => "interbus.no_value",
-        Awaited::Run => "interbus.no_run",
-        Awaited::Preset => "interbus.no_preset",
+        AwaitedWord::Echo => "interbus.no_echo",
+        AwaitedWord::Value => "interbus.no_value",
+        AwaitedWord::Run => "interbus.no_run",
+        AwaitedWord::Preset => "interbus.no_preset",
     })
 }
 

@@ -31,7 +31,7 @@ pub use texts::TEXTS;
 pub use action::InterbusAction;
 pub use connect_form::{InterbusForm, InterbusLinkKind};
 pub use encoder::Encoder;
-pub use preview::{Differing, Preview};
+pub use preview::{OutputMismatch, Preview};
 pub use record::Record;
 pub use review::{Review, ReviewState};
 use std::path::PathBuf;

@@ -1,22 +1,22 @@
 //! Cams of the encoder, compiled to check whether the outputs in every word match them.
 
 use crate::devices::interbus::procedures::WordReading;
-use crate::devices::interbus::protocol::{Compiled, Program, ProgramNumber, StartupMode, Value};
+use crate::devices::interbus::protocol::{CompiledPrograms, Program, ProgramNumber, StartupMode, Value};
 
 /// Cam programs as read, and how well the reported outputs agree with them.
 #[derive(Clone, Debug)]
 pub struct Preview {
     programs: [Option<Program>; ProgramNumber::COUNT],
-    compiled: Compiled,
+    compiled: CompiledPrograms,
     /// Number of words whose outputs match the program at their position.
     pub same: u64,
     pub other: u64,
     /// Last word whose outputs differ from the program.
-    pub last: Option<Differing>,
+    pub last: Option<OutputMismatch>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Differing {
+pub struct OutputMismatch {
     pub position: u32,
     /// Outputs reported by the encoder: bit i for cam i.
     pub own: u8,
@@ -31,7 +31,7 @@ impl Default for Preview {
 
 impl Preview {
     fn of(programs: [Option<Program>; ProgramNumber::COUNT]) -> Self {
-        let compiled = Compiled::new(&programs.map(Option::unwrap_or_default));
+        let compiled = CompiledPrograms::new(&programs.map(Option::unwrap_or_default));
         Preview { programs, compiled, same: 0, other: 0, last: None }
     }
 
@@ -55,7 +55,7 @@ impl Preview {
             self.same += 1;
         } else {
             self.other += 1;
-            self.last = Some(Differing { position: value.get(), own: own.outputs, expected });
+            self.last = Some(OutputMismatch { position: value.get(), own: own.outputs, expected });
         }
     }
 }
@@ -89,7 +89,7 @@ mod tests {
         preview.compare(&reading(1, 15, 0));
         assert_eq!((preview.same, preview.other), (4, 0));
         preview.compare(&reading(2, 214, 8));
-        assert_eq!(preview.last, Some(Differing { position: 214, own: 8, expected: 0 }));
+        assert_eq!(preview.last, Some(OutputMismatch { position: 214, own: 8, expected: 0 }));
         preview.follow(&programs);
         assert_eq!(preview.other, 1, "the same programs");
         preview.follow(&[None; ProgramNumber::COUNT]);

@@ -7,7 +7,7 @@ use jiff::Zoned;
 
 use crate::analysis::history::Value;
 use crate::app::recorder::{GroupId, Scale, Series};
-use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
+use crate::app::track::{Meaning, PositionSample, Track, Watchable, WatchedValue};
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
 use crate::units::Moment;
@@ -80,7 +80,7 @@ impl Record {
 
     fn add_value(&mut self, at: Moment, what: RecordedValue, value: Option<i64>) {
         let value = value.map(Value::Whole);
-        self.track.add_watched(&what, &Watching { at, value, is_warned: false, never: None });
+        self.track.add_watched(&what, &WatchedValue { at, value, is_warned: false, never: None });
     }
 
     pub fn last(&self) -> Option<&WordReading> {

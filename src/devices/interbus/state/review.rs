@@ -1,7 +1,7 @@
 //! Review of a write to an INTERBUS encoder: permits, warnings and cost of its plan.
 
 use crate::app::explain::plain;
-use crate::app::review::{self, OpWords, Permit, Reviewed};
+use crate::app::review::{self, OperationTexts, Permit, Reviewed};
 use crate::app::{Text, explain};
 use crate::devices::interbus::jobs::{Change, Interbus, Prepared, WEAR_ASK, WEAR_LAST, Wear};
 use crate::devices::interbus::procedures::write::Written;
@@ -26,7 +26,7 @@ impl Reviewed for Interbus {
         permit.option(options)
     }
 
-    fn op(_: &Prepared, op: &Op) -> OpWords {
+    fn op(_: &Prepared, op: &Op) -> OperationTexts {
         words::op(op)
     }
 

@@ -22,7 +22,7 @@ pub use edit::{Edit, EditError};
 pub use mark::Mark;
 
 use crate::app::history::History;
-use crate::app::{Stepped, SteppedParts};
+use crate::app::{SteppedEdits, SteppedParts};
 use crate::devices::interbus::profile::{Image, Names, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
 
@@ -194,7 +194,7 @@ impl Staged {
     }
 }
 
-impl Stepped for Staged {
+impl SteppedEdits for Staged {
     type Values = EditedValues;
 
     fn differences_count(&self) -> usize {

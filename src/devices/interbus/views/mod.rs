@@ -105,7 +105,7 @@ impl TypedDeviceView for InterbusView {
             egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
                 .frame(egui::Frame::NONE.inner_margin(margin))
                 .show_separator_line(false)
-                .show(ui, |ui| edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions));
+                .show(ui, |ui| edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::EditKind::Values, actions));
         }
         let shown = (page == Page::Cams).then(|| view.cams.shown());
         marks::marks_ui(ui, theme, encoder, shown);

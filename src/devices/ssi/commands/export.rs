@@ -10,7 +10,7 @@ use super::profiles::{document, write};
 use crate::cli::output::Output;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::protocol::{
-    Reads, Times, WideNumbers, bit_table, c99, english, frame_picture, scl, settings_sheet, structured_text,
+    Reads, Times, TooWideError, bit_table, c99, english, frame_picture, scl, settings_sheet, structured_text,
     structured_text_32, timing_picture, to_linuxcnc,
 };
 use crate::devices::ssi::state::TEXTS;
@@ -67,6 +67,6 @@ pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
     Ok(Done::Well)
 }
 
-fn wide(error: WideNumbers) -> Failure {
+fn wide(error: TooWideError) -> Failure {
     Failure::Failed(vec![words::wide(error).terminal()])
 }

@@ -12,7 +12,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::ssi::jobs::families as read_families;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::protocol::{
-    Descriptor, Families, Family, Layout, Resolved, Settings, SpecError, Times, from_linuxcnc,
+    Descriptor, Families, Family, Layout, ResolvedFrame, Settings, SpecError, Times, from_linuxcnc,
 };
 use crate::devices::ssi::state::explain as words;
 use crate::store::Store;
@@ -98,7 +98,7 @@ fn beside_family(output: &Output, family: &Family, profile: &SsiProfile) {
     }
 }
 
-fn print_advice(output: &Output, resolved: &Resolved) {
+fn print_advice(output: &Output, resolved: &ResolvedFrame) {
     for advice in &resolved.advice {
         output.remark(&words::advice(advice).terminal());
     }

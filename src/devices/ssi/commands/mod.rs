@@ -13,7 +13,7 @@ mod source;
 use clap::{Arg, ArgMatches, Subcommand};
 
 use self::args::{LayoutOption, Ssi, SsiLayout};
-use crate::buses::bridge::sim::{Adapter, Attachable};
+use crate::buses::bridge::sim::{Adapter, AttachableKind};
 use crate::cli::args::{Command, Common, Restore, Simulate};
 use crate::cli::commands::{CommandId, DeviceCommands, OwnCommand, ProfileCommands, options_of, parse};
 use crate::cli::output::Output;
@@ -130,7 +130,7 @@ fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>
     };
     // In place of the delivered one, which has the same settings.
     let others = at_adapter().iter().copied().filter(|device| device.keys() != encoder.keys());
-    let devices: Vec<&dyn Attachable> = [&encoder as &dyn Attachable].into_iter().chain(others).collect();
+    let devices: Vec<&dyn AttachableKind> = [&encoder as &dyn AttachableKind].into_iter().chain(others).collect();
     let adapter = Adapter::from_pairs(&settings, &devices).map_err(|error| Failure::Usage(error.to_string()))?;
     Ok(Box::new(adapter))
 }

@@ -18,7 +18,7 @@ use crate::devices::ssi::protocol::Layout;
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::Store;
-use crate::worker::{Device, EndedEarly, JobReport, Progress, Session, SessionContext, Watched};
+use crate::worker::{Device, JobInterruption, JobReport, Progress, Session, SessionContext, Watched};
 
 pub struct Ssi {
     wire: Box<dyn ByteLink>,
@@ -53,7 +53,7 @@ pub struct JobStep;
 
 pub type JobError = Error;
 
-impl EndedEarly for Error {
+impl JobInterruption for Error {
     fn is_cancelled(&self) -> bool {
         *self == Error::Cancelled
     }

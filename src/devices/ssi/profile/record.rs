@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::devices::ssi::protocol::{Descriptor, Direction, Family, Range, Reads, Resolved};
+use crate::devices::ssi::protocol::{Descriptor, Direction, Family, Range, Reads, ResolvedFrame};
 use crate::profile::ron_text::Unknown;
 
 /// A profile of an SSI encoder.
@@ -85,7 +85,7 @@ impl SsiProfile {
     }
 
     /// Creates a profile with the settings resolved for a family.
-    pub fn of_family(family: &Family, resolved: &Resolved) -> Self {
+    pub fn of_family(family: &Family, resolved: &ResolvedFrame) -> Self {
         SsiProfile {
             family: Some(family.key.clone()),
             direction: resolved.direction,

@@ -26,7 +26,7 @@ pub struct Bursts {
 
 /// The reason why a recording contains no frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoBursts {
+pub enum BurstError {
     /// The clock never changes.
     #[error("the clock has no edges")]
     NoClock,
@@ -64,20 +64,20 @@ struct Edge {
 /// recognised by its idle level.
 ///
 /// # Errors
-/// [`NoBursts`] states what is missing.
-pub fn bursts(levels: &[Levels]) -> Result<Bursts, NoBursts> {
+/// [`BurstError`] states what is missing.
+pub fn bursts(levels: &[Levels]) -> Result<Bursts, BurstError> {
     let edges = edges(levels);
     let mut halves: Vec<f64> = edges.windows(2).filter_map(|two| Some(two.last()?.at - two.first()?.at)).collect();
     halves.sort_by(f64::total_cmp);
-    let half = *halves.get(halves.len() / 2).ok_or(NoBursts::NoClock)?;
+    let half = *halves.get(halves.len() / 2).ok_or(BurstError::NoClock)?;
     let pause = LEAST_MONOFLOP.max(HALVES * half);
-    let rests_high = rests_high(levels, &edges, pause).ok_or(NoBursts::NoPause)?;
+    let rests_high = rests_high(levels, &edges, pause).ok_or(BurstError::NoPause)?;
     let runs: Vec<&[Edge]> = edges.chunk_by(|one, next| next.at - one.at < pause).collect();
     let falls = |edge: &Edge| edge.rises != rests_high;
     // A whole burst falls first and rises last.
     let whole = |run: &[Edge]| run.len().is_multiple_of(2) && run.first().is_some_and(falls);
-    let clocks = usual(runs.iter().filter(|run| whole(run)).map(|run| run.len() / 2)).ok_or(NoBursts::Incomplete)?;
-    let bits = u8::try_from(clocks).ok().filter(|bits| *bits <= 64).ok_or(NoBursts::Long { clocks })?;
+    let clocks = usual(runs.iter().filter(|run| whole(run)).map(|run| run.len() / 2)).ok_or(BurstError::Incomplete)?;
+    let bits = u8::try_from(clocks).ok().filter(|bits| *bits <= 64).ok_or(BurstError::Long { clocks })?;
     let kept = runs.iter().filter(|run| whole(run) && run.len() / 2 == clocks);
     let frames: Vec<u64> = kept.map(|run| frame(levels, run, half)).collect();
     Ok(Bursts { clocks: bits, left_out: runs.len() - frames.len(), frames })
@@ -195,14 +195,14 @@ mod tests {
     #[test]
     fn what_is_no_transfer_says_why() {
         let row = |at: f64, clock| Levels { at: at * 1e-6, clock, data: false };
-        assert_eq!(bursts(&[]), Err(NoBursts::NoClock));
-        assert_eq!(bursts(&[row(0.0, true), row(9.0, true)]), Err(NoBursts::NoClock));
+        assert_eq!(bursts(&[]), Err(BurstError::NoClock));
+        assert_eq!(bursts(&[row(0.0, true), row(9.0, true)]), Err(BurstError::NoClock));
         let runs: Vec<Levels> = (0..200).map(|at| row(f64::from(at), at % 2 == 0)).collect();
-        assert_eq!(bursts(&runs), Err(NoBursts::NoPause));
+        assert_eq!(bursts(&runs), Err(BurstError::NoPause));
         let late = runs.iter().map(|own| Levels { at: own.at + 50e-6, ..*own });
         let long: Vec<Levels> = std::iter::once(row(0.0, true)).chain(late).collect();
         let whole = &long[..=200];
-        assert_eq!(bursts(whole), Err(NoBursts::Incomplete), "it ends low");
-        assert_eq!(bursts(&[whole, &[row(250.0, true)]].concat()), Err(NoBursts::Long { clocks: 100 }));
+        assert_eq!(bursts(whole), Err(BurstError::Incomplete), "it ends low");
+        assert_eq!(bursts(&[whole, &[row(250.0, true)]].concat()), Err(BurstError::Long { clocks: 100 }));
     }
 }

@@ -15,8 +15,8 @@ mod tests;
 mod text;
 
 pub use c::c99;
-pub use halves::{WideNumbers, scl, structured_text_32};
-pub use linuxcnc::{FormatError, NoFormat, from_linuxcnc, to_linuxcnc};
+pub use halves::{TooWideError, scl, structured_text_32};
+pub use linuxcnc::{FormatError, UnsupportedProperty, from_linuxcnc, to_linuxcnc};
 pub use picture::{PathStep, Picture, PictureLabel, PictureLength, PictureShape};
 pub use sheet::settings_sheet;
 pub use structured_text::structured_text;

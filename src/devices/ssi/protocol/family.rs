@@ -9,7 +9,7 @@ mod tests;
 mod text;
 
 pub use setting_name::SettingName;
-pub use settings::{Advice, Resolved, Settings, SettingsError};
+pub use settings::{Advice, ResolvedFrame, Settings, SettingsError};
 
 use std::collections::BTreeMap;
 

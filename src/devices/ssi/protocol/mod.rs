@@ -25,16 +25,16 @@ pub const KIND: &str = "ssi";
 
 pub use code::{Code, CodeError, Coding, gray, ungray};
 pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
-pub use edges::{Bursts, Levels, NoBursts, bursts};
+pub use edges::{BurstError, Bursts, Levels, bursts};
 pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
-    ExportText, FormatError, ModuleObstacle, NoFormat, PathStep, Picture, PictureLabel, PictureLength, PictureShape,
-    Say, SettingMeaning, WideNumbers, bit_table, c99, english, frame_picture, from_linuxcnc, scl, settings_sheet,
-    structured_text, structured_text_32, timing_picture, to_linuxcnc,
+    ExportText, FormatError, ModuleObstacle, PathStep, Picture, PictureLabel, PictureLength, PictureShape, Say,
+    SettingMeaning, TooWideError, UnsupportedProperty, bit_table, c99, english, frame_picture, from_linuxcnc, scl,
+    settings_sheet, structured_text, structured_text_32, timing_picture, to_linuxcnc,
 };
 pub use family::{
-    Advice, Align, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, Resolved, SettingName, Settings,
-    SettingsError, Signal, StepLimits,
+    Advice, Align, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, ResolvedFrame, SettingName,
+    Settings, SettingsError, Signal, StepLimits,
 };
 pub use find::{Class, Evidence, Open, Proposal, Search, Uncertainty, find};
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
@@ -43,5 +43,5 @@ pub(crate) use layout::any_layouts;
 pub use layout::{ClockUse, Flags, FrameReading, Layout, LayoutError, RepeatedPart, WordOperation};
 pub use range::{Direction, Fraction, Location, Range, RangeError};
 pub use spec::SpecError;
-pub use tally::{Noted, Tally};
+pub use tally::{CountedFinding, Tally};
 pub use timing::{AnySteps, Asynchronous, Reads, Synchronous, Taken, Times, Timing, Warning};

@@ -8,14 +8,14 @@ use crate::analysis::Time;
 /// Counts of the findings in consecutive frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
-    noted: Vec<Noted>,
+    noted: Vec<CountedFinding>,
     /// Flags of the previous frame, and their indices in `noted`.
     before: (Flags, Vec<usize>),
 }
 
 /// A finding with its count.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Noted {
+pub struct CountedFinding {
     /// The finding.
     pub finding: FrameFinding,
     /// Number of occurrences: findings about a single transfer (a clearable error bit, parity, repetition) count with
@@ -48,7 +48,13 @@ impl Tally {
         for finding in layout.findings(reading) {
             let known = self.noted.iter().position(|noted| noted.finding == finding);
             let index = known.unwrap_or_else(|| {
-                self.noted.push(Noted { finding: finding.clone(), count: 0, first: at, last: at, stands: false });
+                self.noted.push(CountedFinding {
+                    finding: finding.clone(),
+                    count: 0,
+                    first: at,
+                    last: at,
+                    stands: false,
+                });
                 self.noted.len() - 1
             });
             now.push(index);
@@ -67,7 +73,7 @@ impl Tally {
     }
 
     /// Returns the findings since the last [`reset`](Self::reset), ordered by their first frame.
-    pub fn noted(&self) -> &[Noted] {
+    pub fn noted(&self) -> &[CountedFinding] {
         &self.noted
     }
 
@@ -112,7 +118,7 @@ mod tests {
             other => format!("{other:?}"),
         };
         let milliseconds = |time: Time| time.nanoseconds() / 1_000_000;
-        let row = |noted: &Noted| {
+        let row = |noted: &CountedFinding| {
             (name(&noted.finding), noted.count, milliseconds(noted.first), milliseconds(noted.last), noted.stands)
         };
         tally.noted().iter().map(row).collect()

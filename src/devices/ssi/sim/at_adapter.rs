@@ -1,8 +1,8 @@
 //! The SSI encoder behind a virtual adapter, configured in the query of a `sim:` link.
 
-use super::encoder::{Encoder, Sending};
+use super::encoder::{Encoder, FrameSender};
 use super::injected_fault::InjectedFault;
-use crate::buses::bridge::sim::{Attachable, Attached};
+use crate::buses::bridge::sim::{AttachableKind, AttachedDevice};
 use crate::expected::Expected;
 use crate::parameter::{ANY, Checked, Maybe, Parameters, Refused};
 use crate::parameters;
@@ -39,17 +39,17 @@ impl AtAdapter {
     }
 }
 
-impl Attachable for AtAdapter {
+impl AttachableKind for AtAdapter {
     fn keys(&self) -> &'static [&'static str] {
         Settings::KEYS
     }
 
-    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {
+    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
         let Settings { encoder, troubles } = Settings::read(pairs)?;
         let own = encoder.or_else(|| self.encoder.clone()).or_else(|| Encoder::named(DELIVERED));
         let Some(encoder) = own else { return Ok(None) };
         let troubles = parse_faults(&troubles, &encoder)?;
-        Ok(Some(Attached::Ssi(Box::new(Sending { encoder, troubles, transferred: None }))))
+        Ok(Some(AttachedDevice::Ssi(Box::new(FrameSender { encoder, troubles, transferred: None }))))
     }
 }
 

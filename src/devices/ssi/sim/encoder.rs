@@ -24,13 +24,13 @@ impl Encoder {
 }
 
 #[derive(Clone)]
-pub(super) struct Sending {
+pub(super) struct FrameSender {
     pub(super) encoder: Encoder,
     pub(super) troubles: Vec<InjectedFault>,
     pub(super) transferred: Option<Moment>,
 }
 
-impl Sending {
+impl FrameSender {
     fn frame(&self, (raw, per_turn): (u64, u64), at: Moment) -> u64 {
         let Encoder { layout, direction, preset } = &self.encoder;
         let happening = || self.troubles.iter().filter(|trouble| trouble.happens(at, self.transferred));
@@ -43,7 +43,7 @@ impl Sending {
     }
 }
 
-impl SsiDevice for Sending {
+impl SsiDevice for FrameSender {
     fn another(&self) -> Box<dyn SsiDevice> {
         Box::new(self.clone())
     }

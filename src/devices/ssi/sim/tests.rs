@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::AtAdapter;
 use crate::buses::bridge::protocol::*;
-use crate::buses::bridge::sim::Attachable;
+use crate::buses::bridge::sim::AttachableKind;
 use crate::buses::bridge::sim::tests::{Dial, Host, SSI};
 use crate::sim::ConfigError;
 use crate::sim::setting::pairs;

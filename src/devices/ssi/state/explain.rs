@@ -12,7 +12,7 @@ use crate::app::explain::link;
 use crate::buses::bridge::state::adapter;
 use crate::devices::ssi::jobs::JobError;
 use crate::devices::ssi::protocol::{
-    Advice, Code, Coded, Evidence, FrameFinding, Layout, Meaning, Noted, Open, Range, Uncertainty, Warning,
+    Advice, Code, Coded, CountedFinding, Evidence, FrameFinding, Layout, Meaning, Open, Range, Uncertainty, Warning,
 };
 use crate::devices::ssi::state::TEXTS;
 
@@ -188,7 +188,7 @@ pub fn evidence(evidence: &Evidence) -> Text {
 }
 
 /// Returns how often and when a finding occurred.
-pub fn noted(noted: &Noted) -> Text {
+pub fn noted(noted: &CountedFinding) -> Text {
     let seconds = |time: crate::analysis::Time| time.nanoseconds() as f64 / 1e9;
     let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };
     TEXTS.text(id).with("count", noted.count).with_number("first", seconds(noted.first), 3).with_number(

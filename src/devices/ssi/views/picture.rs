@@ -25,7 +25,7 @@ pub(super) fn picture_ui(ui: &mut Ui, theme: &Theme, picture: &Picture) {
             info
         });
         if ui.is_rect_visible(rect) {
-            let paper = Paper { ui, theme, origin: rect.min, scale };
+            let paper = DiagramCanvas { ui, theme, origin: rect.min, scale };
             ui.painter().rect_filled(rect, theme.radius, Color32::WHITE);
             picture.shapes.iter().for_each(|shape| paper.draw(shape));
         }
@@ -40,14 +40,14 @@ fn texts(picture: &Picture) -> String {
     texts.collect::<Vec<_>>().join(", ")
 }
 
-struct Paper<'a> {
+struct DiagramCanvas<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
     origin: Pos2,
     scale: f32,
 }
 
-impl Paper<'_> {
+impl DiagramCanvas<'_> {
     fn at(&self, x: f64, y: u32) -> Pos2 {
         self.origin + Vec2::new(x as f32, y as f32) * self.scale
     }

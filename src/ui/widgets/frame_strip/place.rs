@@ -19,7 +19,7 @@ pub(super) struct Placed {
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Placing {
+pub(super) struct StripPlacement {
     pub(super) pieces: Vec<Placed>,
     pub(super) lines: usize,
     pub(super) width: f32,
@@ -45,14 +45,14 @@ fn groups(from: usize, to: usize, field_bits: usize) -> usize {
 }
 
 /// Places the fields within a width, separated by `gap`. A field longer than a line is split.
-pub(super) fn place(wants: &[SpaceNeeded], width: f32, gap: f32) -> Placing {
+pub(super) fn place(wants: &[SpaceNeeded], width: f32, gap: f32) -> StripPlacement {
     let fewest = CELLS.last().map_or(1, |least| with_cell(wants, width, gap, *least).lines);
     let fits = CELLS.iter().map(|cell| with_cell(wants, width, gap, *cell)).find(|placing| placing.lines <= fewest);
     fits.unwrap_or_default()
 }
 
-fn with_cell(wants: &[SpaceNeeded], width: f32, gap: f32, cell: f32) -> Placing {
-    let mut placing = Placing { cell, ..Placing::default() };
+fn with_cell(wants: &[SpaceNeeded], width: f32, gap: f32, cell: f32) -> StripPlacement {
+    let mut placing = StripPlacement { cell, ..StripPlacement::default() };
     let (mut left, mut line) = (0.0, 0);
     for (field, want) in wants.iter().enumerate() {
         let mut first = 0;
@@ -97,7 +97,7 @@ mod tests {
             .collect()
     }
 
-    fn lines(placing: &Placing) -> Vec<Vec<usize>> {
+    fn lines(placing: &StripPlacement) -> Vec<Vec<usize>> {
         (0..placing.lines)
             .map(|line| placing.pieces.iter().filter(|own| own.line == line).map(|own| own.field).collect())
             .collect()

@@ -9,7 +9,7 @@ use crate::app::Text;
 use crate::bits::{self, HexError};
 
 #[derive(Default)]
-struct Reaction {
+struct KeyReaction {
     edits: Vec<HexEdit>,
     copied: Option<String>,
     leave: Option<FocusDirection>,
@@ -18,7 +18,7 @@ struct Reaction {
 /// Handles the keys of the current frame. Call this before the widget is announced; otherwise Tab cannot leave the
 /// widget.
 pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
-    let mut reaction = Reaction::default();
+    let mut reaction = KeyReaction::default();
     ui.input_mut(|input| input.events.retain(|event| !hear(event, model, view, &mut reaction)));
     if let Some(text) = reaction.copied {
         ui.copy_text(text);
@@ -29,7 +29,7 @@ pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<H
     reaction.edits
 }
 
-fn hear(event: &Event, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) -> bool {
+fn hear(event: &Event, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
     match event {
         Event::Key { pressed: true, .. } | Event::Text(_) | Event::Paste(_) | Event::Copy => view.problem = None,
         _ => return false,
@@ -61,7 +61,7 @@ fn hear(event: &Event, model: &HexModel<'_>, view: &mut HexView, reaction: &mut 
 }
 
 /// Handles Tab, which moves from the hex column to the text column and on to the next widget, and back.
-fn tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut Reaction) -> bool {
+fn tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
     if modifiers.command || modifiers.alt {
         return false;
     }
@@ -101,8 +101,8 @@ fn walk(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView
     true
 }
 
-fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) -> bool {
-    let history = |view: &mut HexView, reaction: &mut Reaction, edit: HexEdit| {
+fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
+    let history = |view: &mut HexView, reaction: &mut KeyReaction, edit: HexEdit| {
         change(model, view, reaction, |view, reaction| {
             view.follow(model.wanted);
             reaction.edits.push(edit);
@@ -137,8 +137,8 @@ fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView,
 fn change(
     model: &HexModel<'_>,
     view: &mut HexView,
-    reaction: &mut Reaction,
-    how: impl FnOnce(&mut HexView, &mut Reaction),
+    reaction: &mut KeyReaction,
+    how: impl FnOnce(&mut HexView, &mut KeyReaction),
 ) {
     match model.read_only {
         Some(reason) => view.problem = Some(reason.clone()),
@@ -153,7 +153,7 @@ fn copy(bytes: &[u8], column: Column) -> String {
     }
 }
 
-fn write(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) {
+fn write(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction) {
     if view.column == Column::Text {
         match ascii_bytes(text) {
             Ok(bytes) => put(bytes, model, view, reaction, false),
@@ -177,7 +177,7 @@ fn write(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Re
     }
 }
 
-fn paste(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction) {
+fn paste(text: &str, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction) {
     view.pending = None;
     let bytes = match view.column {
         Column::Text => ascii_bytes(text),
@@ -201,7 +201,7 @@ fn ascii_bytes(text: &str) -> Result<Vec<u8>, Text> {
 }
 
 /// Writes bytes at the start of the selection; afterwards they are selected, or the cursor is placed after them.
-fn put(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction, select: bool) {
+fn put(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction, select: bool) {
     let address = view.selection().start;
     let room = model.wanted.len().saturating_sub(address);
     if bytes.is_empty() {

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::buses::bridge::protocol::*;
-use crate::buses::bridge::sim::{Adapter, Attachable, Attached, BissDevice, SsiDevice};
+use crate::buses::bridge::sim::{Adapter, AttachableKind, AttachedDevice, BissDevice, SsiDevice};
 use crate::parameter::Values as _;
 use crate::sim::setting::pairs;
 use crate::sim::{ByteDevice, ConfigError, Faults, Motor, RPM};
@@ -29,7 +29,7 @@ impl Host {
     }
 
     /// Creates a host with an adapter for these devices.
-    pub(crate) fn to(query: &str, devices: &[&dyn Attachable]) -> Self {
+    pub(crate) fn to(query: &str, devices: &[&dyn AttachableKind]) -> Self {
         let adapter = Adapter::from_pairs(&pairs(query), devices).unwrap();
         Host { adapter, receiver: Receiver::default(), seq: 0, now: Moment::START }
     }
@@ -122,12 +122,12 @@ impl Dial {
     }
 }
 
-impl Attachable for DialSettings {
+impl AttachableKind for DialSettings {
     fn keys(&self) -> &'static [&'static str] {
         &["rpm", "seed", "fault"]
     }
 
-    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {
+    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
         let mut rpm = 0.0;
         for (key, value) in pairs.iter().filter(|(key, _)| key == "rpm") {
             rpm = RPM.take(key, value)?;
@@ -135,7 +135,7 @@ impl Attachable for DialSettings {
         let revolutions = f64::from(0x1234) + 0.75;
         let (motor, registers) = (Motor::at(rpm), [0x61; 0x80]);
         let dial = Dial { motor, revolutions, now: Moment::START, ready: Some(Moment::START), registers };
-        Ok(Some(Attached::Biss(Box::new(dial))))
+        Ok(Some(AttachedDevice::Biss(Box::new(dial))))
     }
 }
 
@@ -193,13 +193,13 @@ impl BissDevice for Dial {
     }
 }
 
-impl Attachable for WordGiver {
+impl AttachableKind for WordGiver {
     fn keys(&self) -> &'static [&'static str] {
         &[]
     }
 
-    fn attached(&self, _: &[(String, String)]) -> Result<Option<Attached>, ConfigError> {
-        Ok(Some(Attached::Ssi(Box::new(WordGiver))))
+    fn attached(&self, _: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
+        Ok(Some(AttachedDevice::Ssi(Box::new(WordGiver))))
     }
 }
 

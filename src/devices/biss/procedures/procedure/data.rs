@@ -4,7 +4,7 @@
 //! [`Master`]: crate::devices::biss::procedures::Master
 
 use super::guide::{Attended, Guide};
-use super::{Activity, Detail, Failure, Outcome, ProcedureStep, Task};
+use super::{Activity, Failure, Outcome, ProcedureStep, StepDetail, Task};
 use crate::devices::biss::profile::RegisterChange;
 use crate::devices::biss::protocol::{Area, DataCommand, DataStatus, Procedure, ProcedureKind};
 
@@ -23,7 +23,7 @@ impl Guide<'_, '_> {
         self.step(ProcedureStep::Write);
         let total = registers.len() as u64;
         for (done, change) in (0..).zip(registers) {
-            self.report(Detail::Count { done, total });
+            self.report(StepDetail::Count { done, total });
             self.master.write(change.address, change.new)?;
         }
         self.await_status(&procedure, DataStatus::Open.byte())?;
@@ -39,7 +39,7 @@ impl Guide<'_, '_> {
         self.step(ProcedureStep::ReadBack);
         let total = registers.len() as u64;
         for (done, change) in (0..).zip(registers) {
-            self.report(Detail::Count { done, total });
+            self.report(StepDetail::Count { done, total });
             self.read_back(change.address, change.new)?;
         }
         Ok(Outcome::Stored { registers: total })

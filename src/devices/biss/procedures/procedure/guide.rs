@@ -8,7 +8,8 @@ use std::time::Duration;
 use super::operator::Measured;
 use super::speed_monitor::SpeedMonitor;
 use super::{
-    Activity, Answer, Demand, Detail, Failure, LeftState, Motion, Operator, ProcedureProgress, ProcedureStep, Run, Task,
+    Activity, Answer, Demand, Failure, LeftState, Motion, Operator, ProcedureProgress, ProcedureStep, Run, StepDetail,
+    Task,
 };
 use crate::devices::biss::procedures::{Error, Master};
 use crate::devices::biss::protocol::{
@@ -105,10 +106,10 @@ impl<'g, 'm> Guide<'g, 'm> {
 
     pub(super) fn step(&mut self, step: ProcedureStep) {
         self.step = step;
-        self.report(Detail::Begins);
+        self.report(StepDetail::Begins);
     }
 
-    pub(super) fn report(&mut self, detail: Detail) {
+    pub(super) fn report(&mut self, detail: StepDetail) {
         (self.tell)(ProcedureProgress { op: self.op, step: self.step, detail });
     }
 
@@ -254,7 +255,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             } else if elapsed >= course.limit {
                 return Err(Failure::TooLong { run: course.run, seconds: elapsed.as_secs() });
             }
-            self.report(Detail::Lasts { elapsed, expected: Some(course.expected) });
+            self.report(StepDetail::Lasts { elapsed, expected: Some(course.expected) });
             self.master.wait(course.every)?;
         }
         self.does(Activity::Nothing);
@@ -292,7 +293,7 @@ impl<'g, 'm> Guide<'g, 'm> {
                 is_told = true;
             }
             let demand = Demand::new(task, measured, self.master.now().since(begun));
-            self.report(Detail::Demand(demand.clone()));
+            self.report(StepDetail::Demand(demand.clone()));
             match self.operator.attend(&demand) {
                 Answer::Go if demand.is_ready() => return Ok(Attended::Go(demand.motion)),
                 Answer::Go | Answer::Wait => {}
@@ -340,8 +341,8 @@ fn look(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result
     let mode = DeviceMode::new(master.read(lock.mode_at)?);
     let password = master.read(lock.password_at)? != 0;
     *standing = LeftState {
-        mode: super::Possible::known(mode),
-        password: super::Possible::known(password),
+        mode: super::PossibleValues::known(mode),
+        password: super::PossibleValues::known(password),
         activity: standing.activity,
     };
     if standing.is_in_operation() {

@@ -6,13 +6,13 @@ use crate::devices::biss::protocol::DeviceMode;
 
 /// The possible values of a quantity: one, or several if a reply is missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Possible<T>(Vec<T>);
+pub struct PossibleValues<T>(Vec<T>);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftState {
-    pub mode: Possible<DeviceMode>,
+    pub mode: PossibleValues<DeviceMode>,
     /// Whether the password is set, so that device modes can be selected.
-    pub password: Possible<bool>,
+    pub password: PossibleValues<bool>,
     pub activity: Activity,
 }
 
@@ -28,9 +28,9 @@ pub enum Activity {
     Restarting,
 }
 
-impl<T: Copy + PartialEq> Possible<T> {
+impl<T: Copy + PartialEq> PossibleValues<T> {
     pub fn known(value: T) -> Self {
-        Possible(vec![value])
+        PossibleValues(vec![value])
     }
 
     /// Returns all possible values in the order in which they would have been reached.
@@ -55,7 +55,7 @@ impl<T: Copy + PartialEq> Possible<T> {
     /// Records a write that sets the value to `after`; its result determines the possible values.
     pub(super) fn becomes(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
-            Ok(()) => *self = Possible::known(after),
+            Ok(()) => *self = PossibleValues::known(after),
             // It was not sent, or not accepted.
             Err(Error::Cancelled | Error::Refused { .. }) => {}
             Err(_) => self.or(after),
@@ -66,8 +66,8 @@ impl<T: Copy + PartialEq> Possible<T> {
 impl LeftState {
     pub fn in_operation(password: bool) -> Self {
         LeftState {
-            mode: Possible::known(DeviceMode::OPERATION),
-            password: Possible::known(password),
+            mode: PossibleValues::known(DeviceMode::OPERATION),
+            password: PossibleValues::known(password),
             activity: Activity::Nothing,
         }
     }
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn an_unanswered_write_leaves_two_possible_states() {
         let lost = || Err(Error::Link(LinkError::new("x", LinkErrorKind::Lost)));
-        let mut mode = Possible::known(0);
+        let mut mode = PossibleValues::known(0);
         mode.becomes(1, &Ok(()));
         assert!(mode.is(1));
         mode.becomes(0, &Err(Error::Cancelled));
@@ -111,8 +111,8 @@ mod tests {
     fn a_possible_restart_leaves_operation_mode_possible() {
         let mut standing = LeftState::in_operation(false);
         assert!(standing.is_in_operation());
-        standing.mode = Possible::known(DeviceMode::PRESET);
-        standing.password = Possible::known(true);
+        standing.mode = PossibleValues::known(DeviceMode::PRESET);
+        standing.password = PossibleValues::known(true);
         standing.may_have_restarted();
         assert_eq!(standing.mode.values(), [DeviceMode::PRESET, DeviceMode::OPERATION]);
         assert_eq!(standing.password.values(), [true, false]);

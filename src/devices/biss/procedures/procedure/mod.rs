@@ -27,10 +27,10 @@ mod wiegand;
 pub use calibration::CalibrationReport;
 pub use failure::Failure;
 pub(super) use guide::Guide;
-pub use left_state::{Activity, LeftState, Possible};
+pub use left_state::{Activity, LeftState, PossibleValues};
 pub use operator::{Advice, Answer, Blocker, Demand, Operator, OperatorChannel, Run, SpeedRange, Task, Unattended};
 pub use speed_monitor::Motion;
-pub use steps::{Detail, ProcedureProgress, ProcedureStep, steps_of};
+pub use steps::{ProcedureProgress, ProcedureStep, StepDetail, steps_of};
 pub use wiegand::WiegandReport;
 
 use super::{Error, Master, PositionReading, identify};

@@ -30,11 +30,11 @@ pub struct ProcedureProgress {
     /// Index of the operation in the plan, counted from 0.
     pub op: usize,
     pub step: ProcedureStep,
-    pub detail: Detail,
+    pub detail: StepDetail,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Detail {
+pub enum StepDetail {
     Begins,
     Count {
         done: u64,

@@ -7,7 +7,7 @@ use super::encoder;
 use super::guide::{blocker, mode, speeds, step, task, temperatures};
 use super::plan::procedure_kind_text;
 use crate::app::explain::plain;
-use crate::app::review::{ChangeWords, OpWords};
+use crate::app::review::{ChangeTexts, OperationTexts};
 use crate::app::{Severity, Text};
 use crate::bits::hex;
 use crate::devices::biss::jobs::{Change, ChangeKind, Prepared, WEAR_LIMIT};
@@ -32,15 +32,15 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-pub fn op(op: &Op, layout: &Layout) -> OpWords {
+pub fn op(op: &Op, layout: &Layout) -> OperationTexts {
     let bits = layout.singleturn_bits();
     match op {
-        Op::StoreData { area, registers } => OpWords {
+        Op::StoreData { area, registers } => OperationTexts {
             item: TEXTS.text("biss_op.data").with_text("area", super::name(&area.name)),
             changes: runs(registers),
         },
         Op::StorePreset { from, to } => {
-            OpWords::one(TEXTS.text("biss_op.preset"), preset(*from, bits), preset(*to, bits))
+            OperationTexts::one(TEXTS.text("biss_op.preset"), preset(*from, bits), preset(*to, bits))
         }
         Op::FirePreset { parts, value } => {
             let new = match parts {
@@ -48,20 +48,20 @@ pub fn op(op: &Op, layout: &Layout) -> OpWords {
                 PresetParts::Singleturn => preset_words("biss_op.singleturn", *value, bits),
                 PresetParts::Multiturn => preset_words("biss_op.multiturn", *value, bits),
             };
-            OpWords::one(TEXTS.text("biss_op.fire"), TEXTS.text("biss_op.place"), new)
+            OperationTexts::one(TEXTS.text("biss_op.fire"), TEXTS.text("biss_op.place"), new)
         }
-        Op::SelectFilter { from, to } => OpWords::one(TEXTS.text("biss_op.filter"), filter(*from), filter(*to)),
-        Op::Calibrate => OpWords::one(
+        Op::SelectFilter { from, to } => OperationTexts::one(TEXTS.text("biss_op.filter"), filter(*from), filter(*to)),
+        Op::Calibrate => OperationTexts::one(
             TEXTS.text("guide.calibration"),
             TEXTS.text("biss_op.present_table"),
             TEXTS.text("biss_op.new_table"),
         ),
-        Op::WiegandTest { save } => OpWords::one(
+        Op::WiegandTest { save } => OperationTexts::one(
             TEXTS.text("guide.wiegand"),
             TEXTS.text("biss_op.last_result"),
             TEXTS.text(if *save { "biss_op.saved_result" } else { "biss_op.fresh_result" }),
         ),
-        Op::WriteRegister { address, old, new, .. } => OpWords::one(
+        Op::WriteRegister { address, old, new, .. } => OperationTexts::one(
             TEXTS.text("biss_op.register").with("address", address),
             old.map_or_else(|| TEXTS.text("biss_op.not_readable"), |old| plain(format!("{old:02X}"))),
             plain(format!("{new:02X}")),
@@ -70,11 +70,11 @@ pub fn op(op: &Op, layout: &Layout) -> OpWords {
 }
 
 /// Groups consecutive registers into one line each.
-fn runs(registers: &[RegisterChange]) -> Vec<ChangeWords> {
+fn runs(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
     let words = |range: RegisterRange| {
         let own = registers.iter().filter(|own| range.contains(own.address));
         let (old, new): (Vec<u8>, Vec<u8>) = own.map(|own| (own.old, own.new)).unzip();
-        ChangeWords { part: Some(plain(range)), old: plain(hex(&old)), new: plain(hex(&new)) }
+        ChangeTexts { part: Some(plain(range)), old: plain(hex(&old)), new: plain(hex(&new)) }
     };
     RegisterRange::runs(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
 }
@@ -242,7 +242,7 @@ mod tests {
     use super::*;
     use crate::app::Language::{English, German};
     use crate::devices::biss::procedures::Error;
-    use crate::devices::biss::procedures::procedure::{Blocker, Possible, ProcedureStep, Task};
+    use crate::devices::biss::procedures::procedure::{Blocker, PossibleValues, ProcedureStep, Task};
     use crate::devices::biss::procedures::write::EndState;
     use crate::devices::biss::protocol::{DeviceMode, ProcedureKind, RegisterAddress};
 
@@ -298,9 +298,9 @@ mod tests {
     }
 
     fn left_state(modes: &[DeviceMode], password: bool, activity: Activity) -> Option<LeftState> {
-        let mut mode = Possible::known(modes[0]);
+        let mut mode = PossibleValues::known(modes[0]);
         modes[1..].iter().for_each(|own| mode.or(*own));
-        Some(LeftState { mode, password: Possible::known(password), activity })
+        Some(LeftState { mode, password: PossibleValues::known(password), activity })
     }
 
     /// Issue 22.5: the remedy applies only after the encoder has returned to operation.

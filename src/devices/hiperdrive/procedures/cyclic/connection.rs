@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::LinkFigures;
-use crate::buses::ethernet_ip::protocol::{Arrival, Arrivals, IoPacket, RealTimeFormat, RunIdle};
+use crate::buses::ethernet_ip::protocol::{IoPacket, PacketTracker, PacketVerdict, RealTimeFormat, RunIdle};
 use crate::devices::hiperdrive::procedures::Opened;
 use crate::devices::hiperdrive::protocol::{InImage, Layout, OutImage};
 use crate::units::Moment;
@@ -18,7 +18,7 @@ pub struct Connection {
     next: Moment,
     sequence: u32,
     count: u16,
-    arrivals: Arrivals,
+    arrivals: PacketTracker,
     last_received: Moment,
     awake: Moment,
     /// Time without packets after which the target ends the connection.
@@ -49,7 +49,7 @@ impl Connection {
             next: now,
             sequence: 0,
             count: 0,
-            arrivals: Arrivals::default(),
+            arrivals: PacketTracker::default(),
             last_received: now,
             awake: now,
             timeout: opened.timeout,
@@ -101,11 +101,11 @@ impl Connection {
             return None;
         };
         match self.arrivals.take(packet.sequence) {
-            Arrival::Stale => {
+            PacketVerdict::Stale => {
                 self.figures.stale += 1;
                 None
             }
-            Arrival::New { missing } => {
+            PacketVerdict::New { missing } => {
                 if self.began {
                     self.figures.missed += u64::from(missing);
                     self.figures.intervals.count(self.come_interval, now.since(self.last_received));

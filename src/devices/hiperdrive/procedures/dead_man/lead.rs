@@ -13,7 +13,7 @@ pub(super) struct Lead {
     word: Option<(ControlWord, Mark)>,
 }
 
-enum LeadStep {
+enum GoalSequenceStep {
     By(ControlWord),
     There,
     Lost,
@@ -66,7 +66,7 @@ impl Lead {
         self.word.map_or(ControlWord::OFF, |(word, _)| word)
     }
 
-    fn next_step(&self, now: Mark, status: StatusWord, after_run: bool) -> LeadStep {
+    fn next_step(&self, now: Mark, status: StatusWord, after_run: bool) -> GoalSequenceStep {
         use ControlWord as W;
         let sends = |word: ControlWord| self.word.is_some_and(|(sent, _)| sent == word);
         // The drive has received a word for long enough to have processed it: the edge that follows must not be missed.
@@ -74,8 +74,8 @@ impl Lead {
             |word: ControlWord| self.word.is_some_and(|(sent, since)| sent == word && now.is_past(since, SETTLE));
         let state = status.state();
         let word = match (state, self.goal) {
-            (State::Fault | State::Locked, Goal::Off) => return LeadStep::There,
-            (State::Fault, _) if !self.acknowledges => return LeadStep::Lost,
+            (State::Fault | State::Locked, Goal::Off) => return GoalSequenceStep::There,
+            (State::Fault, _) if !self.acknowledges => return GoalSequenceStep::Lost,
             (State::Fault, _) if seen(W::ACKNOWLEDGE) || sends(W::OPERATIONAL) => W::OPERATIONAL,
             (State::Fault, _) => W::ACKNOWLEDGE,
             (State::Locked, _) if seen(W::OPERATIONAL) || sends(W::READY) => W::READY,
@@ -88,11 +88,11 @@ impl Lead {
                 // Nothing else starts before it stands still.
                 _ if state == State::Moving => W::ENABLED,
                 _ if after_run && goal == Goal::Ready && status.has(StatusBit::SetpointAcknowledged) => W::READY,
-                _ => return LeadStep::There,
+                _ => return GoalSequenceStep::There,
             },
         };
         let patience = |(sent, since): (ControlWord, Mark)| sent == word && now.is_past(since, STEP);
-        if self.word.is_some_and(patience) { LeadStep::Lost } else { LeadStep::By(word) }
+        if self.word.is_some_and(patience) { GoalSequenceStep::Lost } else { GoalSequenceStep::By(word) }
     }
 }
 
@@ -120,13 +120,13 @@ impl DeadMan {
     pub(super) fn go_on(&mut self, now: Moment, actual: Actual, mut lead: Lead) {
         let mark = self.mark(now);
         match lead.next_step(mark, actual.status, self.after_run) {
-            LeadStep::By(word) => {
+            GoalSequenceStep::By(word) => {
                 if lead.word.is_none_or(|(sent, _)| sent != word) {
                     lead.word = Some((word, mark));
                 }
                 self.stage = Stage::Lead(lead);
             }
-            LeadStep::There => {
+            GoalSequenceStep::There => {
                 self.level = lead.goal;
                 self.stage = Stage::Rest { moves: None };
                 match self.act {
@@ -134,7 +134,7 @@ impl DeadMan {
                     _ => self.end(Ended::Done),
                 }
             }
-            LeadStep::Lost => {
+            GoalSequenceStep::Lost => {
                 self.hold_state(actual.status.state());
                 self.end(Ended::NoAnswer(actual.status.state()));
             }

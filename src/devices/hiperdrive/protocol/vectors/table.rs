@@ -154,8 +154,8 @@ fn every_row_matches_the_manual() {
         };
         assert_eq!(row.factory, factory, "{own}");
         let reach = match typed.range {
-            "turns" => Some(Reach::Position),
-            "way" => Some(Reach::Step),
+            "turns" => Some(StepLimit::Position),
+            "way" => Some(StepLimit::Step),
             _ => None,
         };
         assert_eq!(row.reach, reach, "{own}");

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use super::plant::Plant;
 use crate::buses::ethernet_ip::protocol::{
-    Arrival, Arrivals, ForwardOpen, Frame, IoPacket, Owner, RealTimeFormat, RunIdle,
+    ForwardOpen, Frame, IoPacket, Owner, PacketTracker, PacketVerdict, RealTimeFormat, RunIdle,
 };
 use crate::devices::hiperdrive::protocol::{Layout, OutImage};
 use crate::units::Moment;
@@ -24,7 +24,7 @@ pub(super) struct Cyclic {
     interval: Duration,
     next: Moment,
     sequence: u32,
-    arrivals: Arrivals,
+    arrivals: PacketTracker,
 }
 
 impl Cyclic {
@@ -39,7 +39,7 @@ impl Cyclic {
             interval,
             next: now + interval,
             sequence: 0,
-            arrivals: Arrivals::default(),
+            arrivals: PacketTracker::default(),
         }
     }
 
@@ -104,11 +104,11 @@ impl Plant {
             return;
         };
         match cyclic.arrivals.take(packet.sequence) {
-            Arrival::New { .. } => {
+            PacketVerdict::New { .. } => {
                 self.figures.packets += 1;
                 self.station.cyclic(self.now, &image, runs);
             }
-            Arrival::Stale => self.figures.stale += 1,
+            PacketVerdict::Stale => self.figures.stale += 1,
         }
     }
 }

@@ -59,7 +59,7 @@ pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ErrorWords {
+pub struct ErrorExplanation {
     pub name: Text,
     pub cause: Text,
     /// Remedy, to be applied before acknowledging the error.
@@ -67,7 +67,7 @@ pub struct ErrorWords {
 }
 
 /// Returns the texts for an error of the buffer: name, cause and remedy.
-pub fn error(code: ErrorCode) -> ErrorWords {
+pub fn error(code: ErrorCode) -> ErrorExplanation {
     let (name, cause, remedy) = match code {
         ErrorCode::OVER_CURRENT => ("hd_error.over_current", "hd_cause.over_current", "hd_remedy.over_current"),
         ErrorCode::UNDER_VOLTAGE => ("hd_error.under_voltage", "hd_cause.under_voltage", "hd_remedy.under_voltage"),
@@ -91,7 +91,7 @@ pub fn error(code: ErrorCode) -> ErrorWords {
         ErrorCode::RS485 => ("hd_error.rs485", "hd_cause.rs485", "hd_remedy.rs485"),
         _ => ("hd_error.unknown", "hd_cause.unknown", "hd_remedy.unknown"),
     };
-    ErrorWords { name: TEXTS.text(name), cause: TEXTS.text(cause), remedy: TEXTS.text(remedy) }
+    ErrorExplanation { name: TEXTS.text(name), cause: TEXTS.text(cause), remedy: TEXTS.text(remedy) }
 }
 
 pub fn parameter(number: ParameterNumber) -> Text {

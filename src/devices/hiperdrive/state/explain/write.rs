@@ -7,7 +7,7 @@ use super::error::{device, out_of_range};
 use super::names::{parameter, variant};
 use crate::app::Text;
 use crate::app::explain::plain;
-use crate::app::review::OpWords;
+use crate::app::review::OperationTexts;
 use crate::devices::hiperdrive::jobs::{Change, ChangeKind};
 use crate::devices::hiperdrive::procedures::write::{Interrupted, Written};
 use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, OtherType, PlanError, Service, Warning};
@@ -41,11 +41,11 @@ pub fn service(service: Service) -> Text {
     }
 }
 
-pub fn op(op: &Op) -> OpWords {
+pub fn op(op: &Op) -> OperationTexts {
     match op {
         Op::Write { number, old, new } => {
             let old = old.map_or_else(|| TEXTS.text("hd_op.unknown"), plain);
-            OpWords::one(item(Item(*number)), old, plain(new))
+            OperationTexts::one(item(Item(*number)), old, plain(new))
         }
         Op::Service(own) => {
             let (before, after) = match own {
@@ -55,9 +55,9 @@ pub fn op(op: &Op) -> OpWords {
                 Service::Reset => ("hd_op.as_now", "hd_op.restarted"),
                 Service::Acknowledge(_) => ("hd_op.fault", "hd_op.acknowledged"),
             };
-            OpWords::one(service(*own), TEXTS.text(before), TEXTS.text(after))
+            OperationTexts::one(service(*own), TEXTS.text(before), TEXTS.text(after))
         }
-        Op::Network { from, to } => OpWords::one(TEXTS.text("hd_op.network"), network(from), network(to)),
+        Op::Network { from, to } => OperationTexts::one(TEXTS.text("hd_op.network"), network(from), network(to)),
     }
 }
 

@@ -86,7 +86,7 @@ pub enum Storage {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inputs {
+pub struct OffsetInputs {
     pub motor: Motor,
     pub periods: u32,
     pub pole_pairs: u32,
@@ -237,10 +237,10 @@ impl Form {
     ///
     /// # Errors
     /// Explains why the first invalid entry is invalid.
-    pub fn inputs(&self, geometry: Option<Geometry>) -> Result<Inputs, Text> {
+    pub fn inputs(&self, geometry: Option<Geometry>) -> Result<OffsetInputs, Text> {
         let pole_pairs = whole(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MOST_POLE_PAIRS)?;
         let periods = self.periods(geometry)?;
-        Ok(Inputs {
+        Ok(OffsetInputs {
             motor: Motor::new(periods, pole_pairs).ok_or_else(|| missing("commutation.pole_pairs"))?,
             periods,
             pole_pairs,

@@ -1,7 +1,7 @@
 //! Result of the readings: mean of both sides, offset, verification with a second vector, the bytes for method 1 and
 //! the position for method 2.
 
-use super::{Commutation, Inputs, Kind, OffsetLocation, Slot, Source, Storage};
+use super::{Commutation, Kind, OffsetInputs, OffsetLocation, Slot, Source, Storage};
 use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::{ElectricalAngle, preset_position};
 use crate::analysis::quality::Verdict;
@@ -221,12 +221,12 @@ fn apart(from: f64, to: f64, periods: u32) -> f64 {
     if forward > turn / 2.0 { forward - turn } else { forward }
 }
 
-fn electrical_deg(periods: f64, inputs: &Inputs) -> f64 {
+fn electrical_deg(periods: f64, inputs: &OffsetInputs) -> f64 {
     periods * inputs.motor.electrical_step_deg()
 }
 
 /// Returns the offset at a position at which the electrical angle is that of the vector.
-fn angle(fine_periods: f64, inputs: &Inputs) -> Option<ElectricalAngle> {
+fn angle(fine_periods: f64, inputs: &OffsetInputs) -> Option<ElectricalAngle> {
     let shaft = if inputs.reversed { -fine_periods } else { fine_periods };
     let vector = ElectricalAngle::from_turns(inputs.vector_turns)?;
     inputs.motor.electrical_angle(shaft, vector)

@@ -3,35 +3,39 @@
 use super::words::{field_access, field_code_required, field_status, line_settings};
 use crate::app::Text;
 use crate::app::explain::plain;
-use crate::app::review::OpWords;
+use crate::app::review::OperationTexts;
 use crate::bits::hex;
 use crate::devices::hiperface::profile::Op;
 use crate::devices::hiperface::protocol::DataFieldStatus;
 use crate::devices::hiperface::state::TEXTS;
 
 /// Describes an operation without revealing access codes.
-pub fn op(op: &Op) -> OpWords {
+pub fn op(op: &Op) -> OperationTexts {
     match op {
         Op::Define { field, from, to } => define(*field, *from, *to),
-        Op::Store { field, address, old, new, .. } => OpWords::one(
+        Op::Store { field, address, old, new, .. } => OperationTexts::one(
             bytes(*field, usize::from(*address), new.len()),
             old.as_ref().map_or_else(|| TEXTS.text("op.new_field"), |old| plain(hex(old))),
             plain(hex(new)),
         ),
-        Op::ChangeCode { number, .. } => OpWords::one(
+        Op::ChangeCode { number, .. } => OperationTexts::one(
             TEXTS.text("op.access_code").with("number", number),
             TEXTS.text("op.present_code"),
             TEXTS.text("op.changed_code"),
         ),
         Op::SetPosition { from, to, synchronise } => {
             let item = if *synchronise { "op.synchronise" } else { "op.position" };
-            OpWords::one(TEXTS.text(item), plain(from), plain(to))
+            OperationTexts::one(TEXTS.text(item), plain(from), plain(to))
         }
-        Op::SetAddress { from, to } => OpWords::one(TEXTS.text("op.address"), plain(format!("{from:02X}h")), plain(to)),
-        Op::Configure { from, to } => OpWords::one(TEXTS.text("op.settings"), line_settings(*from), line_settings(*to)),
-        Op::ClearCounter { from } => OpWords::one(TEXTS.text("op.counter"), plain(from), plain(0)),
+        Op::SetAddress { from, to } => {
+            OperationTexts::one(TEXTS.text("op.address"), plain(format!("{from:02X}h")), plain(to))
+        }
+        Op::Configure { from, to } => {
+            OperationTexts::one(TEXTS.text("op.settings"), line_settings(*from), line_settings(*to))
+        }
+        Op::ClearCounter { from } => OperationTexts::one(TEXTS.text("op.counter"), plain(from), plain(0)),
         Op::IncrementCounter { from } => {
-            OpWords::one(TEXTS.text("op.counter"), plain(from), plain((from + 1) & 0x00FF_FFFF))
+            OperationTexts::one(TEXTS.text("op.counter"), plain(from), plain((from + 1) & 0x00FF_FFFF))
         }
     }
 }
@@ -47,16 +51,18 @@ fn bytes(field: u8, first: usize, count: usize) -> Text {
     }
 }
 
-fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OpWords {
+fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OperationTexts {
     let item = TEXTS.text("op.field").with("field", field);
     match from {
-        Some(from) if from.exists() && !to.exists() => OpWords::one(item, field_status(from), TEXTS.text("op.deleted")),
+        Some(from) if from.exists() && !to.exists() => {
+            OperationTexts::one(item, field_status(from), TEXTS.text("op.deleted"))
+        }
         Some(from) if from.exists() => {
             let (old, new) = differing(from, to).into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
             let parts = |texts: Vec<Text>| TEXTS.text("op.parts").with_list("parts", texts);
-            OpWords::one(item, parts(old), parts(new))
+            OperationTexts::one(item, parts(old), parts(new))
         }
-        _ => OpWords::one(item, TEXTS.text("op.not_there"), field_status(to)),
+        _ => OperationTexts::one(item, TEXTS.text("op.not_there"), field_status(to)),
     }
 }
 

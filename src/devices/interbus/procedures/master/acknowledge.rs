@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::stability::{CycleResult, Held, STAYS_FOR};
 use super::{Error, Master};
-use crate::devices::interbus::procedures::error::Awaited;
+use crate::devices::interbus::procedures::error::AwaitedWord;
 use crate::devices::interbus::procedures::handshake::is_echo;
 use crate::devices::interbus::protocol::{Command, Reply, Value};
 
@@ -70,7 +70,7 @@ impl Master<'_> {
         let holds = self.holds(command, tried);
         let patience = self.patience + holds.unwrap_or_default();
         let mut rests = Held::new(self.recorded);
-        self.until(command, Awaited::Echo, patience, |CycleResult { now, word, same }| {
+        self.until(command, AwaitedWord::Echo, patience, |CycleResult { now, word, same }| {
             let reply = Reply::parse(word);
             rests.go_on(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
             match reply {

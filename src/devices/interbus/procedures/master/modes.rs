@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::Master;
 use super::stability::CycleResult;
 use crate::devices::interbus::procedures::Error;
-use crate::devices::interbus::procedures::error::Awaited;
+use crate::devices::interbus::procedures::error::AwaitedWord;
 use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};
 
 /// How long the value of a cam request may stay `00000000` before `80000000` is tried (`U`).
@@ -280,7 +280,7 @@ impl Master<'_> {
     /// that persists can be told apart from the next echo.
     fn end_query(&mut self) -> Result<(), Error> {
         let patience = VALUE_STAYS.min(self.patience);
-        let ended = self.until(Command::Normal, Awaited::Run, patience, |CycleResult { word, same, .. }| {
+        let ended = self.until(Command::Normal, AwaitedWord::Run, patience, |CycleResult { word, same, .. }| {
             let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
             (!asks && same.is_stable()).then_some(Ok(()))
         });

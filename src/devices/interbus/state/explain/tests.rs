@@ -57,10 +57,10 @@ fn encoder_errors_name_a_remedy() {
         (Error::Illegal(Refused { command: Command::Preset, mode: Mode::Cam }), vec!["0x40000000"]),
         (Error::Refused { sent: set, error: error_word(0x8200_0000) }, vec!["0x02002001", "0x82000000"]),
         (Error::UnknownReadOut { command: Command::ReadShift }, vec!["0x20200040"]),
-        (time_out(Awaited::Echo), vec!["0x02002000", "2000", "0x00000012"]),
-        (time_out(Awaited::Value), vec!["0x02002000", "2000", "0x00000012"]),
-        (time_out(Awaited::Run), vec!["0x02002000", "2000", "0x00000012"]),
-        (time_out(Awaited::Preset), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(AwaitedWord::Echo), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(AwaitedWord::Value), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(AwaitedWord::Run), vec!["0x02002000", "2000", "0x00000012"]),
+        (time_out(AwaitedWord::Preset), vec!["0x02002000", "2000", "0x00000012"]),
         (Error::OtherMaster { sent: 0, output: 0x4000_0000 }, vec!["0x40000000", "0x00000000"]),
         (Error::NotRunning { input: 0xC200_00FF }, vec!["0xC20000FF"]),
         (Error::WordOrder { input: 0x3456_0012, swapped: 0x0012_3456 }, vec!["0x34560012", "0x00123456", "order="]),
@@ -208,7 +208,7 @@ fn operations_are_described_one_by_one() {
     use crate::devices::interbus::profile::{CamChange, ParameterChange, ProgramChange};
     let words = |op: &Op| {
         let own = super::op(op);
-        let one = |change: &crate::app::review::ChangeWords| {
+        let one = |change: &crate::app::review::ChangeTexts| {
             let part = change.part.as_ref().map(|part| part.words(English) + ": ").unwrap_or_default();
             format!("{part}{} → {}", change.old.words(English), change.new.words(English))
         };

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::encoder;
 use super::item::{cams, edge, number, parameter};
 use crate::app::explain::{self, plain};
-use crate::app::review::{ChangeWords, OpWords};
+use crate::app::review::{ChangeTexts, OperationTexts};
 use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{Change, ChangeKind, Prepared, WEAR_ASK, WEAR_LIMIT, Wear};
 use crate::devices::interbus::procedures::write::{EndState, Interrupted, Written};
@@ -29,32 +29,36 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-pub fn op(op: &Op) -> OpWords {
+pub fn op(op: &Op) -> OperationTexts {
     match op {
-        Op::Parameterise(changes) => OpWords {
+        Op::Parameterise(changes) => OperationTexts {
             item: TEXTS.text("ib_op.parameters"),
             changes: changes
                 .iter()
-                .map(|ParameterChange { parameter: own, from, to }| ChangeWords {
+                .map(|ParameterChange { parameter: own, from, to }| ChangeTexts {
                     part: Some(parameter(*own)),
                     old: number(*own, *from),
                     new: number(*own, *to),
                 })
                 .collect(),
         },
-        Op::Program(change) => OpWords {
+        Op::Program(change) => OperationTexts {
             item: TEXTS.text("ib_op.program").with("program", change.program.get()),
             changes: program(change),
         },
-        Op::FirePreset { value } => OpWords::one(TEXTS.text("ib_op.fire"), TEXTS.text("ib_op.place"), plain(value)),
-        Op::Default => {
-            OpWords::one(TEXTS.text("ib_op.default"), TEXTS.text("ib_op.as_set"), TEXTS.text("ib_op.as_delivered"))
+        Op::FirePreset { value } => {
+            OperationTexts::one(TEXTS.text("ib_op.fire"), TEXTS.text("ib_op.place"), plain(value))
         }
+        Op::Default => OperationTexts::one(
+            TEXTS.text("ib_op.default"),
+            TEXTS.text("ib_op.as_set"),
+            TEXTS.text("ib_op.as_delivered"),
+        ),
     }
 }
 
-fn program(change: &ProgramChange) -> Vec<ChangeWords> {
-    let words = |part: Text, old: Text, new: Text| ChangeWords { part: Some(part), old, new };
+fn program(change: &ProgramChange) -> Vec<ChangeTexts> {
+    let words = |part: Text, old: Text, new: Text| ChangeTexts { part: Some(part), old, new };
     // A line a cam.
     let of_cam = |own: &[CamChange]| match own {
         [start @ CamChange { edge: Edge::Start, .. }, stop] => {

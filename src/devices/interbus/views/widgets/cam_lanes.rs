@@ -28,7 +28,7 @@ use crate::ui::Theme;
 
 use place::PlotArea;
 
-struct Lanes<'a> {
+struct LanePainter<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
     model: &'a CamChart<'a>,
@@ -51,7 +51,7 @@ pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: 
     let place = PlotArea::new(outer, view, theme.space.between);
     response.widget_info(|| WidgetInfo::labeled(Role::Group, true, model.label));
 
-    let lanes = Lanes { ui, theme, model, shown, place: &place, base };
+    let lanes = LanePainter { ui, theme, model, shown, place: &place, base };
     let looked = lanes.look(range);
     lanes.paint(drag);
     let pulled = lanes.grips(drag);
@@ -62,7 +62,7 @@ pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: 
     pulled.or(switched).or(looked)
 }
 
-impl Lanes<'_> {
+impl LanePainter<'_> {
     fn snap(&self) -> Snap {
         Snap::on(self.place.steps_in_point())
     }

@@ -10,7 +10,7 @@ use crate::devices::ssi::protocol::range::Range;
 
 /// The reason why a layout has no 32-bit decoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum WideNumbers {
+pub enum TooWideError {
     /// The position exceeds 32 bits.
     #[error("the position has {bits} bits, and a number of the controller 32")]
     Position {
@@ -47,8 +47,8 @@ struct Pair {
 /// Returns a function block `SSI_DECODE` in structured text, with DWORD in place of LWORD.
 ///
 /// # Errors
-/// [`WideNumbers`]: 32 bits do not suffice.
-pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, WideNumbers> {
+/// [`TooWideError`]: 32 bits do not suffice.
+pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWideError> {
     let halves = Halves::of(layout, Language::StructuredText)?;
     let mut text = String::new();
     // Writing into a String does not fail.
@@ -70,8 +70,8 @@ pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, WideNu
 /// Returns a source file with a function block `SSI_DECODE`, for *External source files* of TIA Portal.
 ///
 /// # Errors
-/// [`WideNumbers`]: 32 bits do not suffice.
-pub fn scl(layout: &Layout, title: &str) -> Result<String, WideNumbers> {
+/// [`TooWideError`]: 32 bits do not suffice.
+pub fn scl(layout: &Layout, title: &str) -> Result<String, TooWideError> {
     let halves = Halves::of(layout, Language::Scl)?;
     let mut text = String::from("FUNCTION_BLOCK \"SSI_DECODE\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\n");
     let lines = statements(layout, &halves);
@@ -93,17 +93,17 @@ pub fn scl(layout: &Layout, title: &str) -> Result<String, WideNumbers> {
 }
 
 impl Halves {
-    fn of(layout: &Layout, language: Language) -> Result<Self, WideNumbers> {
+    fn of(layout: &Layout, language: Language) -> Result<Self, TooWideError> {
         let bits = layout.coding().bits();
         if bits > HALF {
-            return Err(WideNumbers::Position { bits });
+            return Err(TooWideError::Position { bits });
         }
         if let Range::RoundAxis { steps, revolutions } = layout.descriptor().range {
             let (above, below) = (u64::from(revolutions.numerator), u64::from(revolutions.denominator));
             let steps = u64::from(steps);
             // The greatest numbers on the way: position × above, and turns × steps × below + above.
             let greatest = (steps * above).checked_add(above).zip(steps.checked_mul(below));
-            greatest.filter(|(one, other)| (*one).max(*other) <= u64::from(u32::MAX)).ok_or(WideNumbers::RoundAxis)?;
+            greatest.filter(|(one, other)| (*one).max(*other) <= u64::from(u32::MAX)).ok_or(TooWideError::RoundAxis)?;
         }
         Ok(Halves { language, is_wide: layout.clocks() > HALF })
     }

@@ -10,7 +10,7 @@ use crate::devices::ssi::protocol::range::Range;
 
 /// A property of a frame that LinuxCNC cannot decode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoFormat {
+pub enum UnsupportedProperty {
     /// Gray code over more than the position.
     #[error("a Gray code that includes zeros or error bits")]
     GrayOver,
@@ -33,7 +33,7 @@ pub enum NoFormat {
 pub enum FormatError {
     /// LinuxCNC cannot decode the frame.
     #[error("LinuxCNC cannot decode {0}")]
-    Cannot(NoFormat),
+    Cannot(UnsupportedProperty),
     /// A field is not of the form `name%bits` followed by a letter.
     #[error("\"{0}\" is not NAME%BITS and one of p b u s f e, with g before for Gray")]
     Form(String),
@@ -64,15 +64,15 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     let modifier = match layout.coding().code() {
         Code::Binary if descriptor.coded == Coded::Position => "",
         Code::Gray => "g",
-        Code::Binary => return Err(FormatError::Cannot(NoFormat::GrayOver)),
-        Code::GrayExcess => return Err(FormatError::Cannot(NoFormat::GrayExcess)),
-        Code::Bcd => return Err(FormatError::Cannot(NoFormat::Bcd)),
+        Code::Binary => return Err(FormatError::Cannot(UnsupportedProperty::GrayOver)),
+        Code::GrayExcess => return Err(FormatError::Cannot(UnsupportedProperty::GrayExcess)),
+        Code::Bcd => return Err(FormatError::Cannot(UnsupportedProperty::Bcd)),
     };
     if descriptor.between > 0 {
-        return Err(FormatError::Cannot(NoFormat::Between));
+        return Err(FormatError::Cannot(UnsupportedProperty::Between));
     }
     if descriptor.inverted {
-        return Err(FormatError::Cannot(NoFormat::Inverted));
+        return Err(FormatError::Cannot(UnsupportedProperty::Inverted));
     }
     let mut fields: Vec<(Field, u8)> = Vec::new();
     for role in layout.roles().into_iter().rev() {

@@ -41,7 +41,7 @@ pub struct Settings {
 
 /// The frame that results from the settings of a family.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Resolved {
+pub struct ResolvedFrame {
     /// The frame.
     pub layout: Layout,
     /// Alignment of the position.
@@ -146,7 +146,7 @@ impl Settings {
     ///
     /// # Errors
     /// [`SettingsError`] with the reason why it cannot.
-    pub fn resolve(&self, family: &Family) -> Result<Resolved, SettingsError> {
+    pub fn resolve(&self, family: &Family) -> Result<ResolvedFrame, SettingsError> {
         let range = self.range(family)?;
         let preset = self.preset.unwrap_or(0);
         limit(family, SettingName::Preset, (0, range.last()?), preset)?;
@@ -205,7 +205,7 @@ impl Settings {
         let longer = clocks > own && most.is_none();
         let advice = [(!named).then_some(Advice::Code(code)), longer.then_some(Advice::Clocks { bits: own, clocks })];
         let layout = Layout::new(descriptor)?;
-        Ok(Resolved {
+        Ok(ResolvedFrame {
             layout,
             align,
             errors: place,

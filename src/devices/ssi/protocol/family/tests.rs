@@ -3,14 +3,14 @@
 use super::*;
 use crate::devices::ssi::protocol::{Direction, Flags, FrameFinding, Location, Meaning, Range, ungray};
 
-fn resolve(text: &str) -> Result<Resolved, String> {
+fn resolve(text: &str) -> Result<ResolvedFrame, String> {
     let (key, settings) = Settings::parse(text).map_err(|error| error.to_string())?;
     let families = Families::built_in();
     let family = families.named(&key).ok_or_else(|| format!("no family {key}"))?;
     settings.resolve(family).map_err(|error| error.to_string())
 }
 
-fn raised(resolved: &Resolved, name: &str) -> Flags {
+fn raised(resolved: &ResolvedFrame, name: &str) -> Flags {
     let errors = &resolved.layout.descriptor().errors;
     errors.iter().position(|bit| bit.name == name).map_or(Flags::NONE, Flags::error)
 }

@@ -4,8 +4,8 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::ssi::profile::EntryError;
 use crate::devices::ssi::protocol::{
-    ClockUse, CodeError, FormatError, FrameTextError, LayoutError, NoBursts, NoFormat, RangeError, RepeatedPart,
-    SettingName, SettingsError, WideNumbers, WordOperation,
+    BurstError, ClockUse, CodeError, FormatError, FrameTextError, LayoutError, RangeError, RepeatedPart, SettingName,
+    SettingsError, TooWideError, UnsupportedProperty, WordOperation,
 };
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
@@ -58,10 +58,10 @@ pub fn format(error: &FormatError) -> Text {
     let why = match error {
         FormatError::Cannot(what) => {
             let what = match what {
-                NoFormat::GrayOver => TEXTS.text("ssi_lc.gray_over"),
-                NoFormat::GrayExcess | NoFormat::Bcd => plain(what),
-                NoFormat::Between => TEXTS.text("ssi_lc.between"),
-                NoFormat::Inverted => TEXTS.text("ssi_lc.inverted"),
+                UnsupportedProperty::GrayOver => TEXTS.text("ssi_lc.gray_over"),
+                UnsupportedProperty::GrayExcess | UnsupportedProperty::Bcd => plain(what),
+                UnsupportedProperty::Between => TEXTS.text("ssi_lc.between"),
+                UnsupportedProperty::Inverted => TEXTS.text("ssi_lc.inverted"),
             };
             return TEXTS.text("ssi.lc_cannot").with_text("what", what);
         }
@@ -76,10 +76,10 @@ pub fn format(error: &FormatError) -> Text {
 }
 
 /// A layout for which a controller of 32 bits has no decoder.
-pub fn wide(error: WideNumbers) -> Text {
+pub fn wide(error: TooWideError) -> Text {
     match error {
-        WideNumbers::Position { bits } => TEXTS.text("ssi.wide_position").with("bits", bits),
-        WideNumbers::RoundAxis => TEXTS.text("ssi.wide_round"),
+        TooWideError::Position { bits } => TEXTS.text("ssi.wide_position").with("bits", bits),
+        TooWideError::RoundAxis => TEXTS.text("ssi.wide_round"),
     }
 }
 
@@ -93,12 +93,12 @@ pub fn frame_text(error: &FrameTextError) -> Text {
 }
 
 /// Returns why a recording of clock and data has no frames.
-pub fn bursts(error: NoBursts) -> Text {
+pub fn bursts(error: BurstError) -> Text {
     match error {
-        NoBursts::NoClock => TEXTS.text("ssi_capture.no_clock"),
-        NoBursts::NoPause => TEXTS.text("ssi_capture.no_pause"),
-        NoBursts::Incomplete => TEXTS.text("ssi_capture.incomplete"),
-        NoBursts::Long { clocks } => TEXTS.text("ssi_capture.long").with("clocks", clocks),
+        BurstError::NoClock => TEXTS.text("ssi_capture.no_clock"),
+        BurstError::NoPause => TEXTS.text("ssi_capture.no_pause"),
+        BurstError::Incomplete => TEXTS.text("ssi_capture.incomplete"),
+        BurstError::Long { clocks } => TEXTS.text("ssi_capture.long").with("clocks", clocks),
     }
 }
 

@@ -3,14 +3,14 @@
 use egui::accesskit::Role;
 use egui::{CursorIcon, Rect, Response, Sense, WidgetInfo};
 
-use super::Lanes;
+use super::LanePainter;
 use super::paint::Grip;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::Cam;
 use crate::devices::interbus::state::cams::{Hold, Lane, Stretch, words};
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, Drag};
 
-impl Lanes<'_> {
+impl LanePainter<'_> {
     /// Draws all handles and returns the user's action. Handles stay grabbable at the positions they had before the
     /// drag.
     pub(super) fn grips(&self, drag: Option<Drag>) -> Option<CamEvent> {

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, StrokeKind, Vec2, WidgetInfo, pos2};
 
-use super::Lanes;
+use super::LanePainter;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::cams::{Lane, OutputState, words};
 use crate::devices::interbus::views::say;
@@ -16,7 +16,7 @@ const SWITCH: f32 = 24.0;
 const NUMBER: f32 = 18.0;
 const LAMP: f32 = 34.0;
 
-impl Lanes<'_> {
+impl LanePainter<'_> {
     pub(super) fn heads(&self) -> Option<CamEvent> {
         let lamps = self.model.chart.lamps(self.model.position, self.model.own);
         let mut event = None;

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect, Shape, Stroke, StrokeKind, Vec2, pos2};
 
-use super::Lanes;
+use super::LanePainter;
 use crate::devices::interbus::profile::{Edge, Scale, Unit};
 use crate::devices::interbus::protocol::CamNumber;
 use crate::devices::interbus::state::cams::{Hold, Lane, Tick, ticks, words};
@@ -22,7 +22,7 @@ pub(super) struct Grip {
     pub(super) focused: bool,
 }
 
-impl Lanes<'_> {
+impl LanePainter<'_> {
     /// Draws everything except the handles.
     pub(super) fn paint(&self, drag: Option<Drag>) {
         let (theme, place) = (self.theme, self.place);

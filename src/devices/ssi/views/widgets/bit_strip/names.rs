@@ -32,7 +32,7 @@ const WIDEST: f32 = 160.0;
 const LEVELS: usize = 8;
 
 /// Name wider than its field.
-struct Narrow {
+struct OverflowingName {
     index: usize,
     line: usize,
     x: f32,
@@ -44,7 +44,7 @@ struct Narrow {
     galley: Arc<Galley>,
 }
 
-impl Narrow {
+impl OverflowingName {
     /// Moves the name to a free spot beside the names already placed.
     fn placed(self, tags: &[Tag]) -> Tag {
         let width = self.galley.size().x;
@@ -148,9 +148,9 @@ pub(super) fn tags(
     let narrow = narrow.into_iter().map(|(index, own, run, line)| {
         let galley = galley(own, bare(strip, own));
         let begins = run.center().x + APART / 2.0 < galley.size().x;
-        Narrow { index, line, x: run.center().x, alone: true, begins, room, galley }
+        OverflowingName { index, line, x: run.center().x, alone: true, begins, room, galley }
     });
-    let mut narrow: Vec<Narrow> = narrow.collect();
+    let mut narrow: Vec<OverflowingName> = narrow.collect();
     // Of several adjacent ones, each ends at its own line, so that the next one's passes it; at the start, where there is
     // no space for that, each begins at its own, the last of them highest.
     for group in narrow.chunk_by_mut(|a, b| a.index + 1 == b.index && a.line == b.line) {
@@ -159,7 +159,7 @@ pub(super) fn tags(
             (own.alone, own.begins) = (alone, begins);
         }
     }
-    let (begin, end): (Vec<Narrow>, Vec<Narrow>) = narrow.into_iter().partition(|own| own.begins);
+    let (begin, end): (Vec<OverflowingName>, Vec<OverflowingName>) = narrow.into_iter().partition(|own| own.begins);
     for narrow in end.into_iter().chain(begin.into_iter().rev()) {
         tags.push(narrow.placed(&tags));
     }
