@@ -2,11 +2,10 @@
 //! each compared with a naive solution: a matrix of all samples solved by QR and an arc tangent for every sample; the lines
 //! of a text, split and parsed by the standard library.
 
+use crate::median;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 use encoder_studio::analysis::capture::TableHints;
 use encoder_studio::analysis::diagnosis::{Record, diagnose};
@@ -24,18 +23,6 @@ const ROUNDS: usize = 5;
 
 const ELLIPSE: Ellipse =
     Ellipse { amplitude_v: 0.5, offset_cosine_v: 0.02, offset_sine_v: -0.03, gain_ratio: 1.05, phase_error_rad: 0.052 };
-
-fn median<T>(mut work: impl FnMut() -> T) -> f64 {
-    let mut times: Vec<f64> = (0..ROUNDS)
-        .map(|_| {
-            let begun = Instant::now();
-            black_box(work());
-            begun.elapsed().as_secs_f64()
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[ROUNDS / 2]
-}
 
 /// Returns a thousand samples per period, with some noise.
 fn capture(count: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
@@ -72,25 +59,25 @@ pub(crate) fn run() {
     let (time, sine, cosine) = capture(SAMPLES);
     println!("analysis of {SAMPLES} samples, median of {ROUNDS} in seconds (goal: 0.5)");
     let samples = Samples { time_s: &time, sine_v: &sine, cosine_v: &cosine };
-    println!("{:<28} {:>8.3}", "ellipse", median(|| Ellipse::fit(&sine, &cosine).unwrap()));
-    println!("{:<28} {:>8.3}", "ellipse and all the rest", median(|| Analysis::of(samples).unwrap()));
+    println!("{:<28} {:>8.3}", "ellipse", median(ROUNDS, || Ellipse::fit(&sine, &cosine).unwrap()));
+    println!("{:<28} {:>8.3}", "ellipse and all the rest", median(ROUNDS, || Analysis::of(samples).unwrap()));
     let mut sparks = sine.clone();
     sparks.iter_mut().step_by(99_991).for_each(|value| *value += 3.0);
     let samples = Samples { time_s: &time, sine_v: &sparks, cosine_v: &cosine };
-    println!("{:<28} {:>8.3}", "the same with 101 spikes", median(|| Analysis::of(samples).unwrap()));
+    println!("{:<28} {:>8.3}", "the same with 101 spikes", median(ROUNDS, || Analysis::of(samples).unwrap()));
     let samples = Samples { time_s: &time, sine_v: &sine, cosine_v: &cosine };
     let analysis = Analysis::of(samples).unwrap();
     let record = Record { samples, references_v: None, periods: Some(1000) };
-    println!("{:<28} {:>8.3}", "diagnosis", median(|| diagnose(&record, Ok(&analysis), &Limits::HIPERFACE)));
+    println!("{:<28} {:>8.3}", "diagnosis", median(ROUNDS, || diagnose(&record, Ok(&analysis), &Limits::HIPERFACE)));
     let density = || {
         let mut density = Density::new(Square::around(&sine, &cosine).unwrap(), 256).unwrap();
         density.add(&sine, &cosine);
         density
     };
-    println!("{:<28} {:>8.3}", "density of the Lissajous", median(density));
+    println!("{:<28} {:>8.3}", "density of the Lissajous", median(ROUNDS, density));
     // A tenth of the samples: all of them would need gigabytes.
     let tenth = SAMPLES / 10;
-    let naive = median(|| naive_fit(&sine[..tenth], &cosine[..tenth])) * 10.0;
+    let naive = median(ROUNDS, || naive_fit(&sine[..tenth], &cosine[..tenth])) * 10.0;
     println!("{:<28} {naive:>8.3}  (ten times a tenth of the samples)", "QR of all, atan2 of all");
     let mut text = "time,sine,cosine\n".to_owned();
     for at in 0..ROWS {
@@ -101,10 +88,10 @@ pub(crate) fn run() {
     std::fs::write(&path, &text).unwrap();
     let megabytes = text.len() as f64 / 1e6;
     println!("reading a table of {megabytes:.0} MB, median of {ROUNDS} in MB/s (goal: 100)");
-    let studio = median(|| {
+    let studio = median(ROUNDS, || {
         read_capture(&path, &TableHints::default(), &AtomicBool::new(false), &mut |_, _| ()).unwrap().1.sine_v.len()
     });
     println!("{:<28} {:>8.0}", "studio", megabytes / studio);
-    let naive = median(|| naive_read(&std::fs::read_to_string(&path).unwrap()).len());
+    let naive = median(ROUNDS, || naive_read(&std::fs::read_to_string(&path).unwrap()).len());
     println!("{:<28} {:>8.0}", "lines, split, parse", megabytes / naive);
 }

@@ -4,8 +4,8 @@
 //!
 //! `cargo bench -- biss`
 
+use crate::median;
 use std::hint::black_box;
-use std::time::Instant;
 
 use encoder_studio::analysis::history::{History, Kind, Part};
 use encoder_studio::analysis::{Time, Unwrap};
@@ -19,19 +19,6 @@ const ROUNDS: usize = 9;
 /// Period of the stream.
 const PERIOD_US: u32 = 50;
 const SECONDS: u32 = 10;
-
-/// Returns the median of some rounds, in seconds.
-fn median<T>(mut work: impl FnMut() -> T) -> f64 {
-    let mut times: Vec<f64> = (0..ROUNDS)
-        .map(|_| {
-            let begun = Instant::now();
-            black_box(work());
-            begun.elapsed().as_secs_f64()
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[ROUNDS / 2]
-}
 
 /// Returns the frames of any positions, one in a thousand with a flipped bit.
 fn frames(layout: &Layout) -> Vec<u64> {
@@ -53,7 +40,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
 /// Decodes the batch a number of times; returns millions of frames per second.
 fn rate<T>(frames: &[u64], decode: impl Fn(u64) -> T) -> f64 {
     let mut readings = Vec::with_capacity(FRAMES);
-    let seconds = median(|| {
+    let seconds = median(ROUNDS, || {
         for _ in 0..PASSES {
             readings.clear();
             readings.extend(black_box(frames).iter().map(|raw| decode(*raw)));
@@ -142,7 +129,7 @@ fn stream() {
     let layout = Layout::default();
     let bytes = sent(&layout);
     assert_eq!(receive(&bytes, &layout), u64::from(SECONDS * 1_000_000 / PERIOD_US), "none is missing");
-    let seconds = median(|| receive(&bytes, &layout));
+    let seconds = median(ROUNDS, || receive(&bytes, &layout));
     println!("a stream of {} frames/s: COBS, CRC16, frame CRC, history", 1_000_000 / PERIOD_US);
     println!("{:<32} {:>7.0}", "times real time", f64::from(SECONDS) / seconds);
     println!("{:<32} {:>7.2}", "millions of frames a second", f64::from(SECONDS * 20_000) / seconds / 1e6);

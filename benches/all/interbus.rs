@@ -2,26 +2,13 @@
 //!
 //! `cargo bench -- interbus`
 
+use crate::median;
 use std::hint::black_box;
-use std::time::Instant;
 
 use encoder_studio::devices::interbus::protocol::{Cam, CompiledPrograms, Program, Value};
 
 const POSITIONS: usize = 1 << 20;
 const ROUNDS: usize = 9;
-
-/// Returns the median of some rounds, in seconds.
-fn median<T>(mut work: impl FnMut() -> T) -> f64 {
-    let mut times: Vec<f64> = (0..ROUNDS)
-        .map(|_| {
-            let begun = Instant::now();
-            black_box(work());
-            begun.elapsed().as_secs_f64()
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[ROUNDS / 2]
-}
 
 pub(crate) fn run() {
     let mut random = fastrand::Rng::with_seed(1);
@@ -34,13 +21,13 @@ pub(crate) fn run() {
     println!("8 programs of 8 cams, {POSITIONS} positions, medians of {ROUNDS}\n");
     for (name, positions) in [("any positions", &anywhere), ("a turning shaft", &turning)] {
         let mut outputs = vec![[0_u8; 8]; POSITIONS];
-        let fast = median(|| {
+        let fast = median(ROUNDS, || {
             for (output, position) in outputs.iter_mut().zip(black_box(positions)) {
                 *output = compiled.outputs(*position);
             }
             black_box(&outputs);
         });
-        let plain = median(|| {
+        let plain = median(ROUNDS, || {
             for (output, position) in outputs.iter_mut().zip(black_box(positions)) {
                 *output = programs.map(|program| program.outputs(*position));
             }
@@ -49,6 +36,6 @@ pub(crate) fn run() {
         let rate = |seconds: f64| POSITIONS as f64 / seconds / 1e6;
         println!("{name:16} compiled {:7.1}, a loop {:7.1} million positions/s", rate(fast), rate(plain));
     }
-    let seconds = median(|| CompiledPrograms::new(black_box(&programs)));
+    let seconds = median(ROUNDS, || CompiledPrograms::new(black_box(&programs)));
     println!("\nthe programs are compiled in {:.0} µs", seconds * 1e6);
 }

@@ -13,6 +13,22 @@ mod poll;
 mod ssi;
 mod window;
 
+use std::hint::black_box;
+use std::time::Instant;
+
+/// Returns the median of some rounds, in seconds.
+fn median<T>(rounds: usize, mut work: impl FnMut() -> T) -> f64 {
+    let mut times: Vec<f64> = (0..rounds)
+        .map(|_| {
+            let begun = Instant::now();
+            black_box(work());
+            begun.elapsed().as_secs_f64()
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[rounds / 2]
+}
+
 /// A benchmark with its name; the words are the parts to run.
 type Benchmark = (&'static str, fn(&[String]));
 

@@ -10,24 +10,13 @@ mod ssi_recordings;
 use std::hint::black_box;
 use std::time::Instant;
 
+use crate::median;
+
 use encoder_studio::devices::ssi::protocol::{Families, Flags, FrameReading, Layout, Settings, find};
 
 const FRAMES: usize = 1 << 14;
 const PASSES: usize = 64;
 const ROUNDS: usize = 9;
-
-/// Returns the median of some rounds, in seconds.
-fn median<T>(mut work: impl FnMut() -> T) -> f64 {
-    let mut times: Vec<f64> = (0..ROUNDS)
-        .map(|_| {
-            let begun = Instant::now();
-            black_box(work());
-            begun.elapsed().as_secs_f64()
-        })
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times[ROUNDS / 2]
-}
 
 fn layout(text: &str) -> Layout {
     let (key, settings) = Settings::parse(text).unwrap();
@@ -66,7 +55,7 @@ pub(crate) fn run() {
         let layout = layout(text);
         let frames = frames(&layout);
         let mut readings = vec![FrameReading::default(); FRAMES];
-        let seconds = median(|| {
+        let seconds = median(ROUNDS, || {
             for _ in 0..PASSES {
                 layout.decode_all(black_box(&frames), &mut readings);
                 black_box(&readings);
@@ -77,7 +66,7 @@ pub(crate) fn run() {
     let plain = layout("atm60,code=gray");
     let frames = frames(&plain);
     let mut readings = vec![(0, 0); FRAMES];
-    let seconds = median(|| {
+    let seconds = median(ROUNDS, || {
         for _ in 0..PASSES {
             for (reading, frame) in readings.iter_mut().zip(black_box(&frames)) {
                 *reading = bit_by_bit(*frame);
@@ -89,7 +78,7 @@ pub(crate) fn run() {
 
     let turning: Vec<u64> = (0..2000).filter_map(|at| plain.encode(4_000_000 + at * 13 / 10, Flags::NONE)).collect();
     let families = Families::built_in();
-    let seconds = median(|| find(black_box(&turning), 25, &families));
+    let seconds = median(ROUNDS, || find(black_box(&turning), 25, &families));
     println!("\nthe layout of 2000 frames of 25 bits is found in {:.0} ms", seconds * 1e3);
     thousand_recordings(&families);
 }

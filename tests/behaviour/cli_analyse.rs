@@ -300,7 +300,10 @@ fn interference_and_a_broken_wire_are_reported() {
     let told = bench.run(&["analyse", &file, "--json"]).json();
     near(&told["interference"][0], "frequency_hz", 8_000.0, 2.0);
     near(&told["interference"][0], "amplitude_v", 0.01, 1e-4);
-    assert!(told["findings"].to_string().contains("(2.0 % of the amplitude) at 8000 Hz"), "{told}");
+    assert!(
+        told["findings"].to_string().contains("Interference of 10.0 mV (2.0 % of the amplitude) at 8000 Hz"),
+        "{told}"
+    );
     // COS is at ground, its reference at 2.5 V.
     let wires = good.iter().fold("t,SIN,REFSIN,COS,REFCOS\n".to_owned(), |mut text, [t, sine, _]| {
         writeln!(text, "{t:.6},{:.6},2.5,0.02,2.5", sine + 2.5).unwrap();

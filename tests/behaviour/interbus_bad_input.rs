@@ -107,12 +107,15 @@ fn gateway_exceptions_name_the_settings_to_compare() {
 fn swapped_words_suggest_the_other_word_order() {
     let bench = Bench::new();
     for order in [["--order=low-first", "order=high-first"], ["--order=high-first", "order=low-first"]] {
-        for position in ["--position=4097", "--position=0"] {
+        for (position, found) in [
+            ("--position=4097", "the word order may be swapped"),
+            ("--position=0", "Check output= and the word order (order=)"),
+        ] {
             let Some(encoder) = bench.gateway(&[order[0], position]) else { return };
             let link = format!("{}?{}&handshake=300", encoder.url, order[1]);
             for command in [&["identify", "interbus"][..], &["read", "interbus", "steps"]] {
                 let ran = bench.run(&[command, &["--link", &link]].concat());
-                ran.fails(1, &["word order", "(order=)"]);
+                ran.fails(1, &[found, "order="]);
                 assert!(ran.took.as_secs() < 12, "{ran:?}");
             }
             let told = encoder.requests();

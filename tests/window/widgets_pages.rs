@@ -90,7 +90,11 @@ fn unsaved_registers_are_reported_with_a_remedy() {
     screen.check_language();
     screen.click("lead_back_card.button");
     screen.until("it is back", |studio| is_read(studio) && studio.biss().unwrap().unsaved().is_none());
-    assert!(!screen.shows("Der Geber ist im Gerätemodus 0x04") && !screen.has_button("lead_back_card.button"));
+    assert!(
+        screen.shows("Der Geber war im Gerätemodus 0x04 Schreiben von OEM- und Motordaten. Er ist wieder im Betrieb")
+    );
+    assert!(!screen.shows("ist im Gerätemodus 0x04") && !screen.shows("im Gerätemodus 0x04 statt"));
+    assert!(!screen.has_button("lead_back_card.button"));
 }
 
 /// An encoder that refuses its position causes a message in the panel Live, which remains within a small window.

@@ -291,7 +291,10 @@ mod tests {
         let level = FindingKind::Level { wire: Wire::Refcos, volts: 3.2, ok_v: (2.375, 2.625) };
         assert!(said(level)[0].contains("3.20 V, outside 2.375 … 2.625 V"));
         let harmonics = FindingKind::Harmonics { order: 4, share: 0.02 };
-        assert!(said(harmonics)[0].starts_with("Harmonics 3 and 5 of the signal (2.0 %)"));
+        assert!(
+            said(harmonics)[0]
+                .starts_with("Harmonics 3 and 5 of the signal (2.0 %) cause an error of 1.1° within the signal period")
+        );
     }
 
     #[test]

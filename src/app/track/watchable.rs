@@ -1,4 +1,4 @@
-//! Values recorded in addition to a position, each as a line of its own.
+//! Values recorded in addition to a position, each as a separate line.
 
 use std::convert::Infallible;
 

@@ -3,7 +3,7 @@
 //! performs no I/O, and no step continues before the drive confirms it.
 //!
 //! The results of the steps form a chain: each depends on facts of the drive (scale, pitch, reference, limits) and
-//! becomes void when they change, together with all later results, whoever changed them. The displayed step is
+//! becomes void when they change, together with all later results, even if another program changed them. The displayed step is
 //! independent of that: it changes only when the user presses a button.
 //!
 //! Parameters are tried first: they are written and read back, but not saved. Saving is a separate step, the last but
