@@ -53,18 +53,34 @@ pub(crate) fn disclosure(ui: &mut Ui, heading: RichText, is_open: &mut bool) -> 
 /// Draws a card for reference: in a low window only its heading, until it is opened with a click. It stays open until the
 /// program ends.
 pub(crate) fn folding_card(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui)) {
+    folding_card_with(ui, theme, title, |_| {}, content);
+}
+
+/// Draws a [`folding_card`]; `aside` draws the part at the right of the heading while the card is open.
+pub(crate) fn folding_card_with(
+    ui: &mut Ui,
+    theme: &Theme,
+    title: impl Into<Text>,
+    aside: impl FnOnce(&mut Ui),
+    content: impl FnOnce(&mut Ui),
+) {
     let title = title.into();
     if ui.ctx().content_rect().height() >= LOW {
-        return card(ui, theme, title, content);
+        return card_with(ui, theme, title, aside, content);
     }
     let heading = theme.words(&title);
     let id = Id::unique("folding_card").with(title.id());
     theme.card().show(ui, |ui| {
         fill(ui);
         let mut is_open = ui.data(|data| data.get_temp(id)).unwrap_or(false);
-        if disclosure(ui, theme.heading(heading.clone()), &mut is_open) {
-            ui.data_mut(|data| data.insert_temp(id, is_open));
-        }
+        ui.horizontal(|ui| {
+            if disclosure(ui, theme.heading(heading.clone()), &mut is_open) {
+                ui.data_mut(|data| data.insert_temp(id, is_open));
+            }
+            if is_open {
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
+            }
+        });
         if is_open {
             ui.add_space(theme.space.inside);
             with_label_column(ui, &heading, content);

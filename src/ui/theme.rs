@@ -132,7 +132,16 @@ impl Theme {
             style.spacing.combo_width = 96.0;
             style.spacing.menu_margin = Margin::same(8);
             style.spacing.window_margin = Margin::same(16);
-            style.spacing.scroll = egui::style::ScrollStyle::thin();
+            // Always visible, also on cards: what scrolls shows that it does.
+            style.spacing.scroll = egui::style::ScrollStyle {
+                foreground_color: true,
+                dormant_background_opacity: 0.0,
+                active_background_opacity: 0.0,
+                dormant_handle_opacity: 0.35,
+                active_handle_opacity: 0.5,
+                interact_handle_opacity: 0.8,
+                ..egui::style::ScrollStyle::thin()
+            };
             style.wrap_mode = Some(egui::TextWrapMode::Extend);
             style.interaction.selectable_labels = false;
             style.animation_time = 0.1;

@@ -1,14 +1,18 @@
 //! The workspace: the selected session in the open tab.
 
-use egui::Ui;
+use egui::{Align, Layout, Ui, vec2};
 
-use super::controls::{button, empty};
+use super::controls::{button, primary};
 use super::device_view::DeviceView;
 use super::page::apart;
 use super::panels::plot_ui;
 use super::views::device_in_tab;
 use super::{Theme, Views, icons};
 use crate::app::{Action, Studio, connect};
+
+/// Share of the height above the options of an empty tab, and their width.
+const ABOVE_NOTHING: f32 = 0.22;
+const OPTION: f32 = 240.0;
 
 pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     if views.plot.is_large()
@@ -32,18 +36,27 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
 
 /// Draws the options for opening a device, shown while none is open.
 fn nothing(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
-    if empty(ui, theme, &theme.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &theme.say("shell.connect"), true))) {
-        actions.push(Action::Connect(connect::ConnectAction::Open));
-    }
+    ui.add_space((ui.available_height() * ABOVE_NOTHING).round());
     ui.vertical_centered(|ui| {
-        if button(ui, icons::PLAY, &theme.say("shell.virtual_device")).clicked() {
-            actions.push(Action::OpenVirtual);
-        }
-        if button(ui, icons::FOLDER_OPEN, &theme.say("profile_card.open")).clicked() {
-            actions.push(Action::AskOpen);
-        }
         if let Some(view) = view {
-            view.empty_ui(ui, theme, actions);
+            ui.label(theme.heading(view.kind().bus()));
         }
+        ui.add(egui::Label::new(theme.label(theme.say("shell.empty"))).wrap());
+        theme.gap(ui);
+        let size = vec2(OPTION.min(ui.available_width()), 0.0);
+        ui.allocate_ui_with_layout(size, Layout::top_down_justified(Align::Center), |ui| {
+            if primary(ui, theme, true, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
+                actions.push(Action::Connect(connect::ConnectAction::Open));
+            }
+            if button(ui, icons::PLAY, &theme.say("shell.virtual_device")).clicked() {
+                actions.push(Action::OpenVirtual);
+            }
+            if button(ui, icons::FOLDER_OPEN, &theme.say("profile_card.open")).clicked() {
+                actions.push(Action::AskOpen);
+            }
+            if let Some(view) = view {
+                view.empty_ui(ui, theme, actions);
+            }
+        });
     });
 }

@@ -12,8 +12,8 @@ use crate::devices::hiperface::state::commutation::{
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, entry, icon_button, labelled_entry, paragraph, row, split, text_entry,
-    verdict_ui,
+    allowed_button, card, card_with, choice, entry, folding_card, icon_button, labelled_entry, paragraph, row, split,
+    text_entry, verdict_ui,
 };
 use crate::ui::{Theme, icons};
 
@@ -73,9 +73,11 @@ fn before(ui: &mut Ui, theme: &Theme, form: &mut Form) {
             ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
             paragraph(ui, RichText::new(say(theme, "commutation.danger")).color(theme.palette.warn));
         });
-        ui.checkbox(&mut form.disabled, say(theme, "commutation.disabled"));
-        ui.checkbox(&mut form.uncoupled, say(theme, "commutation.uncoupled"));
-        ui.checkbox(&mut form.released, say(theme, "commutation.released"));
+        ui.horizontal_wrapped(|ui| {
+            ui.checkbox(&mut form.disabled, say(theme, "commutation.disabled"));
+            ui.checkbox(&mut form.uncoupled, say(theme, "commutation.uncoupled"));
+            ui.checkbox(&mut form.released, say(theme, "commutation.released"));
+        });
         let (current, time) = form.limit_problems();
         number(ui, theme, "commutation.current", &mut form.current_a, "");
         problem_ui(ui, theme, current.as_ref());
@@ -170,7 +172,7 @@ fn rest(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions:
 }
 
 fn second(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
-    card(ui, theme, TEXTS.text("commutation.second"), |ui| {
+    folding_card(ui, theme, TEXTS.text("commutation.second"), |ui| {
         paragraph(ui, theme.label(say(theme, "commutation.second_words")));
         number(ui, theme, "commutation.second_angle", &mut form.second_deg, "90");
         let [_, _, typed] = &mut form.typed;

@@ -114,6 +114,11 @@ impl Group {
     pub fn takes_error_bits(&self) -> bool {
         self.rows.iter().any(|row| row.field == Field::Lead)
     }
+
+    /// Returns whether the group describes the encoder's configuration (counting direction, preset) and not the frame.
+    pub fn is_counting(&self) -> bool {
+        self.rows.iter().any(|row| row.field == Field::Direction)
+    }
 }
 
 impl Row {

@@ -13,8 +13,8 @@ use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, 
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::controls::{
-    button, card_with, choice, enabled_button, icon_button, name, paragraph, primary, problem_below, settled_entry,
-    two_columns,
+    button, card_with, choice, enabled_button, folding_card, icon_button, name, paragraph, primary, problem_below,
+    settled_entry, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -214,7 +214,7 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
         }
     };
     ui.push_id(error, |ui| {
-        card_with(ui, theme, TEXTS.text(group.title), aside, |ui| {
+        let content = |ui: &mut Ui| {
             rows_ui(ui, theme, encoder, &group.rows, &mut view.form, actions);
             if group.takes_error_bits()
                 && enabled_button(
@@ -227,7 +227,13 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
             {
                 actions.push(Action::device(id, Ssi::AddErrorBit));
             }
-        });
+        };
+        let title = TEXTS.text(group.title);
+        if group.is_counting() {
+            folding_card(ui, theme, title, content);
+        } else {
+            card_with(ui, theme, title, aside, content);
+        }
     });
     actions.extend(asked.map(|asked| Action::device(id, asked)));
 }
