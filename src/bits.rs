@@ -9,7 +9,7 @@ pub fn hex(bytes: &[u8]) -> String {
     words.join(" ")
 }
 
-/// Returns upper-case hex without separators, as used in JSON: `404202`.
+/// Returns the bytes as upper-case hex without separators, as used in JSON: `404202`.
 pub fn hex_compact(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02X}")).collect()
 }
@@ -22,7 +22,7 @@ pub enum ByteOrder {
     LowFirst,
 }
 
-/// A number with its width in bits. It displays with as many upper-case hexadecimal digits as the width requires.
+/// A number with its width in bits, displayed with as many upper-case hexadecimal digits as the width requires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
     /// The bits, right-justified.
@@ -36,12 +36,12 @@ impl fmt::Display for Word {
     }
 }
 
-/// Bytes without secrets. A masked byte displays as `**`.
+/// Bytes of which some may be masked because they are secret. A masked byte displays as `**`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MaskedBytes(Vec<Option<u8>>);
 
 impl MaskedBytes {
-    /// Creates bytes without a secret.
+    /// Creates bytes none of which is masked.
     pub fn clear(bytes: &[u8]) -> Self {
         MaskedBytes(bytes.iter().copied().map(Some).collect())
     }
@@ -116,7 +116,7 @@ impl FromStr for MaskedBytes {
     }
 }
 
-/// The reason why a string is not hexadecimal bytes.
+/// The reason why a string cannot be parsed as hexadecimal bytes.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HexError {
     /// The character is neither a hex digit nor a separator.
@@ -161,7 +161,7 @@ fn parse_group(group: &str, bytes: &mut Vec<u8>) -> Result<(), HexError> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TypedKind {
     U8,
-    /// One byte in two's complement.
+    /// A signed byte in two's complement.
     I8,
     /// Two bytes, unsigned.
     U16,
@@ -178,7 +178,7 @@ pub enum TypedKind {
 }
 
 impl TypedKind {
-    /// Every kind, in the order of a table.
+    /// All kinds, in display order.
     pub const ALL: [TypedKind; 9] = [
         TypedKind::U8,
         TypedKind::I8,
@@ -191,13 +191,13 @@ impl TypedKind {
         TypedKind::Text,
     ];
 
-    /// Returns whether the byte order matters.
+    /// Returns whether the value depends on the byte order.
     pub const fn has_byte_order(self) -> bool {
         !matches!(self, TypedKind::U8 | TypedKind::I8 | TypedKind::Binary | TypedKind::Text)
     }
 }
 
-/// The first bytes of a run in one interpretation. Both values are equal if the byte order does not matter.
+/// The first bytes of a sequence in one interpretation. Both values are equal if the byte order does not matter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TypedRow {
     pub kind: TypedKind,
@@ -207,7 +207,7 @@ pub struct TypedRow {
     pub big: Option<String>,
 }
 
-/// Interprets the beginning of `bytes` in all ways, in the order of [`TypedKind::ALL`].
+/// Interprets the beginning of `bytes` as every kind, in the order of [`TypedKind::ALL`].
 pub fn typed(bytes: &[u8]) -> Vec<TypedRow> {
     let row = |kind| TypedRow { kind, little: read_typed(kind, bytes, false), big: read_typed(kind, bytes, true) };
     TypedKind::ALL.into_iter().map(row).collect()
@@ -233,7 +233,7 @@ fn read_typed(kind: TypedKind, bytes: &[u8], big: bool) -> Option<String> {
 /// Replacement for a byte that is not a printable character.
 pub const NOT_PRINTABLE: char = '·';
 
-/// Returns the printable ASCII character of a byte.
+/// Returns the ASCII character of a byte, or `None` if the byte is not printable.
 pub fn ascii(byte: u8) -> Option<char> {
     (0x20..0x7F).contains(&byte).then_some(char::from(byte))
 }
@@ -242,7 +242,8 @@ pub fn binary(byte: u8) -> String {
     format!("{:04b} {:04b}", byte >> 4, byte & 0xF)
 }
 
-/// Returns the shortest representation that parses as the same number, with an exponent if it would be long.
+/// Returns the shortest representation that parses back to the same number, with an exponent if it would otherwise be
+/// long.
 fn float(value: f32) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs());
     if plain { value.to_string() } else { format!("{value:e}") }

@@ -6,26 +6,26 @@ use std::fmt;
 
 use thiserror::Error;
 
-/// The set of values allowed where an invalid value was given.
+/// The set of allowed values, reported when an invalid value is given.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Expected {
-    /// One of a few keywords, listed in a sentence.
+    /// One of a few keywords, which the message lists.
     #[error("{}", alternatives(.0))]
     Words(Cow<'static, [&'static str]>),
     #[error("one of {}", .0.join(", "))]
     OneOf(Vec<String>),
     #[error("{quantity} from {low} to {high}")]
     Range { quantity: Quantity, low: Limit, high: Limit },
-    /// A whole number of any size that fits.
+    /// A whole number of any size that the type can hold.
     #[error("a whole number")]
     Whole,
-    /// A number of 32 bits.
+    /// A 32-bit number.
     #[error("a number from 0 to 0xFFFFFFFF")]
     Number32,
-    /// Revolutions a minute in either direction.
+    /// A speed in revolutions per minute, in either direction.
     #[error("a speed from -{most} to {most} rpm")]
     Speed { most: u32 },
-    /// Revolutions per minute, in one direction only.
+    /// A speed in revolutions per minute, in one direction only.
     #[error("a speed from 0 to {most} rpm")]
     RevolutionsAMinute { most: u32 },
     #[error("{low} to {high} seconds")]
@@ -53,20 +53,20 @@ pub enum Expected {
     /// The first of several consecutive encoder addresses.
     #[error("an address from 0x40 to {last:#04X}, so that every encoder gets one")]
     FirstAddress { last: u8 },
-    /// A time-out of HIPERFACE, counted in bits.
+    /// A HIPERFACE time-out, counted in bits.
     #[error("44 or 11 bits, as set in the encoder")]
     TimeoutBits,
-    /// The byte of an encoder's type.
+    /// The type byte of an encoder.
     #[error("a type byte from 0x00 to 0xFF")]
     TypeByte,
-    /// The byte of an encoder's line settings.
+    /// The line settings byte of an encoder.
     #[error("a settings byte without reserved values, such as 0xE4")]
     SettingsByte,
     #[error("one to nine ASCII characters")]
     SerialNumber,
     #[error("up to {most} ASCII characters")]
     Ascii { most: u32 },
-    /// A position without limits yet.
+    /// A position in steps whose limits are not known yet.
     #[error("a position in steps")]
     Steps,
     #[error("NUMBER:HEX for the access codes 0 to 3, separated by commas, such as 0:55,2:66")]
@@ -120,7 +120,7 @@ pub enum Expected {
     FourTenths,
     #[error("the first and the last bank, such as (0x24, 0x43)")]
     Banks,
-    /// Revolutions, which may be a fraction.
+    /// A number of revolutions, which may be a fraction.
     #[error("a whole number, or a text such as \"25/2\"")]
     Revolutions,
     #[error("a number or a fraction such as 25/2")]
@@ -162,7 +162,7 @@ pub enum Quantity {
     WholeCelsius,
     #[error("a speed in units of 0.1 rpm")]
     TenthsOfRpm,
-    /// Percent of the nominal torque.
+    /// A torque in percent of the nominal torque.
     #[error("a torque in percent of the nominal torque")]
     Torque,
     #[error("a protocol version")]
@@ -185,10 +185,10 @@ pub enum Quantity {
     SwitchPosition,
     #[error("a voltage in volts")]
     Volts,
-    /// The share of frames with a bit inverted.
+    /// The share of frames in which a bit is inverted.
     #[error("a share of damaged frames")]
     DamagedFrames,
-    /// Share of requests answered with an exception.
+    /// The share of requests answered with an exception.
     #[error("a share of requests answered with an exception")]
     RefusedRequests,
 }
@@ -208,19 +208,19 @@ impl Expected {
         Expected::Range { quantity, low: low.into(), high: high.into() }
     }
 
-    /// Creates a whole number of a range.
+    /// Creates a range of whole numbers.
     pub const fn between(low: i128, high: i128) -> Self {
         Expected::Range { quantity: Quantity::Number, low: Limit::whole(low), high: Limit::whole(high) }
     }
 
-    /// Creates a number without a unit.
+    /// Creates a range of numbers without a unit.
     pub fn number(low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
         Expected::range(Quantity::Number, low, high)
     }
 }
 
 impl Limit {
-    /// Creates a number with decimals, in thousandths.
+    /// Creates a number from its value in thousandths.
     pub const fn thousandths(thousandths: i128) -> Self {
         Limit { thousandths }
     }

@@ -25,7 +25,7 @@ pub fn program() -> Program {
     })
 }
 
-/// Returns the virtual devices available at the virtual adapter. Those that take a speed (`rpm`) come last.
+/// Returns the virtual devices that can be attached to the virtual adapter. Those that take a speed (`rpm`) come last.
 pub fn at_adapter() -> &'static [&'static dyn AttachableKind] {
     static DEVICES: OnceLock<Vec<&'static dyn AttachableKind>> = OnceLock::new();
     DEVICES.get_or_init(|| {

@@ -11,7 +11,7 @@ pub use values::{ANY, Checked, Decimal, Maybe, Milliseconds, Millivolts, SWITCH,
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused {
     pub key: String,
-    /// The refused value as written.
+    /// The refused value as the user wrote it.
     pub value: String,
     pub allowed: Expected,
 }
@@ -22,7 +22,7 @@ impl Refused {
         Refused { key: key.to_owned(), value: value.to_string(), allowed }
     }
 
-    /// Replaces the value, which is a secret, by asterisks.
+    /// Replaces the value by asterisks, for a value that is secret.
     #[must_use]
     pub fn masked(self) -> Self {
         Refused { value: "**".to_owned(), ..self }
@@ -36,20 +36,20 @@ pub struct Entry {
     pub label: &'static str,
     /// Unit symbol, or empty if the parameter has no unit.
     pub unit: &'static str,
-    /// The default that applies while the entry is empty, or an example.
+    /// The default that applies while the entry is empty, or an example value.
     pub hint: String,
-    /// Whether the value is a number that may have a decimal point.
+    /// Whether the value is a number that may have decimals.
     pub is_decimal: bool,
 }
 
-/// Returns the entries with the given keys, in the order of the keys.
+/// Returns the entries with the given keys, in the order of `keys`.
 pub fn chosen(entries: &[Entry], keys: &[&str]) -> Vec<Entry> {
     keys.iter().filter_map(|key| entries.iter().find(|own| own.key == *key).cloned()).collect()
 }
 
 /// A group of parameters, declared with `parameters!`. Parameters that are not given keep their defaults.
 pub trait Parameters: Default {
-    /// Error returned when a value is refused.
+    /// The error returned when a value is refused.
     type Error;
 
     const KEYS: &'static [&'static str];
@@ -57,7 +57,7 @@ pub trait Parameters: Default {
     /// Keys whose values are neither displayed nor stored.
     const SECRETS: &'static [&'static str];
 
-    /// Sets a value; returns `false` if the key does not exist.
+    /// Sets the value of a key. Returns `false` if the key does not exist.
     ///
     /// # Errors
     /// Returns an error if the key does not accept the value.

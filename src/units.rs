@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::parameter::Words;
 
-/// Point in time, counted from the start of a clock. Moments from different clocks cannot be compared.
+/// A point in time, counted from the start of a clock. Moments from different clocks cannot be compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Moment(Duration);
 
@@ -47,7 +47,7 @@ impl Sub<Duration> for Moment {
 pub struct Baud(u32);
 
 impl Baud {
-    /// Creates a speed from bit/s, or returns `None` for zero.
+    /// Creates a speed from a number of bit/s. Returns `None` for zero.
     pub const fn new(bits_per_second: u32) -> Option<Self> {
         if bits_per_second == 0 { None } else { Some(Baud(bits_per_second)) }
     }
@@ -75,16 +75,16 @@ impl fmt::Display for Baud {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Parity {
     None,
-    /// The number of ones, including the parity bit, is even.
+    /// Even parity: the number of ones, including the parity bit, is even.
     Even,
-    /// The number of ones, including the parity bit, is odd.
+    /// Odd parity: the number of ones, including the parity bit, is odd.
     Odd,
 }
 
 impl Parity {
     pub const ALL: [Parity; 3] = [Parity::Even, Parity::None, Parity::Odd];
 
-    /// Names used in link URLs and JSON.
+    /// Parity names used in link URLs and JSON.
     pub const WORDS: Words<Parity> = Words(&[("none", Parity::None), ("even", Parity::Even), ("odd", Parity::Odd)]);
 
     /// Returns the name used in link URLs and JSON.
@@ -96,7 +96,7 @@ impl Parity {
         }
     }
 
-    /// Returns the letter between the data bits and stop bits, as in `8E1`.
+    /// Returns the letter that stands between the numbers of data bits and stop bits, as in `8E1`.
     pub const fn letter(self) -> char {
         match self {
             Parity::None => 'N',
@@ -112,7 +112,8 @@ impl fmt::Display for Parity {
     }
 }
 
-/// Character format of a serial line, on which both ends must agree: one start bit, eight data bits and one stop bit.
+/// Character format of a serial line, on which both ends must agree. A character has one start bit, eight data bits and
+/// one stop bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CharacterFormat {
     pub baud: Baud,
@@ -120,10 +121,11 @@ pub struct CharacterFormat {
 }
 
 impl CharacterFormat {
-    /// 9600 bit/s, even parity: the factory setting of HIPERFACE encoders.
+    /// The factory setting of HIPERFACE encoders: 9600 bit/s with even parity.
     pub const FACTORY: CharacterFormat = CharacterFormat { baud: Baud::B9600, parity: Parity::Even };
 
-    /// Returns the duration of one character on the line, counted as 11 bits for any parity, as in the manuals.
+    /// Returns the duration of one character on the line. A character counts as 11 bits for any parity, as in the
+    /// manuals.
     pub fn character_time(self) -> Duration {
         self.baud.time_of_bits(11)
     }

@@ -177,7 +177,7 @@ fn port() -> (Box<dyn DatagramChannel>, Target, Arc<RealClock>) {
     let clock = Arc::new(RealClock::start());
     let mut packets = UdpPort::new("127.0.0.1:44818", clock.clone()).open().unwrap();
     let target = Target::start(packets.port());
-    packets.aim(target.port);
+    packets.set_target_port(target.port);
     (packets, target, clock)
 }
 

@@ -124,7 +124,7 @@ impl Bench {
         let ctx = Context::default();
         install_fonts(&ctx);
         let theme = Theme::new(ThemeData::built_in().unwrap(), ColorScheme::Dark, Language::English);
-        theme.dress(&ctx);
+        theme.apply_to(&ctx);
         Bench { ctx, theme, view: PlotUiState::default() }
     }
 

@@ -130,7 +130,7 @@ impl Ellipse {
             return Err(FitError::TooFew { points: moments.count() });
         }
         let around_mean = moments.moved_to_mean();
-        refuse_flat(&around_mean)?;
+        check_not_flat(&around_mean)?;
         let mut moments = around_mean;
         let mut found = solve(&moments)?;
         for _ in 1..ROUNDS {
@@ -203,7 +203,7 @@ impl Correction {
 }
 
 /// Rejects points that enclose no area, with the reason.
-fn refuse_flat(around_mean: &Moments) -> Result<(), FitError> {
+fn check_not_flat(around_mean: &Moments) -> Result<(), FitError> {
     let (range_x, range_y) = around_mean.ranges();
     let most = range_x.max(range_y);
     // Relative to the level: a constant of 2.5 V has a range of at most a few units in the last place.

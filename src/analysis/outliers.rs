@@ -103,7 +103,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
 }
 
 /// Returns the channel that does not move, apart from single samples, or `None` if both move.
-pub(super) fn dead(sine: &[f64], cosine: &[f64]) -> Option<Channel> {
+pub(super) fn dead_channel(sine: &[f64], cosine: &[f64]) -> Option<Channel> {
     let few = sine.len().min(cosine.len()) < LEAST_SAMPLES;
     boxed(sine, cosine).err().flatten().filter(|_| !few)
 }

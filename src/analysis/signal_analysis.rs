@@ -66,9 +66,8 @@ impl Analysis {
             // One spark on a dead channel makes it look alive, and the resulting error does not show the cause.
             AnalysisError::Fit(FitError::NotAnEllipse)
             | AnalysisError::Coverage { .. }
-            | AnalysisError::NoSignal { .. } => {
-                outliers::dead(samples.sine_v, samples.cosine_v).map_or(error, |channel| FitError::Dead(channel).into())
-            }
+            | AnalysisError::NoSignal { .. } => outliers::dead_channel(samples.sine_v, samples.cosine_v)
+                .map_or(error, |channel| FitError::Dead(channel).into()),
             error => error,
         })
     }

@@ -26,22 +26,22 @@ pub enum Action {
     SetTheme(ColorScheme),
     SetLanguage(Language),
     KeepLayout(String),
-    /// Open the lower panel, or reduce it to one line.
+    /// Open the lower panel, or collapse it to one line.
     OpenLowerPanel(bool),
     /// Show live values with or without their plot.
     ShowValuesAlone(bool),
-    /// The window has another size, in points.
+    /// Store the new size of the window, in points.
     KeepSize(u32, u32),
     Select(SessionId),
-    /// End a session, after asking if it has edits.
+    /// End a session, after asking for confirmation if it has edits.
     CloseSession(SessionId),
     Stop,
     StopMotion,
-    /// Release held buttons, because the window has lost the keyboard or is covered by a dialog.
+    /// Release all held buttons, because the window has lost the keyboard or is covered by a dialog.
     LetGo,
-    /// Escape: stops the running job, or else closes the dialog.
+    /// Stop the running job or, if there is none, close the dialog, in response to the Escape key.
     Escape,
-    /// Close the window; asks first if something would be lost.
+    /// Close the window, after asking for confirmation if data would be lost.
     Close,
     /// Close the window without questions, because the system is ending the program.
     Quit,
@@ -50,51 +50,53 @@ pub enum Action {
     Connect(connect::ConnectAction),
     OpenVirtual,
     Save(SessionId),
-    /// Resolves a profile that another program has changed meanwhile.
+    /// Resolve the conflict in a profile that another program has changed in the meantime.
     Resolve(Resolve),
     /// Ask for a file to open: a capture in the Signals tab, a profile elsewhere.
     AskOpen,
-    /// Open a capture (`.csv`), or else a profile.
+    /// Open a file as a capture if it is a `.csv` file, or as a profile otherwise.
     Open(PathBuf),
     FileNotChosen,
     /// Ask for a path as text, because the system has no file dialog.
     TypePath(FileQuestion),
-    /// A path was typed. An existing file is not replaced without a question, which the system's dialogs ask themselves.
+    /// Use the path that the user typed. An existing file is not replaced without a question, which the system's
+    /// dialogs ask themselves.
     Typed(FileQuestion, PathBuf),
-    /// Use the chosen file, which may be replaced if it exists.
+    /// Use the file chosen in the system's dialog, which may be replaced if it exists.
     Chosen(FileQuestion, PathBuf),
     CloseComparison,
     Recorder(RecorderOwner, recorder::RecorderAction),
-    /// Clear a recording, after asking if it is long.
+    /// Clear a recording, after asking for confirmation if it is long.
     AskForget(RecorderOwner),
-    /// Ask for the file of a table: of the visible part of a recording, or of everything.
+    /// Ask for the file name of a table, which contains either the visible part of a recording or all of it.
     AskTable {
         owner: RecorderOwner,
         /// Only the visible part.
         visible: bool,
     },
     AskPicture(Picture),
-    /// Report that a picture was requested of something that is not completely visible.
+    /// Report that a picture was requested of a plot that is not completely visible.
     PictureCut,
     Review(SessionId, ReviewAction),
-    /// Execute a command that every kind of device supports, for the given session, whichever is shown by then.
+    /// Execute a command that every kind of device supports, for the given session even if another one is shown by
+    /// then.
     Command(SessionId, DeviceCommand),
-    /// Execute an action of one kind of device; see [`Action::device`].
+    /// Execute an action specific to one kind of device; see [`Action::device`].
     Device(SessionId, Payload),
-    /// Create an unsaved profile for the kind of device of a tab.
+    /// Create an unsaved profile for the kind of device shown in a tab.
     New(Tab),
-    /// An action of a tab that needs no device; see [`Action::tool`].
+    /// Execute an action of a tab that does not require a device; see [`Action::tool`].
     Tool(Tab, Payload),
     Done(Done),
-    /// The system has no thread left for a task.
+    /// The system could not start a thread for a task.
     NoThread(String),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReviewAction {
-    /// Execute the plan with this id, which the user has seen.
+    /// Execute the plan with this id, which the user has reviewed.
     Write(PlanId),
-    /// Grant or withdraw a permit, which results in another plan.
+    /// Grant or withdraw a permit, which results in a different plan.
     Toggle(Permit),
     /// Write even though the device has reached its limit of write cycles.
     ForceWear(bool),
@@ -102,17 +104,17 @@ pub enum ReviewAction {
 }
 
 pub enum Done {
-    /// The target of a save was checked for an existing file.
+    /// The target path of a save operation was checked for an existing file.
     Looked {
         question: FileQuestion,
         path: PathBuf,
         exists: bool,
     },
-    /// A link was opened for a session, or not.
+    /// The attempt to open a link for a session has succeeded or failed.
     Opened(Attempt),
-    /// The result of a search task started from the connection form of a tab; see [`Done::finder`].
+    /// The result of a search started from the connection form of a tab; see [`Done::finder`].
     Finder(Tab, Payload),
-    /// A task whose result belongs to no particular session, and the handler of the result.
+    /// The result of a task that belongs to no particular session, with its handler.
     Shared(SharedResult),
     Ports(Result<Vec<connect::PortEntry>, LinkError>),
     Read {
@@ -122,7 +124,7 @@ pub enum Done {
         /// does not support.
         open: Option<OpenProfile>,
     },
-    /// A profile was read to be compared with a session, or not.
+    /// Reading a profile for comparison with a session has succeeded or failed.
     Compare {
         session: SessionId,
         path: PathBuf,
@@ -133,44 +135,44 @@ pub enum Done {
         file: ProfileFile,
         result: Result<(), FileError>,
     },
-    /// A profile was not saved, because its file differs from what was opened.
+    /// A profile was not saved, because its file has changed since it was opened.
     Diverged(Box<Diverged>),
     /// A profile was not saved, because these comments of the user would be lost.
     WouldLose(Box<Saving>, Vec<String>),
     TableWritten(RecorderOwner, ExportResult),
     PictureSaved(PathBuf, Result<(), FileError>),
     ReportSaved(PathBuf, Result<(), FileError>),
-    /// A wait before closing has run out of time.
+    /// The time limit for a wait before closing has expired.
     Waited(Waited),
     Left,
-    /// The settings have been read, too late for the start.
+    /// The settings have been read, but too late for the start of the program.
     SettingsRead(SettingsRead),
     SettingsKept(Result<SettingsWritten, FileError>),
-    /// The settings have been read while drives are under control; `None` if there are none.
+    /// The settings have been read while drives are under control. `None` means that there are no settings.
     SettingsSeen(Result<Option<Box<Settings>>, FileError>),
     Draft(SessionId, DraftOutcome),
     Listed(SessionId, DeviceKey, Box<DeviceHistory>),
-    /// A backup was read, or not.
+    /// Reading a backup has succeeded or failed.
     Backup {
         session: SessionId,
         of: DeviceKey,
         path: PathBuf,
         result: Result<Box<Document>, ReadError>,
     },
-    /// The result of a task of one kind of device, for one session; see `Done::device`.
+    /// The result of a task specific to one kind of device, for one session; see `Done::device`.
     Device(SessionId, Payload),
-    /// A task of a tab that needs no device; see [`Done::tool`].
+    /// The result of a task of a tab that does not require a device; see [`Done::tool`].
     Tool(Tab, Payload),
 }
 
 pub struct Attempt {
     pub session: SessionId,
-    /// Number of the attempt within its session; only the latest one counts.
+    /// Number of the attempt within its session. Only the latest attempt counts.
     pub attempt: u32,
     pub(super) result: Result<Box<dyn OpenedSession>, Box<OpenFailure>>,
 }
 
-/// A session on its thread, with the ring for its trace.
+/// A session running on its own thread, with the ring buffer for its trace.
 pub struct Opened<D: Kind> {
     pub(super) worker: Worker<D>,
     /// The part of the session outside its thread.
@@ -179,11 +181,11 @@ pub struct Opened<D: Kind> {
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
     pub(super) is_virtual: bool,
     pub began: jiff::Zoned,
-    /// Sender whose drop lets the next attempt use the connection.
+    /// Sender that lets the next attempt use the connection when it is dropped.
     pub(super) turn: crossbeam_channel::Sender<()>,
 }
 
-/// A session on its thread with its kind of device erased.
+/// An opened session on its own thread, with its kind of device erased.
 pub trait OpenedSession: Any + Send {
     /// Closes a session that is no longer required.
     fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services);
@@ -203,7 +205,7 @@ impl<D: Kind> OpenedSession for Opened<D> {
     }
 }
 
-/// The waits before the window closes, in order; each includes the preceding ones.
+/// The waits before the window closes, in order. Each wait includes the preceding ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Waited {
     Drives,
@@ -232,6 +234,6 @@ pub enum ReadError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecorderOwner {
     Device(SessionId),
-    /// A tab that needs no device.
+    /// A tab that does not require a device.
     Tool(Tab),
 }

@@ -9,22 +9,24 @@ use std::time::{Duration, Instant};
 
 use crate::worker::Stopper;
 
-/// A handle that stops the drives of a session when the program ends. It works from any thread, whatever the session
-/// does and whether or not the window still draws.
+/// A handle that stops the drives of a session when the program ends. It works from any thread, regardless of the state
+/// of the session
+/// and of whether the window still draws.
 pub trait Brake: Send {
-    /// Ends motion with the program: all drives are stopped and switched off, and their connection is closed. Nothing
-    /// moves afterwards, whatever is requested. Does not block, and may be called repeatedly.
+    /// Stops and switches off all drives and closes their connection because the program is ending. Later requests
+    /// cannot start a motion. This does not block and may be called repeatedly.
     fn leave(&self);
 
-    /// Returns whether the device holds a connection over which drives can move. After [`leave`](Self::leave) this
+    /// Returns whether the device holds a connection over which drives can move. After [`leave`](Self::leave), this
     /// becomes `false` as soon as the drives are stopped and the connection is closed.
     fn is_connected(&self) -> bool;
 
-    /// Returns whether the session has ended: nothing else holds a handle to its drives, so nothing here can move them.
+    /// Returns whether the session has ended. Nothing else then holds a handle to its drives, so this program can no
+    /// longer move them.
     fn is_left_over(&self) -> bool;
 }
 
-/// All drives that this program can move, shared by clones.
+/// All drives that this program can move. Clones share the same state.
 #[derive(Clone, Default)]
 pub struct Brakes(Arc<Shared>);
 
@@ -34,12 +36,12 @@ type Session = (Box<dyn Brake>, Stopper);
 #[derive(Default)]
 struct Shared {
     sessions: Mutex<Vec<Session>>,
-    /// Set once nothing is allowed to move.
+    /// Whether the drives have been released, after which no motion is allowed.
     released: AtomicBool,
     closing: AtomicBool,
 }
 
-/// Interval at which closed connections are checked for.
+/// Interval between checks for closed connections.
 const LOOKS: Duration = Duration::from_millis(5);
 
 impl Brakes {
@@ -74,7 +76,7 @@ impl Brakes {
         !self.sessions().iter().any(|(brake, _)| brake.is_connected())
     }
 
-    /// Waits until no drive is connected, for at most `patience`. Returns whether that was reached.
+    /// Waits until no drive is connected, for at most `patience`. Returns whether all drives are disconnected.
     pub fn wait(&self, patience: Duration) -> bool {
         wait_for(patience, || self.is_done())
     }
@@ -83,7 +85,7 @@ impl Brakes {
         self.0.closing.store(true, Ordering::SeqCst);
     }
 
-    /// Blocks until the window has begun to close, for at most `patience`; returns whether it has.
+    /// Blocks until the window has begun to close, for at most `patience`. Returns whether it has.
     pub fn wait_for_window(&self, patience: Duration) -> bool {
         wait_for(patience, || self.0.closing.load(Ordering::SeqCst))
     }

@@ -9,22 +9,22 @@ use super::session::Source;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Text, recorder};
 
-/// Duration in nanoseconds of a recording that is too long to be lost by a click.
+/// Duration in nanoseconds of a recording that is too long to be discarded by a single click.
 pub(super) const MUCH: i64 = 120_000_000_000;
 
 impl Studio {
-    /// Returns the drives of all sessions, to be stopped when the program ends.
+    /// Returns the brakes for the drives of all sessions, to be used when the program ends.
     pub fn brakes(&self) -> Brakes {
         self.services.brakes.clone()
     }
 
-    /// Returns whether the window is closing, so that no more questions are asked.
+    /// Returns whether the window is closing, in which case no more questions are asked.
     pub fn is_closing(&self) -> bool {
         self.closing
     }
 
     /// Returns whether the window may close now: no drive is under control, nothing is running, not even in released
-    /// sessions, and all data are on disk; or the grace period has expired.
+    /// sessions, and all data are on disk. The window may also close if the grace period has expired.
     pub fn may_close(&self) -> bool {
         let services = &self.services;
         let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(|device| device.is_draft_kept());
@@ -88,7 +88,7 @@ impl Studio {
         }
     }
 
-    /// Handles a request of the system to end the program: edits are kept as drafts, and no questions are asked.
+    /// Handles a request of the system to end the program. Edits are kept as drafts, and no questions are asked.
     pub(super) fn quit(&mut self) {
         self.question = None;
         self.stop();
@@ -117,8 +117,8 @@ impl Studio {
         }
     }
 
-    /// Declines the open question; returns whether there was one.
-    pub(super) fn decline(&mut self) -> bool {
+    /// Declines the open question. Returns whether a question was open.
+    pub(super) fn dismiss_question(&mut self) -> bool {
         let Some(question) = self.question.take() else { return false };
         match question.then {
             Then::OpenLink(id) => {

@@ -10,12 +10,12 @@ use super::payload::{Payload, PayloadKindError};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text};
 
-/// The interval of live values that start by themselves.
+/// Polling interval of live values that start automatically.
 const LIVE: Duration = Duration::from_millis(50);
 
 impl Studio {
-    /// Executes a command that every device supports. Links are opened here, and commands between two sessions are
-    /// handled here.
+    /// Executes a command that every device supports. This includes opening links and commands that involve two
+    /// sessions.
     pub(super) fn command(&mut self, id: SessionId, command: DeviceCommand) {
         match command {
             DeviceCommand::Reconnect => self.reconnect(id),
@@ -92,7 +92,8 @@ impl Studio {
         self.report_wrong_kind(taken, id);
     }
 
-    /// Stops all motion if an action has reached another kind of device, because its intended target does not exist.
+    /// Stops all motion if an action has reached a different kind of device, because its intended target does not
+    /// exist.
     pub(super) fn report_wrong_kind(&mut self, done: Result<(), PayloadKindError>, id: SessionId) {
         if done.is_err() {
             let name = self.device(id).map(AnyDevice::name);

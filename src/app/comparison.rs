@@ -17,12 +17,12 @@ pub struct ProfileComparison {
 }
 
 impl ProfileComparison {
-    /// Returns the session on the left side.
+    /// Returns the session on the left side of the comparison.
     pub fn session(&self) -> SessionId {
         self.session
     }
 
-    /// Returns the profile on the right side.
+    /// Returns the path of the profile on the right side of the comparison.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -41,7 +41,7 @@ impl Studio {
         self.comparison.take().is_some()
     }
 
-    /// Reads a profile to compare with a session, as a task.
+    /// Starts a task that reads a profile to compare it with a session.
     pub(super) fn compare_with(&mut self, session: SessionId, path: PathBuf) {
         let formats = self.services.world.kinds.formats;
         self.services.tasks.run("compare", move || {

@@ -10,14 +10,14 @@ use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Text};
 use crate::profile::{Change, Changed, Document, ProfileError, divergence};
 
-/// A profile in two versions.
+/// A profile that exists in two different versions.
 #[derive(Debug)]
 pub struct Diverged {
     saving: Saving,
     theirs: Result<Box<Document>, ReadError>,
     text: String,
     rows: Vec<Row>,
-    /// The reason why the last choice was not possible.
+    /// Reason why the last choice was not possible.
     problem: Option<Text>,
 }
 
@@ -25,7 +25,7 @@ pub struct Diverged {
 pub struct Row {
     change: Change,
     pub changed: Changed,
-    /// The selected version, if any.
+    /// The version selected for the entry, if any.
     pub take: Option<Side>,
 }
 
@@ -40,9 +40,9 @@ pub enum Resolve {
     Reload,
     KeepMine,
     Take(usize, Side),
-    /// Each entry from the version that was chosen.
+    /// Write each entry from the version chosen for it.
     Merge,
-    /// Writes nothing; the edits stay.
+    /// Close the dialog without writing anything. The edits are kept.
     Close,
 }
 
@@ -52,7 +52,7 @@ impl Row {
         self.change.place()
     }
 
-    /// Returns the value in a version, if it exists there.
+    /// Returns the value in a version, or `None` if the version does not contain it.
     pub fn value(&self, side: Side) -> Option<&str> {
         match side {
             Side::Theirs => self.change.from.as_deref(),
@@ -108,13 +108,14 @@ impl Diverged {
         self.theirs.is_ok()
     }
 
-    /// Returns whether the file can be overwritten. A file written by a newer version of the program cannot, because
+    /// Returns whether the file can be overwritten. A file written by a newer version of the program cannot be
+    /// overwritten, because
     /// its unknown content would be lost.
     pub fn can_keep_mine(&self) -> bool {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
     }
 
-    /// Returns whether a version is chosen for each entry.
+    /// Returns whether a version has been chosen for each entry.
     pub fn can_merge(&self) -> bool {
         self.theirs.is_ok() && self.rows.iter().all(|row| row.take.is_some())
     }
@@ -129,8 +130,8 @@ impl Diverged {
         })
     }
 
-    /// Returns the save that overwrites only the present content of the file.
-    fn over_theirs(self, document: Option<Document>) -> Saving {
+    /// Returns a save operation that overwrites the file only if its content has not changed again.
+    fn overwrite_file(self, document: Option<Document>) -> Saving {
         let Diverged { mut saving, theirs, text, .. } = self;
         // A file that is no longer a profile has nothing to preserve, and the user was told so.
         saving.may_lose = theirs.is_err();
@@ -143,7 +144,7 @@ impl Diverged {
 }
 
 impl Studio {
-    /// Saves to the open file, or else asks for one.
+    /// Saves to the open file, or asks for a file if none is open.
     pub(super) fn save_in_place(&mut self, id: SessionId) {
         let Some(device) = self.device(id) else { return };
         match device.source() {
@@ -158,7 +159,7 @@ impl Studio {
         }
     }
 
-    /// Shows in the session of a profile that its file has changed since it was opened.
+    /// Shows in a profile's session that the file has changed since it was opened.
     pub(super) fn show_divergence(&mut self, diverged: Diverged) {
         self.with_device(diverged.session(), |device, _| device.save_waits());
         if let Some(tab) = self.device(diverged.session()).map(|device| device.tab()) {
@@ -167,8 +168,8 @@ impl Studio {
         }
     }
 
-    /// Asks before comments are lost.
-    pub(super) fn ask_to_lose(&mut self, mut saving: Saving, lost: &[String]) {
+    /// Asks for confirmation before comments are lost.
+    pub(super) fn confirm_loss(&mut self, mut saving: Saving, lost: &[String]) {
         self.with_device(saving.session, |device, _| device.save_waits());
         saving.may_lose = true;
         let text =
@@ -190,9 +191,9 @@ impl Studio {
                 return;
             }
             Resolve::Reload => return self.reload(diverged),
-            Resolve::KeepMine if diverged.can_keep_mine() => diverged.over_theirs(None),
+            Resolve::KeepMine if diverged.can_keep_mine() => diverged.overwrite_file(None),
             Resolve::Merge if diverged.can_merge() => match diverged.merged(self.services.world.kinds) {
-                Ok(document) => diverged.over_theirs(Some(document)),
+                Ok(document) => diverged.overwrite_file(Some(document)),
                 Err(why) => {
                     diverged.problem = Some(why);
                     self.diverged = Some(diverged);

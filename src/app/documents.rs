@@ -64,8 +64,8 @@ impl Studio {
         self.services.notify(Severity::Error, vec![explain::profile(path, &error, self.services.world.kinds)], None);
     }
 
-    /// Handles a draft of a session that was looked up, stored or removed.
-    pub(super) fn draft_done(&mut self, id: SessionId, done: DraftOutcome) {
+    /// Handles the outcome of looking up, storing or removing a session's draft.
+    pub(super) fn finish_draft(&mut self, id: SessionId, done: DraftOutcome) {
         if let DraftOutcome::Kept { result, .. } = &done {
             self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);
             if let Err(error) = result
@@ -78,22 +78,23 @@ impl Studio {
         self.with_device(id, |device, services| device.take_draft(done, services));
     }
 
-    /// Refuses to save or write a profile with a newer schema; returns `true` after reporting it.
+    /// Refuses to save or write a profile with a newer schema. Returns `true` after reporting the refusal.
     pub(crate) fn is_only_looked_at(&mut self, id: SessionId) -> bool {
-        let refusal = self.device(id).and_then(|device| only_looked_at(device.source()));
+        let refusal = self.device(id).and_then(|device| read_only_reason(device.source()));
         let Some(refusal) = refusal else { return false };
         self.services.notify(Severity::Error, vec![refusal], None);
         true
     }
 }
 
-/// Returns why a profile of a newer schema is neither saved nor written to a device.
-pub(crate) fn only_looked_at(source: &Source) -> Option<Text> {
+/// Returns the reason why a profile with a newer schema is neither saved nor written to a device, or `None` for other
+/// sources.
+pub(crate) fn read_only_reason(source: &Source) -> Option<Text> {
     let Source::File { path, document, .. } = source else { return None };
     document.is_newer().then(|| explain::newer_profile(path, document))
 }
 
-/// Returns the profile that has just been read as a document.
+/// Converts a profile that has just been read to a document.
 pub(crate) fn document_of(body: Body) -> Document {
     let now = Timestamp::now();
     let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);

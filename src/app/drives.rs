@@ -17,7 +17,7 @@ pub enum Measure {
     Turns,
     /// Angle in degrees, which may exceed one turn.
     Degrees,
-    /// Millimetres of a spindle whose pitch has been entered.
+    /// Millimetres travelled on a spindle whose pitch has been entered.
     Millimetres,
 }
 
@@ -37,11 +37,11 @@ impl Measure {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RememberedDrives {
-    /// Nanometres a turn, by the numbers of the drives.
+    /// Spindle pitches in nanometres per turn, by drive number.
     pub pitches: BTreeMap<u8, u64>,
     pub measure: Measure,
     unconfirmed: Vec<u8>,
-    /// Number of marks of each drive, which distinguishes a mark from an earlier one.
+    /// Number of marks of each drive, which distinguishes a new mark from an earlier one.
     marks: BTreeMap<u8, u64>,
     /// Written values that the drive has not saved, by parameter number.
     pub unsaved: BTreeMap<u16, i64>,
@@ -55,7 +55,7 @@ pub(crate) struct PartialDriveEntry {
     marks: BTreeMap<u8, u64>,
 }
 
-/// Whether the settings have been read since control was taken: another window may have marked limits in them.
+/// Whether the settings have been read since control was taken. Another window may have marked limits in the settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SettingsReadState {
     Unread,
@@ -63,13 +63,13 @@ pub enum SettingsReadState {
     Read,
 }
 
-/// Drives of which the settings remember something.
+/// A device with drives about which the settings store data.
 pub trait DriveMemory {
-    /// Returns the name under which the settings store the drives of the device, or `None` before it was read.
+    /// Returns the name under which the settings store the device's drives, or `None` before the device has been read.
     fn remembered_as(&self) -> Option<String>;
 
     /// Adopts the stored data of the drives, and returns the data to store next, if they differ. All data are adopted
-    /// once per device; later only limits that were marked elsewhere.
+    /// once per device; after that, only limits marked elsewhere are adopted.
     fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
 
     /// Locks the drives whose limits were marked elsewhere, before the settings contain the mark.
@@ -78,7 +78,7 @@ pub trait DriveMemory {
     /// Returns whether the settings were read since control was taken.
     fn marks(&self) -> SettingsReadState;
 
-    /// Sets whether the settings have been read since control was taken; nothing moves before.
+    /// Sets whether the settings have been read since control was taken. Nothing moves before they have been read.
     fn set_marks(&mut self, marks: SettingsReadState);
 }
 
@@ -89,7 +89,7 @@ impl From<PartialDriveEntry> for RememberedDrives {
 }
 
 impl RememberedDrives {
-    /// Creates drives of which no limits are unconfirmed.
+    /// Creates drive data without unconfirmed limits.
     pub fn confirmed(pitches: BTreeMap<u8, u64>, measure: Measure, unsaved: BTreeMap<u16, i64>) -> Self {
         RememberedDrives { pitches, measure, unsaved, ..RememberedDrives::default() }
     }
@@ -115,8 +115,8 @@ impl RememberedDrives {
         self.marks.insert(drive, self.marks(drive).wrapping_add(times));
     }
 
-    /// Returns the drives marked since `before`. A mark with an unchanged number may already be confirmed here and not
-    /// yet on disk. Programs that do not count omit the numbers.
+    /// Returns the drives marked since `before`. A mark with an unchanged number may already be confirmed here but not
+    /// yet on disk. Programs that do not count marks omit the numbers.
     pub(crate) fn newly_marked(&self, before: &RememberedDrives) -> Vec<u8> {
         let is_new = |drive: &u8| {
             let number = self.marks(*drive);
@@ -125,7 +125,7 @@ impl RememberedDrives {
         self.unconfirmed.iter().copied().filter(is_new).collect()
     }
 
-    /// Returns the data with the changes from `known` to `ours` applied. Limits marked in the meantime stay
+    /// Returns the data with the changes from `known` to `ours` applied. Limits marked in the meantime remain
     /// unconfirmed, whatever `ours` has confirmed.
     #[must_use]
     pub(crate) fn with_changes(mut self, known: &RememberedDrives, ours: &RememberedDrives) -> Self {
@@ -168,7 +168,7 @@ fn change<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &BTreeMa
 mod tests {
     use super::*;
 
-    /// Issue 21.11: limits confirmed here are locked again by another mark, and not by the confirmed one.
+    /// Issue 21.11: limits confirmed here are locked again by a new mark, but not by the confirmed mark.
     #[test]
     fn marks_are_compared_by_number() {
         let of = |text: &str| ron::from_str::<RememberedDrives>(&format!("({text})")).unwrap();

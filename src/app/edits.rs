@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::PendingEdits;
 use super::history::History;
 
-/// A memory as last read.
+/// The content of a memory as last read.
 pub trait EditBase: Default {
     type Place: Ord + Copy;
     type Value: Copy + PartialEq;
@@ -15,7 +15,7 @@ pub trait EditBase: Default {
     fn is_edit(&self, at: Self::Place, value: Self::Value) -> bool;
 }
 
-/// A memory as read, and the edited values.
+/// The content of a memory as read, together with the edited values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edits<B: EditBase> {
     base: B,
@@ -44,7 +44,7 @@ impl<B: EditBase> Edits<B> {
         self.edits.iter().map(|(at, value)| (*at, *value))
     }
 
-    /// Edits values as one undoable step; a value equal to that of the device is not an edit.
+    /// Edits values as one undoable step. A value equal to that of the device does not count as an edit.
     pub fn set(&mut self, values: impl IntoIterator<Item = (B::Place, B::Value)>) {
         let mut after = self.edits.clone();
         for (at, value) in values {
@@ -57,26 +57,26 @@ impl<B: EditBase> Edits<B> {
         self.history.step(&mut self.edits, after);
     }
 
-    /// Undoes the edits selected by `is_meant` as one step; returns `false` if there are none.
+    /// Undoes the edits selected by `is_meant` as one step. Returns `false` if there are none.
     pub fn undo_matching(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
         let mut after = self.edits.clone();
         after.retain(|at, _| !is_meant(*at));
         self.history.step(&mut self.edits, after)
     }
 
-    /// Adopts a new reading of the memory. Edits are kept unless the device now contains their values.
+    /// Adopts new values read from the memory. Edits are kept unless the device now contains their values.
     pub fn read_again(&mut self, read: impl FnOnce(&mut B)) {
         read(&mut self.base);
         self.settle();
         self.history.forget_undone();
     }
 
-    /// Discards everything, for another device.
+    /// Discards everything, because the values belong to a different device.
     pub fn clear(&mut self) {
         *self = Edits::default();
     }
 
-    /// Removes edits that no longer differ from the device, as an earlier step may contain.
+    /// Removes edits that no longer differ from the device. An earlier step may contain such edits.
     fn settle(&mut self) {
         let base = &self.base;
         self.edits.retain(|at, value| base.is_edit(*at, *value));

@@ -9,7 +9,7 @@ use super::payload::Payload;
 use super::studio::SessionId;
 use super::{DeviceAction, Language, Picture, Text};
 
-/// A file to be chosen by the user, in a system dialog or by entering a path.
+/// A question for a file that the user must choose, in a system dialog or by typing a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileQuestion {
     Open,
@@ -35,8 +35,9 @@ pub struct DeviceFile {
 }
 
 impl DeviceFile {
-    /// Creates the question for a file to read: `title` is the title of the dialog, `kind` the name of the file type,
-    /// with its extensions.
+    /// Creates the question for a file to read. `title` is the title of the dialog, and `kind` the name of the file
+    /// type,
+    /// followed by its extensions.
     pub fn to_read<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),
@@ -47,7 +48,7 @@ impl DeviceFile {
         DeviceFile { session, title, kind, endings, suggested: None, then: Arc::new(then) }
     }
 
-    /// Creates the question for a file to write, with a suggested name; its content may depend on the window language.
+    /// Creates the question for a file to write, with a suggested name. The content may depend on the window language.
     pub fn write_question<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),
@@ -71,7 +72,7 @@ impl DeviceFile {
         &self.kind
     }
 
-    /// Returns the action that follows on the choice of a file.
+    /// Returns the action to execute once a file has been chosen.
     pub(super) fn chosen(&self, path: PathBuf, language: Language) -> Payload {
         (self.then)(path, language)
     }

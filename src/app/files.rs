@@ -13,8 +13,9 @@ use crate::link::{LinkUrl, Scheme};
 use crate::store::{FileError, Folders};
 
 impl Studio {
-    /// Returns the action with absolute paths. Paths given by the user enter the program only here.
-    pub(super) fn with_whole_path(&self, action: Action) -> Action {
+    /// Returns the action with all paths made absolute. This is the only point at which paths given by the user enter
+    /// the program.
+    pub(super) fn with_absolute_path(&self, action: Action) -> Action {
         let whole = |path: PathBuf| self.services.world.folders.absolute(&path);
         match action {
             Action::Open(path) => Action::Open(whole(path)),
@@ -24,8 +25,8 @@ impl Studio {
         }
     }
 
-    /// Returns the link with an absolute path, if it leads to a file.
-    pub(super) fn with_whole_file(&self, mut url: LinkUrl) -> LinkUrl {
+    /// Returns the link with an absolute path if it refers to a file.
+    pub(super) fn with_absolute_file(&self, mut url: LinkUrl) -> LinkUrl {
         if url.scheme == Scheme::Replay {
             url.target = self.services.world.folders.absolute(Path::new(&url.target)).display().to_string();
         }
@@ -36,7 +37,7 @@ impl Studio {
         &self.services.world.folders
     }
 
-    /// Handles a typed path; an existing file is not replaced without asking.
+    /// Handles a typed path. An existing file is not replaced without asking.
     pub(super) fn typed(&mut self, question: FileQuestion, path: PathBuf) {
         if question.suggested().is_none() {
             return self.chosen(question, path);
@@ -102,22 +103,22 @@ impl Studio {
         }
     }
 
-    pub(super) fn ask_table(&mut self, owner: RecorderOwner, visible: bool) {
+    pub(super) fn ask_table_path(&mut self, owner: RecorderOwner, visible: bool) {
         let suggested = self.suggested(Some(owner), "csv");
         self.services.file_question = Some(FileQuestion::Table { owner, visible, suggested });
     }
 
-    /// Reports that a picture was requested of something that is not completely visible.
+    /// Reports that a picture was requested of a plot that is not completely visible.
     pub(super) fn notify_picture_truncated(&mut self) {
         self.services.notify(Severity::Warning, vec![Text::new("recorder.picture_cut")], None);
     }
 
-    pub(super) fn ask_picture(&mut self, picture: Picture) {
+    pub(super) fn ask_picture_path(&mut self, picture: Picture) {
         let suggested = self.suggested(None, "png");
         self.services.file_question = Some(FileQuestion::Picture { picture, suggested });
     }
 
-    /// Suggests a file name that contains the encoder and the time of day, so that recordings have different names.
+    /// Suggests a file name with the encoder and the time of day, so that recordings get different names.
     fn suggested(&self, owner: Option<RecorderOwner>, ending: &str) -> PathBuf {
         let device = match owner {
             Some(RecorderOwner::Device(id)) => self.device(id),
@@ -194,7 +195,7 @@ impl Studio {
         }
     }
 
-    /// Passes samples to the tables that are being written.
+    /// Passes new samples to the tables that are being written.
     pub(super) fn feed_exports(&mut self) {
         for device in &mut self.devices {
             device.recorders_mut().into_iter().for_each(Recorder::feed_export);

@@ -10,12 +10,12 @@ use crate::link::LinkUrl;
 use crate::store::Store;
 use crate::worker::{Device, OpenError, Session};
 
-/// Values for kinds of devices, at most one of each type.
+/// Values supplied to the kinds of devices, at most one of each type.
 #[derive(Clone, Default)]
 pub struct Given(HashMap<TypeId, Arc<dyn Any + Send + Sync>>);
 
 impl Given {
-    /// Adds a value, replacing any other of its type.
+    /// Adds a value, replacing any earlier value of the same type.
     #[must_use]
     pub fn with<T: Send + Sync + 'static>(mut self, value: T) -> Self {
         self.0.insert(TypeId::of::<T>(), Arc::new(value));
@@ -27,7 +27,7 @@ impl Given {
     }
 }
 
-/// Prints the number of values only, because a value may be a secret.
+/// Prints only the number of values, because a value may be a secret.
 impl fmt::Debug for Given {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Given({})", self.0.len())
@@ -36,7 +36,7 @@ impl fmt::Debug for Given {
 
 type Open<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
 
-/// Opens links in place of the kind's own function. Used by tests only.
+/// A replacement for the function with which a kind opens links. Used by tests only.
 pub struct Opener<D: Device>(Box<Open<D>>);
 
 impl<D: Device> Opener<D> {

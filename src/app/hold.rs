@@ -23,14 +23,15 @@ pub struct HoldScene {
     pub enabled: bool,
     pub window: bool,
     pub keyboard: bool,
-    /// Whether something moves that this button does not hold, or was stopped just now: a key press then stops motion.
+    /// Whether a motion that this button does not hold is running or was stopped just now. A key press then stops
+    /// motion.
     pub moving: bool,
 }
 
 /// Input since the previous frame, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldInput {
-    /// The window got or lost the keyboard.
+    /// The window gained or lost the keyboard focus.
     WindowFocus(bool),
     Down {
         key: PressKey,
@@ -41,7 +42,7 @@ pub enum HoldInput {
     OtherKey,
     Modifiers,
     PointerDown {
-        /// Whether the first pointer button went down on this button.
+        /// Whether the press of the first pointer button began on this button.
         on: bool,
     },
     PointerMoved {
@@ -49,17 +50,17 @@ pub enum HoldInput {
     },
     PointerUp,
     PointerGone,
-    /// A finger touched the screen, including one that acts as the pointer; a pointer press then follows.
+    /// A finger touched the screen. If the finger acts as the pointer, a pointer press follows.
     Finger,
 }
 
-/// The effect of a frame on a hold.
+/// The effect of the input in a frame on a hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldEvent {
     Press,
     Hold,
     Release,
-    /// A key that holds nothing was pressed while something moves, so everything must stop.
+    /// A key that holds nothing was pressed during a motion, so everything must stop.
     Stop,
 }
 
@@ -83,7 +84,7 @@ pub struct HoldState {
 }
 
 impl HoldState {
-    /// Begins a frame; `follows` tells whether the button was present in the previous frame.
+    /// Begins a frame. `follows` states whether the button was present in the previous frame.
     pub fn begin(&mut self, scene: HoldScene, follows: bool) {
         let before = self.scene.replace(scene).filter(|_| follows);
         self.pointer &= before.is_some();
@@ -102,7 +103,7 @@ impl HoldState {
         }
     }
 
-    /// Processes an input of the frame at a time of the window's clock.
+    /// Processes an input of the frame; `now` is the time on the window's clock.
     pub fn take(&mut self, now: f64, input: HoldInput) {
         let Some(scene) = self.scene else { return };
         match input {
@@ -141,7 +142,8 @@ impl HoldState {
         }
     }
 
-    /// Ends the frame, given whether the pointer is pressed and on the button; returns the state of the hold.
+    /// Ends the frame, given whether the pointer is pressed and whether it is on the button. Returns the state of the
+    /// hold.
     pub fn end(&mut self, now: f64, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
         self.next_picture = self.keys.end_picture(now);
         self.pointer = pointer_down;
@@ -161,7 +163,7 @@ impl HoldState {
         }
     }
 
-    /// Returns the time in seconds after which another frame is required to recognise that a key was released.
+    /// Returns the time in seconds after which another frame is required to detect that a key was released.
     pub const fn next_picture(&self) -> Option<f64> {
         self.next_picture
     }
@@ -174,7 +176,8 @@ impl HoldState {
         self.holder == Some(HoldSource::Pointer)
     }
 
-    /// Returns whether the button has the keyboard focus but no key release has been seen yet, so that the first press
+    /// Returns whether the button has the keyboard focus but no key release has been seen yet. In this case, the first
+    /// press
     /// will not count.
     pub fn waits_for_release(&self) -> bool {
         let has_keyboard = self.scene.is_some_and(|scene| scene.enabled && scene.window && scene.keyboard);

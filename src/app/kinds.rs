@@ -33,7 +33,7 @@ impl Kinds {
         self.tools
     }
 
-    /// Returns the kind of device of a tab, or `None` for a tool or an unknown tab.
+    /// Returns the kind of device shown in a tab, or `None` for a tool or an unknown tab.
     pub(super) fn kind_for_tab(self, tab: Tab) -> Option<&'static dyn DeviceKind> {
         self.devices.iter().copied().find(|kind| kind.tab() == tab)
     }
@@ -42,13 +42,14 @@ impl Kinds {
         self.devices.iter().copied().find(|kind| kind.word() == word)
     }
 
-    /// Explains why a kind refuses a profile; in English, from the cause itself, if no kind recognises it.
+    /// Explains why a kind of device refuses a profile. If no kind recognises the cause, its own English message is
+    /// returned.
     pub(super) fn explain(self, cause: &Cause) -> Text {
         self.devices.iter().find_map(|kind| kind.explain(cause)).unwrap_or_else(|| explain::plain(cause))
     }
 
-    /// Returns a link in a form that may be displayed and stored: without the parameters that are secret for any kind
-    /// of device, since the link may have been given for another kind.
+    /// Returns a link in a form that may be displayed and stored. Parameters that are secret for any kind
+    /// of device are removed, since the link may have been given for a different kind.
     pub fn display_link(self, url: &LinkUrl) -> String {
         let secrets: Vec<&str> = self.devices.iter().flat_map(|kind| kind.secrets()).collect();
         let query: Vec<String> =
@@ -57,7 +58,7 @@ impl Kinds {
         format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
     }
 
-    /// Returns the first tab of a device, or else of a tool.
+    /// Returns the first tab of a device, or the first tab of a tool if there is none.
     pub(super) fn first_tab(self) -> Tab {
         let device = self.devices.first().map(|kind| kind.tab());
         device.or_else(|| self.tools.first().map(|kind| kind.tab())).unwrap_or_default()

@@ -31,7 +31,7 @@ pub struct LiveSession<D: Device> {
 #[derive(Clone, Debug)]
 pub struct JobProgress {
     pub title: Text,
-    /// Steps done, total steps, and the present step.
+    /// Number of completed steps, total number of steps, and the current step.
     pub progress: Option<(u64, u64, Text)>,
     pub stopping: bool,
 }
@@ -51,7 +51,7 @@ impl<D: Kind> LiveSession<D> {
     /// Starts a job.
     ///
     /// # Errors
-    /// Another job runs, or the session has ended.
+    /// Returns an error if another job is running or the session has ended.
     pub(crate) fn submit(&mut self, job: D::Job, what: Text, writes: bool, now: Zoned) -> Result<JobId, SubmitError> {
         let id = self.worker.submit(job)?;
         self.running = Some(Running { id, title: what, since: now, progress: None, writes, stopping: false });
@@ -71,7 +71,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.poll(interval);
     }
 
-    /// Starts watching the given values while samples are taken.
+    /// Starts reading the given watched values while samples are taken.
     pub(crate) fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
         self.worker.watch(watched);
     }
@@ -89,7 +89,7 @@ impl<D: Kind> LiveSession<D> {
         self.poll(pace);
     }
 
-    /// Returns the next event, after recording what it reports about the running job.
+    /// Returns the next event and records what it reports about the running job.
     pub(crate) fn next(&mut self) -> Option<Event<D>> {
         let event = self.worker.events().try_recv().ok()?;
         match &event {
@@ -104,17 +104,17 @@ impl<D: Kind> LiveSession<D> {
         Some(event)
     }
 
-    /// Returns whether the thread has ended without being released, and has reported everything.
+    /// Returns whether the thread has ended without being released and all its events have been received.
     pub(crate) fn is_dead(&self) -> bool {
         self.worker.is_ended() && self.worker.events().is_empty()
     }
 
-    /// Returns the samples since the previous call, and the number dropped.
+    /// Returns the samples since the previous call, and the number of dropped samples.
     pub(super) fn samples(&mut self) -> (Vec<D::Sample>, u64) {
         self.worker.samples().drain()
     }
 
-    /// Returns the frames since the previous call, and the number dropped.
+    /// Returns the frames since the previous call, and the number of dropped frames.
     pub(super) fn frames(&mut self) -> (Vec<TraceEntry>, u64) {
         self.trace.drain()
     }
@@ -124,7 +124,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.stopper()
     }
 
-    /// Returns the worker, to be closed where nothing waits for it.
+    /// Returns the worker, to be closed where the wait for its end blocks nothing.
     pub(crate) fn into_worker(self) -> Worker<D> {
         self.worker
     }

@@ -12,17 +12,18 @@ impl Studio {
         self.devices.iter_mut().filter_map(|device| device.motion_mut())
     }
 
-    /// Returns whether drives are connected in any session, so that STOP must be reachable.
+    /// Returns whether drives are connected in any session, in which case STOP must be reachable.
     pub fn has_drives(&self) -> bool {
         self.devices.iter().any(|device| device.motion().is_some() && device.is_connected())
     }
 
-    /// Returns whether a drive is known to move, or is about to.
+    /// Returns whether a drive is known to be moving or is going to move.
     pub fn moves(&self) -> bool {
         self.motions().any(MotionControl::is_moving)
     }
 
-    /// Returns whether a motion requested in this window is running. Escape stops it before anything else.
+    /// Returns whether a motion requested in this window is running. Such a motion is the first to be stopped by
+    /// Escape.
     pub fn moves_by_hand(&self) -> bool {
         self.motions().any(MotionControl::moves_by_hand)
     }
@@ -32,7 +33,7 @@ impl Studio {
         self.motions().any(MotionControl::is_under_way)
     }
 
-    /// Returns whether drives are under control, so that their values arrive without being requested.
+    /// Returns whether drives are under control, in which case their values arrive without being requested.
     pub fn is_in_control(&self) -> bool {
         self.motions().any(MotionControl::is_in_control)
     }
@@ -41,13 +42,13 @@ impl Studio {
         self.motions_mut().for_each(MotionControl::stop);
     }
 
-    /// Ends everything that is held, and endless runs, because the window has lost the keyboard or is covered by a
+    /// Ends all held motions and endless runs, because the window has lost the keyboard or is covered by a
     /// dialog.
     pub(super) fn release_jogs(&mut self) {
         self.motions_mut().for_each(MotionControl::let_go);
     }
 
-    /// Ends a jog or run whose panel is not visible: another tab or device, a dialog, or any question ends it.
+    /// Ends a jog or run whose panel is no longer visible because of another tab or device, a dialog, or a question.
     pub(super) fn hold_in_sight(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || asks;

@@ -19,7 +19,7 @@ pub enum Severity {
 impl Severity {
     /// Returns the remaining display time of a notice that has been shown for `shown`, or `None` if it stays until
     /// dismissed.
-    pub fn stands_for(self, shown: Duration) -> Option<Duration> {
+    pub fn display_time(self, shown: Duration) -> Option<Duration> {
         let seconds = match self {
             Severity::Note | Severity::Good => 6,
             Severity::Warning => 20,
@@ -39,7 +39,7 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// Returns the prefix that names the device and part; empty if there is none.
+    /// Returns the prefix that names the device and part, or an empty string if there is none.
     pub fn prefix(&self, words: impl Fn(&Text) -> String) -> String {
         let names = self.about.clone().into_iter().chain(self.part.as_ref().map(words));
         let names: Vec<String> = names.collect();
@@ -47,18 +47,18 @@ impl Notice {
     }
 }
 
-/// Log of the window, newest last; the oldest notices are removed.
+/// The window's log of notices, newest last. The oldest notices are removed.
 #[derive(Debug, Default)]
 pub struct Log {
     notices: VecDeque<Notice>,
-    /// The latest notice still displayed in the window.
+    /// The latest notice, if it is still displayed in the window.
     standing: Option<Notice>,
 }
 
 impl Log {
     const CAPACITY: usize = 2_000;
 
-    /// Adds a notice, displayed until another one arrives or it is dismissed.
+    /// Adds a notice, which is displayed until it is dismissed or another notice arrives.
     pub fn add(&mut self, notice: Notice) {
         // A success does not replace a notice that needs attention.
         if notice.severity >= Severity::Warning
@@ -98,7 +98,7 @@ impl Log {
         }
     }
 
-    /// Removes the error about a file that was read or written now.
+    /// Removes the error about a file that has now been read or written.
     pub(crate) fn settle_file(&mut self, path: &Path) {
         let is_it = |notice: &Notice| {
             notice.severity == Severity::Error && notice.texts.first().is_some_and(|text| text.is_about(path))
@@ -153,15 +153,15 @@ mod tests {
 
     #[test]
     fn success_notices_expire_and_errors_never_do() {
-        let left = |severity: Severity| severity.stands_for(Duration::from_millis(5_500));
+        let left = |severity: Severity| severity.display_time(Duration::from_millis(5_500));
         assert_eq!(left(Severity::Note), Some(Duration::from_millis(500)));
         assert_eq!(left(Severity::Good), left(Severity::Note));
         assert_eq!(left(Severity::Warning), Some(Duration::from_millis(14_500)));
         assert_eq!(left(Severity::Error), None);
-        assert_eq!(Severity::Warning.stands_for(Duration::from_secs(21)), Some(Duration::ZERO));
+        assert_eq!(Severity::Warning.display_time(Duration::from_secs(21)), Some(Duration::ZERO));
     }
 
-    /// Issue 22.28: the error of a file ends with that file, and with no other.
+    /// Issue 22.28: saving a file removes the errors about that file and no others.
     #[test]
     fn saving_a_file_settles_its_own_errors() {
         let mut log = Log::default();

@@ -2,10 +2,10 @@
 
 use super::Text;
 
-/// Maximum number of signal periods per revolution that can be entered; no encoder has more.
+/// Maximum number of signal periods per revolution that can be entered. No encoder has more.
 pub(crate) const MOST_PERIODS: u32 = 65_536;
 
-/// Parses a decimal number with an optional exponent, or returns `None` if it is invalid.
+/// Parses a decimal number with an optional exponent. Returns `None` if the text is invalid.
 pub fn number(text: &str) -> Option<f64> {
     let text = text.trim().replace(',', ".").replace('−', "-");
     // The parser would accept words such as `inf`.
@@ -13,10 +13,10 @@ pub fn number(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| plain && value.is_finite())
 }
 
-/// Parses a number from `least` to `most`; `what` names the entry.
+/// Parses a number from `least` to `most`. `what` names the entry.
 ///
 /// # Errors
-/// A text that states why the entry is invalid.
+/// Returns a text that states why the entry is invalid.
 pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -> Result<f64, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -27,10 +27,10 @@ pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -
     number(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
-/// Returns a whole number from `least` to `most`, decimal or with `0x` in front.
+/// Parses a whole number from `least` to `most`, in decimal or in hexadecimal with the prefix `0x`.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Returns a text that states why the entry is invalid.
 pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) -> Result<u32, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -47,10 +47,10 @@ pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) ->
     value.filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
-/// Parses a number from 0 to `last`, decimal, or hexadecimal with `0x` or a final `h`.
+/// Parses a number from 0 to `last`, in decimal, or in hexadecimal with the prefix `0x` or a final `h`.
 ///
 /// # Errors
-/// A text that states why the entry is invalid.
+/// Returns a text that states why the entry is invalid.
 pub(crate) fn number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Result<u64, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -70,7 +70,7 @@ pub(crate) fn number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Res
 
 /// Parses a quantity as printed on a component: a number with a prefix from f to G, after the number or in place of its
 /// decimal point, with or without a unit (`10k`, `10 kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`), or with an exponent
-/// (`22e-12`). Returns `None` if it is invalid.
+/// (`22e-12`). Returns `None` if the text is invalid.
 fn quantity(text: &str) -> Option<f64> {
     const UNITS: [&str; 6] = ["Ohm", "ohm", "Ω", "\u{2126}", "F", "R"];
     const PREFIXES: [(char, f64); 10] = [
@@ -100,10 +100,10 @@ fn quantity(text: &str) -> Option<f64> {
     }
 }
 
-/// Parses a quantity from `least` to `most`; errors state this as `range`.
+/// Parses a quantity from `least` to `most`. Error texts state the limits as `range`.
 ///
 /// # Errors
-/// A text that states why the entry is invalid.
+/// Returns a text that states why the entry is invalid.
 pub(crate) fn quantity_within(
     what: impl Into<Text>,
     text: &str,

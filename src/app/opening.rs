@@ -8,7 +8,7 @@ use super::given::Opener;
 use super::question::{Question, Then};
 use super::services::{Environment, JobEnd, Services};
 use super::session::{Kind, Opening, Phase, Source};
-use super::shutdown::same_wire;
+use super::shutdown::shares_wire;
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
 use super::tasks::Wake;
@@ -16,15 +16,17 @@ use super::{AnyDevice, Severity, Text};
 use crate::link::{LinkUrl, Scheme, TraceEntry, UrlError};
 use crate::worker::{OpenError, Ring, Session, Worker};
 
-/// Maximum number of frames waiting for the window: ten seconds at 2,000 per second, far more than a window that draws
-/// leaves unread.
+/// Maximum number of frames waiting for the window. This is ten seconds at 2,000 frames per second, far more than a
+/// window that still
+/// draws leaves unread.
 const FRAMES: usize = 20_000;
-/// Maximum memory of the waiting frames, in bytes.
+/// Maximum memory used by waiting frames, in bytes.
 const FRAME_BYTES: usize = 8 << 20;
 
 impl Studio {
-    /// Returns the tab of the device to which a link leads. If the link does not determine it, this is the kind of
-    /// device last used with the link, or of several the tab shown last; for a new link the open tab.
+    /// Returns the tab of the device to which a link leads. If the link does not determine the kind of device, the kind
+    /// last used with the
+    /// link is chosen, or the tab shown last if there were several kinds. A new link uses the open tab.
     pub(super) fn tab_of(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
         let tab = self.settings.tab;
@@ -42,16 +44,16 @@ impl Studio {
         tabs().find(used).or_else(|| tabs().find(fits)).or_else(|| tabs().find(leads_there)).unwrap_or(shown)
     }
 
-    /// Opens a link to a kind of device, in the session that already has the connection, or else in a new one. A
-    /// session of another kind releases the connection.
+    /// Opens a link to a kind of device, in the session that already has the connection or else in a new session. A
+    /// session of a different kind releases the connection.
     pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {
-        let url = self.with_whole_file(url);
+        let url = self.with_absolute_file(url);
         if let Some(id) = self.session_at(tab, &url) {
             self.open_for(id, url);
         }
     }
 
-    /// Opens a link to a device found by a search, which has already asked about other masters on the line.
+    /// Opens a link to a device found by a search. The search has already asked about other masters on the line.
     pub(super) fn open_found(&mut self, tab: Tab, url: LinkUrl) {
         let was_asked =
             self.services.world.kinds.kind_for_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
@@ -60,11 +62,11 @@ impl Studio {
         }
     }
 
-    /// Returns the session for a link and selects it, or `None` if it must not be opened.
+    /// Selects the session for a link and returns its id, or `None` if the link must not be opened.
     fn session_at(&mut self, tab: Tab, url: &LinkUrl) -> Option<SessionId> {
         let mut own = None;
         for device in &mut self.devices {
-            let holds = matches!(device.source(), Source::Link(other) if same_wire(other, url));
+            let holds = matches!(device.source(), Source::Link(other) if shares_wire(other, url));
             if !holds {
                 continue;
             }
@@ -97,7 +99,8 @@ impl Studio {
         Some(id)
     }
 
-    /// Releases the session on a connection for another use, unless it is writing. A session whose link is still being
+    /// Releases the session on a connection for another use, unless the session is writing. A session whose link is
+    /// still being
     /// opened has ended when the returned channel closes.
     ///
     /// # Errors
@@ -105,7 +108,7 @@ impl Studio {
     pub(super) fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         let holds = |device: &&mut Box<AnyDevice>| {
             let held = device.is_connected() || device.is_opening();
-            held && matches!(device.source(), Source::Link(own) if same_wire(own, url))
+            held && matches!(device.source(), Source::Link(own) if shares_wire(own, url))
         };
         let Some(device) = self.devices.iter_mut().find_map(|device| Some(device).filter(holds)) else {
             return Ok(None);
@@ -128,8 +131,9 @@ impl Studio {
         self.open_for(id, url);
     }
 
-    /// Opens a link for a session. If a drive may be on the line, the user is asked before anything is opened: the
-    /// drive may have read the encoder at power-up and be silent since, so listening proves nothing.
+    /// Opens a link for a session. If a drive may be on the line, the user is asked before anything is opened.
+    /// Listening proves nothing, because
+    /// the drive may have read the encoder at power-up and been silent since.
     fn open_for(&mut self, id: SessionId, url: LinkUrl) {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
@@ -146,7 +150,7 @@ impl Studio {
         }
     }
 
-    /// Opens a link for a session again; only the result of this attempt counts.
+    /// Opens a link again for a session. Only the result of the new attempt counts.
     fn attempt_to_open(&mut self, id: SessionId, url: LinkUrl, is_sole_master: bool) {
         let attempt = self.new_number();
         self.free_wire_of_tools(&url);
@@ -184,8 +188,8 @@ impl Studio {
 }
 
 impl Services {
-    /// Opens a link on a thread, after an earlier attempt and any other user of the connection have finished. Dropping
-    /// its turn signals that the connection is free again.
+    /// Opens a link on a thread, after an earlier attempt and any other user of the connection have finished. The
+    /// connection is free again when the sender for its turn is dropped.
     pub(crate) fn open_task<D: Kind>(
         &mut self,
         url: LinkUrl,
@@ -236,7 +240,7 @@ fn open<D: Kind>(
     }
 }
 
-/// Wakes the window when the thread of a session has ended, for whatever reason.
+/// Guard that wakes the window when the thread of a session has ended, for whatever reason.
 struct WakeOnDrop(Wake);
 
 impl Drop for WakeOnDrop {

@@ -14,7 +14,7 @@ pub trait DeviceAction: Any + Send {}
 /// An action or a task result with its kind of device erased.
 pub struct Payload(Box<dyn Any + Send>);
 
-/// A payload reached a device of another kind.
+/// Error returned when a payload has reached a device of a different kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the action is for another kind of device")]
 pub struct PayloadKindError;
@@ -31,7 +31,7 @@ impl Payload {
     /// Returns the content.
     ///
     /// # Errors
-    /// [`PayloadKindError`] if the content has another type.
+    /// Returns [`PayloadKindError`] if the content has a different type.
     pub fn open<T: Any>(self) -> Result<T, PayloadKindError> {
         self.0.downcast().map(|content| *content).map_err(|_| PayloadKindError)
     }
@@ -50,7 +50,7 @@ impl Action {
 }
 
 impl Done {
-    /// Wraps the result of a device task, typed for its kind.
+    /// Wraps the result of a device task, whose type depends on the kind of device.
     pub(crate) fn device(id: SessionId, done: impl Any + Send) -> Self {
         Done::Device(id, Payload::of(done))
     }

@@ -2,7 +2,7 @@
 
 use super::history::History;
 
-/// Edited values that differ from the device or the file, with undo.
+/// Edited values that differ from the device or the file, with undo and redo.
 pub trait PendingEdits {
     fn count(&self) -> usize;
 
@@ -12,20 +12,20 @@ pub trait PendingEdits {
 
     fn can_redo(&self) -> bool;
 
-    /// Undoes the last step; returns `false` if there is none.
+    /// Undoes the last step. Returns `false` if there is none.
     fn undo(&mut self) -> bool;
 
-    /// Redoes the last undone step; returns `false` if there is none.
+    /// Redoes the last undone step. Returns `false` if there is none.
     fn redo(&mut self) -> bool;
 
-    /// Discards all edits as one undoable step; returns `false` if there are none.
+    /// Discards all edits as one undoable step. Returns `false` if there are none.
     fn revert(&mut self) -> bool;
 
-    /// Discards the undo steps, because the edits were written or saved.
+    /// Discards the undo steps, because the edits have been written or saved.
     fn forget_steps(&mut self);
 }
 
-/// Edits kept as a complete copy of the values, with the steps that led to them.
+/// Edits that are kept as a complete copy of the values, with the steps that led to them.
 pub(crate) trait SteppedEdits {
     type Values: Clone + PartialEq;
 

@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use crate::store::{FileError, FileProblem, FileTask, write_atomically};
 
-/// Pixels, row by row from the top.
+/// A picture in RGB pixels, row by row from the top.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
     width: u32,
     height: u32,
-    /// Red, green, blue of each pixel.
+    /// Red, green and blue components of each pixel.
     bytes: Arc<[u8]>,
 }
 
@@ -22,7 +22,8 @@ impl fmt::Debug for Picture {
 }
 
 impl Picture {
-    /// Creates a picture from RGB pixels, or returns `None` if there are none or their number does not match the size.
+    /// Creates a picture from RGB pixels. Returns `None` if there are no pixels or their number does not match the
+    /// size.
     pub fn new(width: u32, height: u32, bytes: Vec<u8>) -> Option<Self> {
         let wanted = u64::from(width) * u64::from(height) * 3;
         let fits = wanted > 0 && u64::try_from(bytes.len()) == Ok(wanted);
@@ -32,7 +33,7 @@ impl Picture {
     /// Saves the picture as PNG.
     ///
     /// # Errors
-    /// The error of writing; the old file remains.
+    /// Returns the write error. The old file is kept.
     pub(super) fn save(&self, path: &Path) -> Result<(), FileError> {
         let refused = |error: std::io::Error| FileError {
             path: path.to_owned(),

@@ -9,21 +9,23 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PressKey {
     Space,
-    /// Enter, of the numeric pad as well.
+    /// Enter, including the Enter key of the numeric pad.
     Enter,
 }
 
-/// Minimum time between a user's release and press of a key, in seconds. Remote desktops, and displays that do not
-/// distinguish repetitions from presses, repeat a key by a release and an immediate press.
+/// Minimum time in seconds between a user's release and the next press of a key. Remote desktops, and displays that do
+/// not
+/// distinguish repetitions from presses, repeat a key by a release followed immediately by a press.
 const LEAST: f64 = 0.05;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum KeyState {
-    /// Nothing is known: the key may be held.
+    /// The state of the key is unknown, so it may be held.
     #[default]
     Nothing,
     Down,
-    /// The key was released, or another key was pressed, in the frame at this time, and has not been seen up long
+    /// The key was released, or another key was pressed, in the frame at the given time, and the key has not been seen
+    /// up long
     /// enough since.
     Released(f64),
     Up,
@@ -36,27 +38,29 @@ pub struct FreshKeys {
 }
 
 impl FreshKeys {
-    /// Both keys are up, and the keyboard focus was never lost.
+    /// State in which both keys are up and the keyboard focus was never lost.
     pub const UP: FreshKeys = FreshKeys { space: KeyState::Up, enter: KeyState::Up };
 
-    /// Discards everything known, because the keyboard focus was lost, gained, or has another purpose.
+    /// Discards the known key states, because the keyboard focus was lost, gained, or has another purpose.
     pub fn forget(&mut self) {
         *self = FreshKeys::default();
     }
 
-    /// Handles a key press; returns whether it is fresh, that is, whether an earlier frame saw the key up long enough.
+    /// Handles a key press. Returns whether the press is fresh, that is, whether an earlier frame saw the key up long
+    /// enough.
     pub fn press(&mut self, key: PressKey) -> bool {
         std::mem::replace(self.of(key), KeyState::Down) == KeyState::Up
     }
 
-    /// Handles the release of a key, while the window has the keyboard.
+    /// Handles the release of a key while the window has the keyboard focus.
     pub fn release(&mut self, key: PressKey, now: f64) {
         *self.of(key) = KeyState::Released(now);
     }
 
-    /// Records that another key was pressed. Only the key pressed last repeats, so a repetition of an unknown key is
+    /// Records that another key was pressed. Only the key pressed last is repeated by the system, so a repetition of an
+    /// unknown key is
     /// ignored.
-    pub fn press_other(&mut self, now: f64) {
+    pub fn press_other_key(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
             if *own == KeyState::Nothing {
@@ -65,8 +69,9 @@ impl FreshKeys {
         }
     }
 
-    /// Records that another key was pressed outside a text entry. A press immediately after it is not made by a person:
-    /// barcode scanners type digits and Enter that fast.
+    /// Records that another key was pressed outside a text entry. A press immediately afterwards is not made by a
+    /// person,
+    /// since barcode scanners type digits and Enter that fast.
     pub fn doubt(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
@@ -76,7 +81,7 @@ impl FreshKeys {
         }
     }
 
-    /// Ends a frame; returns the time in seconds after which the next one is required at the latest, because a user who
+    /// Ends a frame and returns the time in seconds after which the next frame is required at the latest. A user who
     /// presses a key again after releasing it causes no frame in between.
     #[must_use]
     pub fn end_picture(&mut self, now: f64) -> Option<f64> {
@@ -99,7 +104,7 @@ impl FreshKeys {
         matches!(self.get(key), KeyState::Released(_) | KeyState::Up)
     }
 
-    /// Returns whether the key was seen down, and not up since.
+    /// Returns whether the key was seen down and has not been seen up since.
     pub fn is_down(&self, key: PressKey) -> bool {
         self.get(key) == KeyState::Down
     }
@@ -124,14 +129,14 @@ mod tests {
     use super::PressKey::{Enter, Space};
     use super::*;
 
-    /// Runs this many empty frames.
+    /// Runs `count` frames without input.
     fn pictures(keys: &mut FreshKeys, from: f64, apart: f64, count: u32) {
         for number in 0..count {
             let _ = keys.end_picture(from + apart * f64::from(number));
         }
     }
 
-    /// Issue 21.2: a press that the toolkit reports as the first is not fresh if the key was not seen up.
+    /// Issue 21.2: a press that the toolkit reports as new is not fresh if the key was not seen up before.
     #[test]
     fn a_press_is_fresh_only_after_a_release() {
         let mut keys = FreshKeys::default();
@@ -154,7 +159,8 @@ mod tests {
         assert!(!keys.press(Space), "the keyboard was elsewhere meanwhile");
     }
 
-    /// Issue 21.2: a repetition by release and press is a repetition, in one frame or in two, however far apart.
+    /// Issue 21.2: a release followed immediately by a press counts as a repetition, in one frame or in two, however
+    /// far apart the frames are.
     #[test]
     fn a_release_and_an_immediate_press_are_a_repeat() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
@@ -174,7 +180,8 @@ mod tests {
         }
     }
 
-    /// Issue 21.2: a user's press counts although nothing else happened after the release, because a frame was requested.
+    /// Issue 21.2: a user's press counts even if nothing else happened after the release, because a frame was
+    /// requested.
     #[test]
     fn a_users_press_is_fresh_after_the_requested_frame() {
         for apart in [0.001, 0.016, 0.05, 1.0] {
@@ -197,18 +204,18 @@ mod tests {
     #[test]
     fn another_key_ends_the_repeats_of_an_unknown_key() {
         let mut keys = FreshKeys::default();
-        keys.press_other(1.0);
+        keys.press_other_key(1.0);
         assert!(!keys.press(Enter), "at once");
         keys.forget();
-        keys.press_other(1.0);
+        keys.press_other_key(1.0);
         pictures(&mut keys, 1.0, 0.05, 2);
         assert!(keys.press(Enter));
-        keys.press_other(1.2);
+        keys.press_other_key(1.2);
         pictures(&mut keys, 1.2, 0.05, 2);
         assert!(!keys.press(Enter), "it is known to be down");
     }
 
-    /// Issue 22.29: the input of a barcode scanner.
+    /// Issue 22.29: Enter typed by a barcode scanner immediately after another key is not fresh.
     #[test]
     fn a_press_right_after_another_key_is_not_fresh() {
         let mut keys = FreshKeys::UP;

@@ -11,7 +11,7 @@ use super::tab::Tab;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
-    /// Describes what would be lost or interrupted.
+    /// Description of what would be lost or interrupted.
     pub text: Text,
     pub confirm: Text,
     pub decline: Text,
@@ -26,7 +26,7 @@ pub(crate) enum Then {
     Forget(RecorderOwner),
     Save(Box<Saving>),
     OpenLink(SessionId),
-    /// Continue the search in the form of a tab, in the connection dialog.
+    /// Continue the search started from the form of a tab in the connection dialog.
     Find(Tab),
 }
 
@@ -35,7 +35,7 @@ impl Question {
         Question { text, confirm, decline: Text::new("question.stay"), then }
     }
 
-    /// Returns the question whether another master may be on the line of a link.
+    /// Returns the question whether another master may be on the line to which a link leads.
     pub(crate) fn other_master(link: String, then: Then) -> Self {
         Question {
             text: Text::new("question.drive").with("link", link),

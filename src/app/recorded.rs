@@ -6,7 +6,7 @@ use std::fmt::Debug;
 use super::session::Kind;
 use super::{Settings, Tab};
 
-/// Every entry, tab, measure and mark.
+/// A settings file with every entry, tab, measure and mark.
 pub(crate) const SETTINGS: &str = include_str!("../../tests/fixtures/settings/settings.ron");
 
 #[test]
@@ -25,7 +25,7 @@ fn settings_match_the_recorded_file() {
     assert_eq!(Settings::salvage(SETTINGS), settings);
 }
 
-/// Fails unless a draft of a kind is read and written unchanged under the name of the kind.
+/// Checks that a draft of a kind is read and written back unchanged under the name of the kind.
 pub(crate) fn assert_recorded<D: Kind>(kind: &str, draft: &str)
 where
     D::Edits: Debug,

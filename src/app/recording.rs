@@ -13,7 +13,7 @@ pub trait Recording {
     /// Returns the number of samples that were dropped before they could be recorded.
     fn dropped(&self) -> u64;
 
-    /// Sets the polling interval; `begins` tells whether polling was off before.
+    /// Sets the polling interval. `begins` states whether polling was off before.
     #[doc(hidden)]
     fn poll(&mut self, interval: Option<Duration>, begins: bool);
 }

@@ -8,9 +8,9 @@ use super::drives::{DriveMemory, SettingsReadState};
 use super::studio::Studio;
 use crate::store::FileError;
 
-/// Interval at which the settings are read while drives are under control.
+/// Interval at which the settings are read again while drives are under control.
 const PACE: Duration = Duration::from_secs(1);
-/// Time for which settings remain valid after reading, the same as for values read from the drives.
+/// Time for which settings remain valid after being read, the same as for values read from the drives.
 const STALE: Duration = Duration::from_secs(4);
 
 impl Studio {
@@ -51,7 +51,7 @@ impl Studio {
         self.drives_in_hand().filter(reading).for_each(|drives| drives.set_marks(SettingsReadState::Read));
     }
 
-    /// Records that the settings could not be read: no drive under control moves before they are.
+    /// Records that the settings could not be read. No drive under control moves until they have been read.
     pub(super) fn settings_unread(&mut self, error: &FileError) {
         tracing::warn!("{error}");
         self.settings_store.fail_read();

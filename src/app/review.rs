@@ -18,7 +18,7 @@ pub struct Review<K: Reviewed> {
     /// Whether to write even though the device has reached its limit of write cycles.
     pub force_wear: bool,
     pub is_for_another: bool,
-    /// Whether the change was made for another type of device.
+    /// Whether the change was made for a different type of device.
     pub is_for_another_type: bool,
     pub(crate) change: K::Change,
     /// The relevant permits, and whether they are granted.
@@ -29,15 +29,15 @@ pub enum ReviewState<K: Reviewed> {
     Planning,
     Ready(Box<K::Prepared>),
     Writing(Box<K::Prepared>),
-    /// The plan was carried out and read back.
+    /// The plan was executed, and the values were read back.
     Done(Box<K::Prepared>, Committed<K::Written>),
-    /// The write is impossible, or ended early.
+    /// The write is impossible or ended early.
     Failed {
-        /// What happened and what to do.
+        /// Texts that describe what happened and what to do.
         texts: Vec<Text>,
-        /// Whether the device had been written to before the end.
+        /// Whether the device had already been written to when the write ended.
         begun: bool,
-        /// The plan that was being carried out, and the number of operations known to be done.
+        /// The plan that was being executed, and the number of operations known to be completed.
         cut_off: Option<(Box<K::Prepared>, usize)>,
     },
 }
@@ -58,7 +58,7 @@ impl<K: Reviewed> Review<K> {
         }
     }
 
-    /// Returns the displayed plan until its end.
+    /// Returns the displayed plan until the review ends.
     pub fn prepared(&self) -> Option<&K::Prepared> {
         match &self.state {
             ReviewState::Ready(prepared) | ReviewState::Writing(prepared) | ReviewState::Done(prepared, _) => {
@@ -80,18 +80,18 @@ impl<K: Reviewed> Review<K> {
         matches!(self.state, ReviewState::Writing(_))
     }
 
-    /// Returns whether the plan has neither begun nor failed.
+    /// Returns whether the plan has neither been started nor failed.
     pub(in crate::app) fn is_plan(&self) -> bool {
         matches!(self.state, ReviewState::Planning | ReviewState::Ready(_))
     }
 
-    /// Ends the review early, after `done` operations if execution had begun.
+    /// Ends the review early, with `done` completed operations if execution had begun.
     pub(in crate::app) fn fail(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
         let cut_off = self.writing().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
         self.state = ReviewState::Failed { texts, begun, cut_off };
     }
 
-    pub(crate) fn toggled(&self, permit: Permit) -> Option<K::Change> {
+    pub(crate) fn with_toggled_permit(&self, permit: Permit) -> Option<K::Change> {
         let mut change = self.change.clone();
         let own = K::permitted(&mut change, permit)?;
         *own = !*own;
@@ -99,7 +99,7 @@ impl<K: Reviewed> Review<K> {
     }
 
     /// Returns the permits that are granted or would make a difference.
-    fn toggles(&self) -> Vec<Toggle> {
+    fn permit_toggles(&self) -> Vec<Toggle> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
             Permit::OtherType => self.is_for_another_type,
@@ -115,13 +115,13 @@ impl<K: Reviewed> Review<K> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperationTexts {
     pub item: Text,
-    /// Changes in order; at least one.
+    /// Changes in order, of which there is at least one.
     pub changes: Vec<ChangeTexts>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangeTexts {
-    /// Changed part of the item, or `None` for all of it.
+    /// Changed part of the item, or `None` if all of it is changed.
     pub part: Option<Text>,
     pub old: Text,
     pub new: Text,
@@ -141,7 +141,7 @@ impl OperationTexts {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
     pub title: Text,
-    /// The answer that allows nothing.
+    /// Label of the answer that allows nothing.
     pub no: Text,
     pub yes: Text,
     pub permit: Permit,
@@ -151,9 +151,9 @@ pub struct Question {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutionMode {
     Writes,
-    /// Step by step, with the user at the device.
+    /// Execution step by step, with the user at the device.
     Leads,
-    /// Step by step, and nothing is written.
+    /// Execution step by step, without writing anything.
     Tests,
 }
 
@@ -166,7 +166,7 @@ impl ExecutionMode {
         }
     }
 
-    /// Returns the text id describing the next action.
+    /// Returns the text id of the description of the next action.
     pub const fn summary_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.way",
@@ -176,24 +176,25 @@ impl ExecutionMode {
     }
 }
 
-/// Review as displayed, for any device.
+/// A review in the form displayed, for any device.
 #[derive(Clone, Debug)]
 pub struct ReviewSheet {
     pub title: Text,
     pub stage: Stage,
     pub lines: Vec<OperationTexts>,
     pub warnings: Vec<Text>,
-    /// What the plan requires from the user at the device.
+    /// Actions that the plan requires from the user at the device.
     pub needs: Vec<Text>,
-    /// Values from another device that must be set up again afterwards; shown during planning, writing and at the end.
+    /// Values from another device that must be set up again afterwards. They are shown during planning, during writing
+    /// and at the end.
     pub redo: Option<Text>,
     /// Cost in addition to the write cycles counted by this computer.
     pub cost: Option<Text>,
     pub execution_mode: ExecutionMode,
     pub toggles: Vec<Toggle>,
-    /// Questions that must be answered first.
+    /// Questions that the user must answer first.
     pub questions: Vec<Question>,
-    /// Whether to write regardless, if the device reaches its limit of write cycles or their number is unknown.
+    /// Whether to write even if the device reaches its limit of write cycles or their number is unknown.
     pub force_wear: Option<bool>,
     /// Whether the number of earlier write cycles is unknown.
     pub is_uncounted: bool,
@@ -205,17 +206,17 @@ pub enum Stage {
     /// The plan contains nothing to do.
     Nothing,
     Ready(PlanId),
-    /// The plan is being executed; number of completed operations.
+    /// The plan is being executed. Holds the number of completed operations.
     Writing(usize),
     Done {
         verified: Text,
         backup: Option<PathBuf>,
         logbook: Option<Text>,
     },
-    /// The write is impossible, or ended early.
+    /// The write is impossible or ended early.
     Failed {
         texts: Vec<Text>,
-        /// Whether the device had been written to before the end.
+        /// Whether the device had already been written to when the write ended.
         begun: bool,
         done: usize,
     },
@@ -228,15 +229,15 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     type Written;
 
     fn change(change: &Self::Change) -> Text;
-    /// Returns the flag of a permit, or `None` if it does not apply.
+    /// Returns the flag of a permit, or `None` if the permit does not apply.
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
     fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OperationTexts;
-    /// Returns whether values of the mounting differ and are left alone.
+    /// Returns whether mounting values differ and are left unchanged.
     fn leaves_mounting(_prepared: &Self::Prepared) -> bool {
         false
     }
 
-    /// Returns the written values that belong to another device and must be set up again.
+    /// Returns the written values that belong to a different device and must be set up again.
     fn redo(_prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
@@ -249,14 +250,14 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    /// Returns what the plan requires from the user at the device.
+    /// Returns the actions that the plan requires from the user at the device.
     fn needs(_change: &Self::Change, _prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
 
     fn cost(prepared: &Self::Prepared) -> Text;
 
-    /// Returns whether the device reaches its limit of write cycles with the plan.
+    /// Returns whether the plan makes the device reach its limit of write cycles.
     fn is_worn(prepared: &Self::Prepared) -> bool {
         let seen = prepared.cycles_seen().unwrap_or(0);
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
@@ -283,7 +284,7 @@ pub fn written_texts<K: Reviewed>(committed: &Committed<K::Written>) -> (Severit
     }
 }
 
-/// Describes the values that a restore leaves unchanged: those missing on one side, and those of another mounting.
+/// Describes the values that a restore leaves unchanged: those missing on one side, and those of a different mounting.
 pub(crate) fn skipped_texts(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
     let mut texts = Vec::new();
     if !missing.is_empty() {
@@ -301,12 +302,12 @@ pub fn redo(items: Vec<Text>) -> Option<Text> {
 }
 
 impl<K: Reviewed> Review<K> {
-    /// Returns the review as displayed; `done` operations have been carried out.
+    /// Returns the review in the form displayed, after `done` operations have been completed.
     pub fn sheet(&self, done: usize) -> ReviewSheet {
         self.sheet_with(done, K::op)
     }
 
-    /// Returns the review for display, with the connected device's own descriptions of operations.
+    /// Returns the review in the form displayed, with the connected device's own descriptions of operations.
     pub(in crate::app) fn sheet_with(
         &self,
         done: usize,
@@ -346,7 +347,7 @@ impl<K: Reviewed> Review<K> {
             redo: carried.and_then(|own| redo(K::redo(own))),
             cost: costs.map(K::cost),
             execution_mode: prepared.map_or(ExecutionMode::Writes, K::execution_mode),
-            toggles: self.toggles(),
+            toggles: self.permit_toggles(),
             questions: shown.map(K::questions).unwrap_or_default(),
             force_wear: costs.filter(|own| uncounted(own) || K::is_worn(own)).map(|_| self.force_wear),
             is_uncounted: costs.is_some_and(uncounted),

@@ -19,7 +19,7 @@ use crate::link::{LinkError, PortInfo};
 use crate::store::{Folders, Store};
 use crate::worker::JobId;
 
-/// Access of the studio to the outside world, replaced in tests.
+/// The studio's access to the outside world, which tests replace.
 #[derive(Clone)]
 pub struct Environment {
     pub store: Store,
@@ -27,10 +27,10 @@ pub struct Environment {
     pub given: Given,
     pub kinds: Kinds,
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
-    /// The folders that relative paths start from.
+    /// The folders to which relative paths refer.
     pub folders: Folders,
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
-    /// Maximum waiting times of closing.
+    /// Maximum waiting times when closing.
     pub patience: GracePeriods,
 }
 
@@ -74,7 +74,7 @@ pub struct Services {
     jobs: VecDeque<JobRecord>,
     pub(crate) file_question: Option<FileQuestion>,
     pub(crate) brakes: Brakes,
-    /// Sessions that were let go and have not ended.
+    /// Sessions that have been released but have not ended yet.
     pub(super) closing_sessions: Vec<ClosingSession>,
     pub(super) opening_files: Vec<std::path::PathBuf>,
     pub(super) drafts_on_their_way: usize,
@@ -85,12 +85,12 @@ pub struct Services {
 impl Services {
     const JOBS: usize = 500;
 
-    /// Returns the data shared by the sessions of one kind of device, or `None` before any was shared.
+    /// Returns the data shared by the sessions of one kind of device, or `None` if no data have been shared yet.
     pub fn shared<T: Any>(&self) -> Option<&T> {
         self.shared.get(&TypeId::of::<T>())?.downcast_ref()
     }
 
-    /// Shares data with the other sessions of this kind of device, replacing earlier data.
+    /// Shares data with the other sessions of the same kind of device, replacing earlier data.
     pub fn share<T: Any>(&mut self, value: T) {
         self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }

@@ -24,22 +24,22 @@ pub enum ColorScheme {
 pub struct Settings {
     pub theme: ColorScheme,
     pub language: Language,
-    /// Links used in each tab, latest first; without access codes, which are not part of a link.
+    /// Links used in each tab, latest first. Access codes are not part of a link and are therefore not included.
     links: Links,
-    /// Arrangement of the panels, which only the window reads.
+    /// Layout of the panels, which only the window interprets.
     pub layout: Option<String>,
     pub tab: Tab,
     /// Size of the window in points.
     pub size: Option<(u32, u32)>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub lower_open: bool,
-    /// Whether the user has stopped live values, so that they no longer start automatically.
+    /// Whether the user has stopped live values, in which case they no longer start automatically.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub live_stopped: bool,
     /// Whether the Live panel shows values without a plot.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub values_alone: bool,
-    /// Stored data about drives, by the device to which they are connected.
+    /// Stored data about drives, by the device to which the drives are connected.
     drives: BTreeMap<String, RememberedDrives>,
 }
 
@@ -61,20 +61,21 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Returns the settings of a first start.
+    /// Returns the settings used when the program is started for the first time.
     pub fn of(kinds: Kinds) -> Self {
         Settings { tab: kinds.first_tab(), ..Settings::default() }
     }
 
     const LINKS: usize = 12;
 
-    /// Parses settings, or returns `None` if the file was not written by [`emit`](Self::emit).
+    /// Parses settings. Returns `None` if the file was not written by [`emit`](Self::emit).
     pub fn parse(text: &str) -> Option<Self> {
         ron::from_str(text).ok()
     }
 
-    /// Returns the readable part of a file that [`parse`](Self::parse) refuses, entry by entry, so that an unknown tab
-    /// does not cost the links.
+    /// Returns the readable part of a file that [`parse`](Self::parse) refuses, entry by entry. For example, an unknown
+    /// tab
+    /// does not cause the links to be lost.
     pub(super) fn salvage(text: &str) -> Self {
         macro_rules! entry {
             ($name:ident: $type:ty, $usual:expr) => {{
@@ -114,8 +115,9 @@ impl Settings {
         }
     }
 
-    /// Returns the settings with the changes from `known` to `ours` applied; everything else may have been written by
-    /// another window in the meantime.
+    /// Returns the settings with the changes from `known` to `ours` applied. Another window may have changed everything
+    /// else
+    /// in the meantime.
     #[must_use]
     pub(super) fn with_changes(mut self, known: &Settings, ours: &Settings) -> Self {
         macro_rules! take {
@@ -157,7 +159,7 @@ impl Settings {
         self.drives.insert(device, what);
     }
 
-    /// Links to the devices of a tab that were used, the latest first.
+    /// Returns the links used for the devices of a tab, latest first.
     pub fn links(&self, tab: Tab) -> &[String] {
         self.links.of(tab)
     }
@@ -202,7 +204,7 @@ impl Links {
         self.0.iter().map(|(tab, _)| *tab)
     }
 
-    /// Assigns the links in files from before several kinds existed to the first tab.
+    /// Assigns links from files written before several kinds existed to the first tab.
     fn settle(&mut self, first: Tab) {
         let Some(at) = self.0.iter().position(|(tab, _)| *tab == Tab::default()) else { return };
         let (_, links) = self.0.remove(at);
@@ -238,7 +240,7 @@ impl<'de> Deserialize<'de> for Links {
     }
 }
 
-/// Returns the links of `ours` used since `known`: those before the unchanged rest.
+/// Returns the links of `ours` used since `known`, which precede the unchanged rest.
 fn newer_links<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
     let is_rest = |at: &usize| {
         let (used, rest) = ours.split_at(*at);
@@ -279,7 +281,7 @@ mod tests {
         assert!(Settings::salvage("no settings").links(HIPERFACE).is_empty());
     }
 
-    /// A tab of another version is unknown here; its entries are kept.
+    /// A tab that belongs to a different version of the program is unknown here, but its entries are kept.
     #[test]
     fn links_of_an_unknown_tab_are_kept() {
         let text = "(tab: Gearbox, links: {Hiperface: [\"sim:\"], Gearbox: [\"tcp:host:1\"]})";
@@ -310,7 +312,8 @@ mod tests {
         Settings::parse(&format!("(drives: {{\"HUB-4 7\": ({drives})}})")).unwrap()
     }
 
-    /// Issue 21.11: the content written by another window, the known content, and the changes made here.
+    /// Issue 21.11: the content written by another window is merged with the changes from the known content that were
+    /// made here.
     #[test]
     fn changes_are_merged_and_marks_only_tighten() {
         let cases = [
@@ -365,7 +368,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.11: unconfirmed limits stay locked, even if other parts cannot be read.
+    /// Issue 21.11: unconfirmed limits stay locked even if other parts of the entry cannot be read.
     #[test]
     fn marks_are_read_from_a_broken_entry() {
         let broken = "(drives: {\"HUB-4 7\": (measure: Cubits, unconfirmed: [1], marks: {1: 2})})";
@@ -373,7 +376,7 @@ mod tests {
         assert_eq!(Settings::salvage(broken), with_drives("unconfirmed: [1], marks: {1: 2}"));
     }
 
-    /// Issue 21.11: links that others have used meanwhile stay, after those that were used here.
+    /// Issue 21.11: links used by other windows in the meantime are kept, after those that were used here.
     #[test]
     fn links_of_two_windows_are_merged() {
         let of = |links: &[&str]| {
@@ -395,7 +398,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.11: an older file has no marks.
+    /// Issue 21.11: a settings file from an older version is read although it has no marks.
     #[test]
     fn settings_without_marks_are_read() {
         let before = "(drives: {\"HUB-4 7\": (pitches: {1: 4000000}, measure: Millimetres, unconfirmed: [1])})";

@@ -18,24 +18,24 @@ use super::services::Services;
 use super::{Settings, Severity, Text, explain};
 use crate::store::{FileError, FileProblem, read_text, update_text};
 
-/// How long the start waits for the settings.
+/// Maximum time for which the start of the program waits for the settings.
 const PATIENCE: Duration = Duration::from_millis(300);
 
 const NOT_KEPT: &str = "session.settings_not_kept";
 
-/// Pause between a failed reading and the next one.
+/// Pause between a failed attempt to read the settings and the next one.
 const AGAIN: Duration = Duration::from_secs(1);
 
 #[derive(Debug)]
 pub(crate) struct SettingsStore {
-    /// Settings of this window when the file was last read or written.
+    /// Settings of this window at the time when the file was last read or written.
     known: Settings,
     failed: Option<Settings>,
     writing: Option<Settings>,
-    /// Whether the file has been read or set aside; it is not overwritten before.
+    /// Whether the file has been read or set aside. The file is not overwritten before that.
     may_write: bool,
     is_failure_reported: bool,
-    /// The file is being read, since then.
+    /// Time since which the file is being read, if a read is in progress.
     reading_since: Option<Zoned>,
     last_read: Option<Zoned>,
     last_failed_read: Option<Zoned>,
@@ -43,14 +43,14 @@ pub(crate) struct SettingsStore {
 
 #[derive(Debug)]
 pub enum SettingsRead {
-    /// The settings are complete, as written by the program.
+    /// The settings are complete, as the program wrote them.
     Whole(Box<Settings>),
     Missing,
-    /// The file is broken: its readable part, and the copy that was made.
+    /// The file is broken. Holds its readable part and the copy that was made.
     Broken {
         settings: Box<Settings>,
         path: PathBuf,
-        /// Path of the copy, or the reason why there is none.
+        /// Path of the copy, or the reason why there is no copy.
         aside: Result<PathBuf, String>,
     },
     /// The file cannot be read at all.
@@ -65,7 +65,7 @@ pub struct SettingsWritten {
 }
 
 impl SettingsStore {
-    /// Reads the settings. If the disk does not respond at once, they arrive later as an action.
+    /// Reads the settings. If the disk does not respond at once, the settings arrive later as an action.
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         let mailbox = services.tasks.mailbox();
@@ -97,7 +97,7 @@ impl SettingsStore {
         (settings, store)
     }
 
-    /// Adopts settings that were read; changes made by the user since then are kept.
+    /// Adopts settings that were read. Changes made by the user in the meantime are kept.
     pub(super) fn take(&mut self, read: SettingsRead, settings: &mut Settings, services: &mut Services) {
         services.log.settle("session.settings_slow", None);
         let kinds = services.world.kinds;
@@ -140,7 +140,7 @@ impl SettingsStore {
         services.tasks.run("settings", move || Action::Done(Done::SettingsKept(write(&path, &known, &ours, kinds))));
     }
 
-    /// Handles the result of a write; a failure is reported once.
+    /// Handles the result of a write. A failure is reported only once.
     pub(super) fn finish_write(
         &mut self,
         result: Result<SettingsWritten, FileError>,
@@ -172,7 +172,8 @@ impl SettingsStore {
         }
     }
 
-    /// Reads the settings again, as another window may have changed them; returns whether a reading starts now.
+    /// Starts reading the settings again, as another window may have changed them. Returns whether a read starts with
+    /// this call.
     pub(crate) fn begin_read(&mut self, services: &Services) -> bool {
         let has_failed = |at: &Zoned| at.duration_until(&services.now()).unsigned_abs() < AGAIN;
         if self.reading_since.is_some() || self.last_failed_read.as_ref().is_some_and(has_failed) {
@@ -187,12 +188,13 @@ impl SettingsStore {
         true
     }
 
-    /// Handles settings that could not be read, which count as not read, since they may contain locks.
+    /// Handles a failure to read the settings. They are treated as not read, since they may contain locks.
     pub(crate) fn fail_read(&mut self) {
         self.last_failed_read = self.reading_since.take();
     }
 
-    /// Merges settings that were read. During a write they are returned instead, and its result is merged later.
+    /// Merges settings that were read. During a write, the settings are returned instead, and the result of the write
+    /// is merged later.
     pub(crate) fn finish_read(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
         self.last_read = self.reading_since.take();
         if self.writing.is_some() {
@@ -204,14 +206,14 @@ impl SettingsStore {
         None
     }
 
-    /// Returns whether the settings have not been read for the given time.
+    /// Returns whether the last read of the settings is longer ago than the given time.
     pub(crate) fn is_older(&self, now: &Zoned, than: Duration) -> bool {
         // The wall clock may be set back.
         let age = self.last_read.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());
         age.is_none_or(|age| age > than)
     }
 
-    /// Adopts data of other windows about drives.
+    /// Adopts data about drives that other windows have written.
     fn meet(&mut self, found: &Settings, settings: &mut Settings) {
         let ours = settings.clone();
         settings.take_drives(found);
@@ -224,7 +226,7 @@ impl SettingsStore {
     }
 }
 
-/// Reads the settings; copies a broken file to a name next to it.
+/// Reads the settings. A broken file is copied to a name next to it.
 fn read(path: PathBuf, kinds: Kinds) -> SettingsRead {
     match understood(read_text(&path), kinds) {
         Ok(Some((settings, true))) => SettingsRead::Whole(Box::new(settings)),
@@ -239,7 +241,8 @@ fn read(path: PathBuf, kinds: Kinds) -> SettingsRead {
     }
 }
 
-/// Parses settings as far as possible; returns whether they are complete, or `None` without a file.
+/// Parses settings as far as possible, and returns them with whether they are complete. Returns `None` if there is no
+/// file.
 fn understood(text: Result<String, FileError>, kinds: Kinds) -> Result<Option<(Settings, bool)>, FileError> {
     match text {
         Ok(text) => {
@@ -273,7 +276,7 @@ fn broken_copy_path(path: &Path) -> PathBuf {
     PathBuf::from(aside)
 }
 
-/// Writes the changes of `ours` since `known` into the present file.
+/// Writes the changes of `ours` since `known` into the current file.
 fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result<SettingsWritten, FileError> {
     update_text(path, |text| {
         let (there, is_whole) = match understood(text, kinds)? {
@@ -288,7 +291,7 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result
     })
 }
 
-/// Copies a broken file, unless that was done before; returns both paths.
+/// Copies a broken file unless it has been copied before. Returns both paths.
 fn move_to_backup(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
     let aside = broken_copy_path(path);
     let is_there = fs::read(path).is_ok_and(|broken| fs::read(&aside).is_ok_and(|before| before == broken));

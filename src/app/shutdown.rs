@@ -15,14 +15,14 @@ use crate::link::{LinkUrl, Wire};
 use crate::worker::stream::End;
 use crate::worker::{Ending, JobId, Worker};
 
-/// Maximum waiting times when closing, and when opening while a connection is still held.
+/// Maximum waiting times when closing, and when opening a link whose connection is still held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GracePeriods {
     pub drives: Duration,
     pub disk: Duration,
-    /// For a job that writes nothing.
+    /// Maximum waiting time for a job that writes nothing.
     pub job: Duration,
-    /// Time for a write to reach a point at which it can end, and to lock again what it unlocked.
+    /// Maximum waiting time for a write to reach a point at which it can end, and to lock again what it unlocked.
     pub write: Duration,
 }
 
@@ -50,10 +50,10 @@ pub(super) struct ClosingSession {
 }
 
 pub(crate) trait ClosingWorker: Send + Sync {
-    /// Returns whether the thread has ended and the wire is free.
+    /// Returns whether the thread has ended and the connection is free.
     fn is_ended(&self) -> bool;
 
-    /// Waits at most `patience` for the end; returns whether it was reached.
+    /// Waits for the end, for at most `patience`. Returns whether the end was reached.
     fn wait(&self, patience: Duration) -> bool;
 
     fn job_endings(&self) -> Vec<JobEnding>;
@@ -87,17 +87,17 @@ impl ClosingWorker for End {
     }
 }
 
-pub(crate) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
+pub(crate) fn shares_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
     one.wire() == other.wire() && one.wire() != Wire::Inside
 }
 
 impl Services {
-    /// Releases a thread. Dropping `turn` at the end gives the next user of the connection its turn.
+    /// Releases a thread. When the thread ends, `turn` is dropped, which lets the next user of the connection proceed.
     pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, info: ClosingSessionInfo, turn: Option<Sender<()>>) {
         self.close_session_thread(Arc::new(worker.end()), info, turn);
     }
 
-    /// Lets a stream go, which belongs to no session.
+    /// Releases a stream that belongs to no session.
     pub(crate) fn leave_stream(&mut self, end: End, url: LinkUrl) {
         let info = ClosingSessionInfo { session: SessionId::default(), about: String::new(), url, write: None };
         self.close_session_thread(Arc::new(end), info, None);
@@ -143,14 +143,14 @@ impl Services {
         }
     }
 
-    /// Returns whether an ending session still writes.
+    /// Returns whether a session that is ending is still writing.
     pub(super) fn is_closing_with_write(&self) -> bool {
         self.closing_sessions.iter().any(|closing| closing.info.write.is_some())
     }
 
-    /// Returns the sessions that are ending on the wire of a link, with the time allowed for each.
+    /// Returns the sessions that are ending on the connection of a link, with the time allowed for each.
     pub(crate) fn closing_workers_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn ClosingWorker>, Duration)> {
-        let own = self.closing_sessions.iter().filter(|closing| same_wire(&closing.info.url, url));
+        let own = self.closing_sessions.iter().filter(|closing| shares_wire(&closing.info.url, url));
         own.map(|closing| (closing.ending.clone(), self.closing_timeout(closing.info.write.is_some()))).collect()
     }
 

@@ -9,11 +9,11 @@ pub struct SineCosineReading {
     /// The absolute position, in steps of 1/32 period.
     pub position: u32,
     pub valid: bool,
-    /// Sine and cosine in volts, if the device provides them.
+    /// Sine and cosine signals in volts, if the device provides them.
     pub signals: Option<SineCosineVolts>,
 }
 
-/// Sine and cosine, each relative to its reference wire.
+/// Sine and cosine voltages, each relative to its reference wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SineCosineVolts {
     pub sine_v: f64,
@@ -29,9 +29,9 @@ pub struct SineCosineRange {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SineCosineOrigin {
     pub session: SessionId,
-    /// Serial number, if it was read.
+    /// Serial number, if it has been read.
     pub serial_number: Option<String>,
-    /// Range, if known and rotary.
+    /// Measuring range, if it is known and rotary.
     pub range: Option<SineCosineRange>,
 }
 
@@ -42,6 +42,6 @@ pub trait SineCosineSource {
 
     fn origin(&self) -> SineCosineOrigin;
 
-    /// Returns the requested reading, or the reason why there is none.
+    /// Takes the requested reading, or the reason why there is none. Returns `None` if neither is available.
     fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>>;
 }

@@ -2,10 +2,10 @@
 //! after the machine has stopped; such presses must not affect anything else. They still stop motion, which may have
 //! started in the meantime. This module is pure: times are those of the frames, in seconds.
 
-/// Time after a stop, in seconds, during which another press has the same meaning.
+/// Time in seconds after a stop during which another press also counts as a stop.
 const FRIGHT: f64 = 0.5;
 
-/// Times of the last stop of motion, and of the last press of a stop button.
+/// Times of the last stop of a motion, and of the last press of a stop button.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StopPresses {
     stopped: Option<f64>,
@@ -13,7 +13,8 @@ pub struct StopPresses {
 }
 
 impl StopPresses {
-    /// Returns whether a press at this time refers to a motion that is running or has just ended, and is therefore a
+    /// Returns whether a press at the given time refers to a motion that is running or has just ended. Such a press
+    /// counts as a
     /// stop itself.
     pub fn means_motion(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_just_stopped(pressed);
@@ -23,7 +24,7 @@ impl StopPresses {
         means
     }
 
-    /// Returns whether a press stopped something so recently that another press means the same.
+    /// Returns whether an earlier press stopped something so recently that another press must be meant as a stop too.
     pub fn has_just_stopped(&self, pressed: f64) -> bool {
         self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
     }
@@ -32,7 +33,7 @@ impl StopPresses {
         self.pressed = Some(now);
     }
 
-    /// Returns the time of the press that counts now. A keyboard click has no press of its own.
+    /// Returns the time of the press that counts now. A click made with the keyboard has no separate press.
     pub fn pressed_at(&self, by_pointer: bool, now: f64) -> f64 {
         self.pressed.filter(|_| by_pointer).unwrap_or(now)
     }

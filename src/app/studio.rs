@@ -19,7 +19,7 @@ use super::tool::{Tool, ToolKind};
 use super::{Settings, Severity, Text, explain};
 use crate::link::LinkUrl;
 
-/// A session's number, from the start of the program on.
+/// Number of a session, counted from the start of the program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SessionId(pub(crate) u32);
 
@@ -42,7 +42,7 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// Creates a studio with its stored settings; `wake` is called when there are new events.
+    /// Creates a studio with its stored settings. `wake` is called when there are new events.
     pub fn new(world: Environment, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
@@ -66,7 +66,7 @@ impl Studio {
         }
     }
 
-    /// Starts the window with a link, a profile, or else the virtual encoder.
+    /// Starts with a link, a profile or, if neither is given, the virtual encoder.
     pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
         let tab = self.tab_of(link.as_ref());
         let is_empty = link.is_none() && profile.is_none();
@@ -81,7 +81,7 @@ impl Studio {
 
     pub fn act(&mut self, action: Action) {
         self.devices.iter_mut().for_each(|device| device.may_have_changed());
-        match self.with_whole_path(action) {
+        match self.with_absolute_path(action) {
             Action::ShowTab(tab) => self.show_tab(tab),
             Action::New(tab) => self.new_profile(tab),
             Action::SetTheme(theme) => self.settings.theme = theme,
@@ -132,8 +132,8 @@ impl Studio {
             Action::CloseComparison => self.comparison = None,
             Action::Recorder(owner, action) => self.apply_recorder_action(owner, action),
             Action::AskForget(owner) => self.confirm_discard_recording(owner),
-            Action::AskTable { owner, visible } => self.ask_table(owner, visible),
-            Action::AskPicture(picture) => self.ask_picture(picture),
+            Action::AskTable { owner, visible } => self.ask_table_path(owner, visible),
+            Action::AskPicture(picture) => self.ask_picture_path(picture),
             Action::PictureCut => self.notify_picture_truncated(),
             Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
             Action::Command(id, command) => self.command(id, command),
@@ -150,7 +150,7 @@ impl Studio {
         self.write_if_changed();
     }
 
-    /// Processes all events since the last call. Call this in every frame.
+    /// Processes all events since the last call. This must be called in every frame.
     pub fn poll(&mut self) {
         while let Some(action) = self.services.tasks.next() {
             self.act(action);
@@ -185,12 +185,12 @@ impl Studio {
         self.services.tasks.mailbox()
     }
 
-    /// Returns a question for a file, once.
+    /// Takes the pending question for a file, if any.
     pub fn take_file_question(&mut self) -> Option<FileQuestion> {
         self.services.file_question.take()
     }
 
-    /// Returns a question for a file whose path the user must type, once.
+    /// Takes the pending question for a file whose path the user must type, if any.
     pub fn take_path_question(&mut self) -> Option<FileQuestion> {
         self.path_question.take()
     }
@@ -199,7 +199,7 @@ impl Studio {
         &self.services.opening_files
     }
 
-    /// Returns all devices, in the order of opening.
+    /// Returns all devices, in the order in which they were opened.
     pub fn devices(&self) -> &[Box<AnyDevice>] {
         &self.devices
     }
@@ -208,19 +208,19 @@ impl Studio {
         self.devices.iter().map(Box::as_ref).find(|device| device.id() == id)
     }
 
-    /// Returns the device shown in the open tab, or else the one shown last.
+    /// Returns the device shown in the open tab, or the device shown last if there is none.
     pub fn selected_device(&self) -> Option<&AnyDevice> {
         let tab = self.settings.tab;
         let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.of(tab) };
         self.device(id?)
     }
 
-    /// Returns the device of type `M` shown in its tab.
+    /// Returns the device of type `M` that is shown in its tab.
     pub fn selected_model<M: DeviceType>(&self) -> Option<&M> {
         self.device(self.shown.of(M::TAB)?)?.get()
     }
 
-    /// Returns whether the tab needs no device.
+    /// Returns whether a tab does not require a device.
     fn is_tool(&self, tab: Tab) -> bool {
         self.tools.iter().any(|(own, _)| *own == tab)
     }
@@ -230,7 +230,8 @@ impl Studio {
         Some(self.services.world.kinds.kind_for_tab(tab)?.virtual_link())
     }
 
-    /// Shows a tab. If its kind creates profiles without a device and none is open, a new profile is created.
+    /// Shows a tab. If nothing is open in the tab and its kind can create profiles without a device, a new profile is
+    /// created.
     fn show_tab(&mut self, tab: Tab) {
         self.settings.tab = tab;
         if self.shown.of(tab).is_none() {
@@ -238,7 +239,7 @@ impl Studio {
         }
     }
 
-    /// Creates an unsaved profile, if the kind supports that.
+    /// Creates an unsaved profile, if the kind of device supports that.
     fn new_profile(&mut self, tab: Tab) {
         let Some(kind) = self.services.world.kinds.kind_for_tab(tab) else { return };
         let taken: Vec<PathBuf> = self.devices.iter().filter_map(|device| device.source().suggested()).collect();
@@ -250,7 +251,7 @@ impl Studio {
         }
     }
 
-    /// Returns the sine/cosine source of a device shown in its own tab.
+    /// Returns the sine/cosine source of a device shown in its tab, if there is one.
     pub fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         let kinds = self.services.world.kinds.devices().iter();
         kinds.into_iter().find_map(|kind| self.device(self.shown.of(kind.tab())?)?.sine_cosine())
@@ -261,18 +262,18 @@ impl Studio {
         self.shown.set(tab, id);
     }
 
-    /// Returns whether a job or polling can be stopped in any session.
+    /// Returns whether any session has a job or polling that can be stopped.
     pub fn can_stop(&self) -> bool {
         self.devices.iter().any(|device| device.is_active()) || self.searches() || self.can_stop_tools()
     }
 
-    /// Returns whether a job or a measurement is running; polling does not count.
-    pub fn works(&self) -> bool {
+    /// Returns whether a job or a measurement is running. Polling does not count.
+    pub fn is_working(&self) -> bool {
         let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
         self.devices.iter().map(Box::as_ref).any(device) || self.searches() || self.can_stop_tools()
     }
 
-    /// Returns whether live values arrive, so that the window must be redrawn continuously.
+    /// Returns whether live values are arriving, in which case the window must be redrawn continuously.
     pub fn is_live(&self) -> bool {
         self.devices.iter().any(|device| device.is_polling()) || self.is_in_control()
     }
@@ -334,14 +335,14 @@ impl Studio {
                 device.written(*saving, file, result, services);
             }),
             Done::Diverged(diverged) => self.show_divergence(*diverged),
-            Done::WouldLose(saving, lost) => self.ask_to_lose(*saving, &lost),
+            Done::WouldLose(saving, lost) => self.confirm_loss(*saving, &lost),
             Done::SettingsRead(read) => self.settings_store.take(read, &mut self.settings, &mut self.services),
             Done::SettingsKept(result) => {
                 self.settings_store.finish_write(result, &mut self.settings, &mut self.services)
             }
             Done::SettingsSeen(Ok(found)) => self.apply_read_settings(found.map(|found| *found)),
             Done::SettingsSeen(Err(error)) => self.settings_unread(&error),
-            Done::Draft(id, done) => self.draft_done(id, done),
+            Done::Draft(id, done) => self.finish_draft(id, done),
             Done::Listed(id, of, listed) => self.with_device(id, |device, _| device.listed(&of, *listed)),
             Done::Backup { session, of, path, result } => {
                 self.with_device(session, |device, services| device.take_backup(&of, &path, result, services));
@@ -360,7 +361,7 @@ impl Studio {
         }
     }
 
-    /// Stops the jobs of tabs that require no device.
+    /// Stops the jobs of tabs that do not require a device.
     pub(super) fn stop_tools(&mut self) {
         self.tools.iter_mut().for_each(|(_, tool)| tool.stop(&mut self.services));
     }
@@ -370,11 +371,11 @@ impl Studio {
         if self.moves_by_hand() {
             return self.stop_motion();
         }
-        if self.decline() || self.diverged.take().is_some() || self.close_comparison() {
+        if self.dismiss_question() || self.diverged.take().is_some() || self.close_comparison() {
             return;
         }
         // Polling is no work: drives stay visible while a dialog closes, or while they are under control.
-        if self.works() {
+        if self.is_working() {
             self.stop();
             return;
         }

@@ -7,12 +7,12 @@ use std::sync::{Mutex, PoisonError};
 use serde::de::{EnumAccess, Error, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A tab of the window, for a kind of device or a tool, identified by its name in the settings.
+/// A tab of the window, for a kind of device or for a tool. The settings identify a tab by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Tab(&'static str);
 
 impl Tab {
-    /// Creates the tab with this name, which is written to users' settings and must never change.
+    /// Creates the tab with the given name, which is written to users' settings and must never change.
     pub const fn named(name: &'static str) -> Self {
         Tab(name)
     }
@@ -22,7 +22,7 @@ impl Tab {
     }
 }
 
-/// The first tab, used if the settings name none.
+/// The default is the first tab, which is used if the settings do not name a tab.
 impl Default for Tab {
     fn default() -> Self {
         Tab("First")
@@ -78,8 +78,9 @@ impl<'de> Deserialize<'de> for Name {
     }
 }
 
-/// Interns a tab name read from settings, including tabs that this program does not have, since another version
-/// continues to use their links. Each name is kept once for the life of the process.
+/// Interns a tab name read from the settings, including names of tabs that this program does not have, since another
+/// version
+/// still uses their links. Each name is kept once for the lifetime of the process.
 fn intern(name: String) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);

@@ -11,14 +11,14 @@ use super::Action;
 /// A callback that wakes the window when there are new events.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// Threads whose results are actions.
+/// Runner for tasks on threads. The result of each task is an action.
 pub struct Tasks {
     sender: Sender<Action>,
     receiver: Receiver<Action>,
     wake: Wake,
 }
 
-/// Puts actions into the studio from anywhere.
+/// A mailbox that passes actions to the studio from any thread.
 #[derive(Clone)]
 pub struct Mailbox {
     sender: Sender<Action>,
@@ -33,7 +33,7 @@ impl Tasks {
         Tasks { sender, receiver, wake }
     }
 
-    /// Runs a task on a thread; its result is returned as an action.
+    /// Runs a task on a thread. The result of the task is returned as an action.
     pub(crate) fn run(&self, name: &str, task: impl FnOnce() -> Action + Send + 'static) {
         let mailbox = self.mailbox();
         let spawned = thread::Builder::new().name(name.to_owned()).spawn(move || mailbox.send(task()));
@@ -46,7 +46,7 @@ impl Tasks {
         Mailbox { sender: self.sender.clone(), wake: self.wake.clone() }
     }
 
-    /// Returns the function with which sessions wake the window.
+    /// Returns the callback with which sessions wake the window.
     pub(crate) fn wake(&self) -> Wake {
         self.wake.clone()
     }

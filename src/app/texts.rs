@@ -14,7 +14,7 @@ pub enum Language {
     German,
 }
 
-/// A text of a catalogue with its arguments, independent of the language.
+/// A catalogue text with its arguments, independent of the language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
     catalogue: &'static Catalogue,
@@ -25,7 +25,7 @@ pub struct Text {
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Argument {
     Words(String),
-    /// In English format, with a decimal point.
+    /// A number in English format, with a decimal point.
     Number(String),
     Name(String, String),
     Text(Text),
@@ -33,7 +33,7 @@ enum Argument {
 }
 
 impl Argument {
-    /// Returns the memory used by the argument's heap data, in bytes.
+    /// Returns the memory in bytes used by the argument's heap data.
     fn size(&self) -> usize {
         match self {
             Argument::Words(words) | Argument::Number(words) => words.len(),
@@ -59,7 +59,7 @@ pub struct Catalogue {
     rows: OnceLock<BTreeMap<String, Row>>,
 }
 
-/// Texts that belong to no device, or to several.
+/// Catalogue of texts that belong to no device or to several devices.
 pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/common.ron"));
 
 #[derive(Debug, Deserialize)]
@@ -67,7 +67,7 @@ pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/c
 struct Row {
     en: String,
     de: String,
-    /// English text for the command line; empty if it is the same as in the window.
+    /// English text for the command line, or empty if it is the same as in the window.
     #[serde(default)]
     terminal: String,
 }
@@ -104,21 +104,21 @@ impl Text {
         self
     }
 
-    /// Replaces `{name}` with a number with the given decimals: 1.5 in English, 1,5 in German.
+    /// Replaces `{name}` with a number with the given decimals, formatted as 1.5 in English and 1,5 in German.
     #[must_use]
     pub fn with_number(mut self, name: &'static str, value: f64, decimals: usize) -> Self {
         self.arguments.push((name, Argument::Number(format!("{value:.decimals$}"))));
         self
     }
 
-    /// Replaces `{name}` with a number already formatted as in English.
+    /// Replaces `{name}` with a number that is already in English format.
     #[must_use]
     pub(crate) fn with_digits(mut self, name: &'static str, digits: impl ToString) -> Self {
         self.arguments.push((name, Argument::Number(digits.to_string())));
         self
     }
 
-    /// Replaces `{name}` with other texts, separated by commas.
+    /// Replaces `{name}` with a list of other texts, separated by commas.
     #[must_use]
     pub fn with_list(mut self, name: &'static str, texts: impl IntoIterator<Item = Text>) -> Self {
         self.arguments.push((name, Argument::List(texts.into_iter().collect())));
@@ -147,7 +147,7 @@ impl Text {
         self.text_for(Output::Window(language))
     }
 
-    /// Returns the text for the command line, which is always English, with hints for its users.
+    /// Returns the text for the command line, which is always English and contains hints for command-line users.
     pub fn terminal(&self) -> String {
         self.text_for(Output::Terminal)
     }
@@ -176,7 +176,7 @@ impl Text {
     }
 }
 
-/// Returns a number in digits with the language's decimal sign.
+/// Formats a number given in digits with the decimal sign of a language.
 pub(crate) fn signed(number: &str, language: Language) -> String {
     Argument::Number(number.to_owned()).text_for(Output::Window(language))
 }
@@ -197,7 +197,7 @@ impl Catalogue {
         Catalogue { source, rows: OnceLock::new() }
     }
 
-    /// Returns the text with this id from this catalogue, or else from the common one.
+    /// Returns the text with the given id from this catalogue, or from the common catalogue if it is missing here.
     pub fn text(&'static self, id: &'static str) -> Text {
         let is_own = *self != COMMON && self.rows().contains_key(id);
         let catalogue = if is_own { self } else { &COMMON };
@@ -206,8 +206,8 @@ impl Catalogue {
         Text { catalogue, id, arguments: Vec::new() }
     }
 
-    /// Returns the text for a number of a table, such as `hd_parameter.158`.
-    pub(crate) fn numbered(&'static self, area: &str, number: u16) -> Option<Text> {
+    /// Returns the text for a numbered entry of a table, such as `hd_parameter.158`.
+    pub(crate) fn numbered_text(&'static self, area: &str, number: u16) -> Option<Text> {
         let (id, _) = self.rows().get_key_value(&format!("{area}.{number}"))?;
         Some(Text { catalogue: self, id, arguments: Vec::new() })
     }

@@ -21,7 +21,7 @@ pub struct TextSizes {
     pub live: f32,
 }
 
-/// Distances in points, multiples of four.
+/// Distances in points, all multiples of four.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Spaces {
@@ -42,7 +42,7 @@ pub struct Palette {
     pub muted: Rgb,
     pub accent: Rgb,
     pub on_accent: Rgb,
-    /// Edited and not yet written.
+    /// Colour of values that are edited but not yet written.
     pub staged: Rgb,
     pub good: Rgb,
     pub warn: Rgb,
@@ -71,7 +71,7 @@ impl ThemeData {
     /// Returns the built-in theme.
     ///
     /// # Errors
-    /// Describes a defect of the theme file, which a test prevents.
+    /// Returns a description of a defect in the theme file. A test ensures that there is none.
     pub fn built_in() -> Result<&'static ThemeData, &'static str> {
         BUILT_IN.as_ref().map_err(String::as_str)
     }
@@ -97,7 +97,7 @@ impl TryFrom<String> for Rgb {
 }
 
 impl Rgb {
-    /// Returns the contrast with another colour, 1 to 21, as defined by WCAG 2.
+    /// Returns the contrast with another colour, from 1 to 21, as defined by WCAG 2.
     pub fn contrast(self, other: Rgb) -> f64 {
         let (a, b) = (self.luminance(), other.luminance());
         (a.max(b) + 0.05) / (a.min(b) + 0.05)

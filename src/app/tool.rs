@@ -16,12 +16,12 @@ use super::tab::Tab;
 use super::{Action, Text};
 use crate::link::LinkUrl;
 
-/// A tool before the window is open.
+/// A tool as known before the window is open.
 pub trait ToolKind: Sync {
     /// Returns the tab in which the tool is shown.
     fn tab(&self) -> Tab;
 
-    /// Creates the tool. `links` are the links used in it before, the latest first.
+    /// Creates the tool. `links` are the links previously used in it, latest first.
     fn begin(&self, links: &[String]) -> Box<dyn Tool>;
 }
 
@@ -30,13 +30,13 @@ pub trait Tool: Any {
     /// Executes an action.
     ///
     /// # Errors
-    /// The action belongs to another tool.
+    /// Returns an error if the action belongs to another tool.
     fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), PayloadKindError>;
 
     /// Handles the result of a task.
     ///
     /// # Errors
-    /// The result belongs to another tool.
+    /// Returns an error if the result belongs to another tool.
     fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), PayloadKindError>;
 
     /// Processes the events received since the last call.
@@ -57,17 +57,17 @@ pub trait Tool: Any {
     /// Adopts a reading that the device took at standstill.
     fn follow(&mut self, source: &mut dyn SineCosineSource);
 
-    /// Releases a wire that is needed elsewhere.
+    /// Releases a connection that is needed elsewhere.
     fn free_wire(&mut self, url: &LinkUrl, services: &mut Services);
 
-    /// Returns whether the tool can open a file.
+    /// Returns whether the tool can open the given file.
     fn takes(&self, path: &Path) -> bool;
 
     /// Opens a file.
     fn open(&mut self, path: PathBuf, services: &mut Services);
 }
 
-/// An action of a tool, boxed as a payload.
+/// An action of a tool, which can be boxed as a payload.
 pub trait ToolAction: Any + Send {
     /// Tab in which the tool is shown.
     const TAB: Tab;
@@ -99,7 +99,8 @@ impl ToolContext<'_> {
         &mut self.studio.services
     }
 
-    /// Releases the session on a connection, unless the session is writing; `why` is reported there. The returned
+    /// Releases the session on a connection, unless the session is writing. `why` is reported in that session. The
+    /// returned
     /// channel, if any, closes when the connection is free.
     ///
     /// # Errors
@@ -108,7 +109,7 @@ impl ToolContext<'_> {
         self.studio.free_wire(url, why)
     }
 
-    /// Adds a link to those used before.
+    /// Adds a link to the previously used links.
     pub fn use_link(&mut self, link: &str) {
         self.studio.settings.use_link(self.tab, link);
     }
@@ -137,7 +138,7 @@ impl Studio {
         }
     }
 
-    /// Opens a file in the tool that accepts it, or returns the path if there is none.
+    /// Opens a file in the tool that accepts it. Returns the path if no tool does.
     pub(super) fn open_in_tool(&mut self, path: PathBuf) -> Result<(), PathBuf> {
         let Some((tab, tool)) = self.tools.iter_mut().find(|(_, tool)| tool.takes(&path)) else { return Err(path) };
         self.settings.tab = *tab;
@@ -145,8 +146,9 @@ impl Studio {
         Ok(())
     }
 
-    /// Opens a requested capture in the open tab if that is a tool, or else in the first tool. If another tab is open
-    /// by then, it stays open.
+    /// Opens a requested capture in the open tab if that is a tool, or otherwise in the first tool. If another tab has
+    /// been opened
+    /// in the meantime, it stays open.
     pub(super) fn open_capture(&mut self, path: PathBuf) {
         let tab = self.settings.tab;
         let at = self.tools.iter().position(|(own, _)| *own == tab).unwrap_or_default();
@@ -155,7 +157,7 @@ impl Studio {
         }
     }
 
-    /// Makes tools release a wire that is needed elsewhere.
+    /// Makes all tools release a connection that is needed elsewhere.
     pub(super) fn free_wire_of_tools(&mut self, url: &LinkUrl) {
         for (_, tool) in &mut self.tools {
             tool.free_wire(url, &mut self.services);

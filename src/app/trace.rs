@@ -10,10 +10,10 @@ use crate::units::Moment;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceLine {
-    /// Time at which the first byte was sent or received, on the session's clock.
+    /// Time on the session's clock at which the first byte was sent or received.
     pub at: Moment,
     pub direction: Direction,
-    /// Bytes of the frame; `**` is a masked byte.
+    /// Bytes of the frame, in which `**` represents a masked byte.
     pub bytes: String,
     pub meaning: Vec<Text>,
     /// Fault at the end of the frame, if any.
@@ -22,9 +22,9 @@ pub struct TraceLine {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceFault {
-    /// The device reports an error or a warning.
+    /// The frame reports an error or a warning of the device.
     Reported,
-    /// The bytes are not a frame, or not a reply to the preceding request.
+    /// The bytes are not a valid frame, or not a reply to the preceding request.
     Broken,
 }
 
@@ -57,7 +57,7 @@ impl TraceLine {
     }
 }
 
-/// The newest frames of a line.
+/// A log of the newest frames on a line.
 #[derive(Debug, Default)]
 pub struct TraceLog {
     lines: VecDeque<TraceLine>,
@@ -68,10 +68,10 @@ pub struct TraceLog {
 }
 
 impl TraceLog {
-    /// Maximum memory of the lines in bytes: about 40,000 position readings.
+    /// Maximum memory of the log lines in bytes, enough for about 40,000 position readings.
     const MOST: usize = 16 << 20;
 
-    /// Adds frames with their meanings. `dropped` frames arrived too fast to be shown.
+    /// Adds frames with their explanations. `dropped` frames arrived too fast to be shown.
     pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, Explained)>, dropped: u64) {
         self.dropped += dropped;
         for (entry, Explained { meaning, fault }) in entries {
@@ -88,12 +88,12 @@ impl TraceLog {
         }
     }
 
-    /// Returns the number of lines removed to make room for newer ones.
+    /// Returns the number of lines that were removed to make room for newer ones.
     pub fn gone(&self) -> u64 {
         self.gone
     }
 
-    /// Returns the frames, the oldest first.
+    /// Returns the frames, oldest first.
     pub fn lines(&self) -> &VecDeque<TraceLine> {
         &self.lines
     }

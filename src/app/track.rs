@@ -20,45 +20,48 @@ use follower::Follower;
 pub use meaning::Meaning;
 pub use watchable::{Watchable, WatchedValue};
 
-/// Maximum number of positions: more than a day at the fastest rate of a serial line.
+/// Maximum number of positions, enough for more than a day at the fastest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
-/// Time in nanoseconds between positions above which they are never joined, because a line would show a motion that was
+/// Time in nanoseconds between positions above which they are never joined, because a connecting line would show a
+/// motion that was
 /// not observed.
 const APART: i64 = 5_000_000_000;
-/// Tolerated delay of a position in nanoseconds, in addition to four intervals: a lost reply that was requested again.
+/// Tolerated delay of a position in nanoseconds, in addition to four intervals. It allows for a lost reply that was
+/// requested again.
 const LATE: i64 = 400_000_000;
-/// Time in nanoseconds between watched values, which arrive more slowly, above which they are not joined.
+/// Time in nanoseconds between watched values above which they are not joined. Watched values arrive more slowly than
+/// positions.
 const WATCHED_APART: i64 = APART;
-/// Number of samples kept for a watched value.
+/// Maximum number of samples kept for a watched value.
 const WATCHED: usize = 500_000;
-/// Initially displayed time in nanoseconds.
+/// Time span in nanoseconds that is displayed initially.
 const SPAN: i64 = 30_000_000_000;
 
-/// Columns of positions: position, speed, acceleration.
+/// Column kinds of positions, for position, speed and acceleration.
 const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 
-/// A sampled position, or the fact that there is none.
+/// A sampled position, or the information that there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionSample {
     pub at: Moment,
-    /// Position in steps within the range, or `None` if the device has none.
+    /// Position in steps within the range, or `None` if the device reports none.
     pub position: Option<i64>,
     /// Whether the device reports the position as invalid.
     pub is_bad: bool,
     pub is_warned: bool,
 }
 
-/// The recorder of a device with the state for filling it; `W` is the type of values that can be watched.
+/// The recorder of a device, with the state required to fill it. `W` is the type of values that can be watched.
 #[derive(Debug)]
 pub struct Track<W> {
     pub(crate) recorder: Recorder,
     positions: GroupId,
     lines: [LineId; 3],
     watched: Vec<Watched<W>>,
-    /// Meaning of positions, or `None` before the first.
+    /// Meaning of positions, or `None` before the first position.
     follower: Option<Follower>,
     dropped: u64,
-    /// Start of the first session's clock, and the offset of the present one.
+    /// Start of the first session's clock, and the offset of the current session's clock.
     began: Option<Zoned>,
     shift: i64,
     newest: Option<Time>,
@@ -73,7 +76,7 @@ struct Watched<W> {
     value: W,
     group: GroupId,
     line: LineId,
-    /// Whether the value is being recorded; otherwise only its earlier samples remain.
+    /// Whether the value is being recorded. If not, only its earlier samples are kept.
     active: bool,
 }
 
@@ -141,7 +144,7 @@ impl<W: Watchable> Track<W> {
         }
     }
 
-    /// Begins a session. Earlier recordings are kept, shifted by the difference of the clocks.
+    /// Begins a session. Earlier recordings are kept, shifted by the difference between the clocks.
     pub fn begin(&mut self, began: &Zoned) {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
@@ -155,7 +158,7 @@ impl<W: Watchable> Track<W> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
 
-    /// Sets the polling interval; when polling begins, earlier positions are not joined to later ones.
+    /// Sets the polling interval. When polling begins, earlier positions are not joined to later ones.
     pub fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());
         self.apart = interval.map_or(APART, |interval| interval.saturating_mul(4).saturating_add(LATE).min(APART));
@@ -164,7 +167,7 @@ impl<W: Watchable> Track<W> {
         }
     }
 
-    /// Records that samples were dropped before the next ones.
+    /// Records that samples were dropped before the next samples.
     pub fn note_dropped(&mut self, dropped: u64) {
         self.dropped += dropped;
         if dropped > 0 {
@@ -198,11 +201,11 @@ impl<W: Watchable> Track<W> {
         let Some(word) = sighting.position else {
             // A damaged frame: the times of the positions on both sides are known.
             if let Some(follower) = &mut self.follower {
-                follower.miss();
+                follower.note_missing_sample();
             }
             return columns.push(time, self.last, Rates::default(), Flags::BAD);
         };
-        if sighting.is_bad || self.follower.as_ref().is_some_and(|own| !own.joins(time, self.apart)) {
+        if sighting.is_bad || self.follower.as_ref().is_some_and(|own| !own.continues_track(time, self.apart)) {
             self.lose_track();
         }
         self.last = word;
@@ -218,7 +221,7 @@ impl<W: Watchable> Track<W> {
         columns.push(time, next.steps, rates, flags);
     }
 
-    /// Records exactly these values in addition to the position. Recordings of other values are kept.
+    /// Records exactly the given values in addition to the position. Existing recordings of other values are kept.
     pub fn watch(&mut self, watched: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
@@ -291,8 +294,9 @@ impl<W: Watchable> Track<W> {
         all.map_or(0, |all| all.end - all.start)
     }
 
-    /// Discards the recording of the previous device, unless minutes of it have not been exported. Watched values stay
-    /// watched.
+    /// Discards the recording of the previous device, unless it contains minutes of data that have not been exported.
+    /// The selection of watched values is
+    /// kept.
     pub fn forget(&mut self) {
         let watched = self.watched();
         if self.recorder.unsaved() >= MUCH {
@@ -307,7 +311,8 @@ impl<W: Watchable> Track<W> {
         self.watch(&watched);
     }
 
-    /// Decodes the recording again, as far as its words are stored; times do not change. If not all words are stored,
+    /// Decodes the recording again, as far as its words are stored. The times do not change. If not all words are
+    /// stored,
     /// the old recording is kept as well.
     pub fn begin_again(&mut self, kept: usize) {
         if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
@@ -320,7 +325,8 @@ impl<W: Watchable> Track<W> {
         self.recorder.act(recorder::RecorderAction::SetSpan(span));
     }
 
-    /// Sets the meaning of later positions. Recordings with another meaning are kept unchanged in lines that end here.
+    /// Sets the meaning of later positions. Recordings with a different meaning are kept unchanged in lines that end at
+    /// this point.
     fn see(&mut self, meaning: &Meaning) {
         if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_place(meaning)) {
             if own.meaning != *meaning {
@@ -334,7 +340,7 @@ impl<W: Watchable> Track<W> {
         self.follower = Some(Follower::new(meaning.clone()));
     }
 
-    /// Replaces the lines with those for positions of the given meaning.
+    /// Replaces the lines with new lines for positions of the given meaning.
     fn part(&mut self, meaning: &Meaning) {
         let has_samples = self.positions() > 0;
         let group = self.recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
@@ -357,7 +363,7 @@ impl<W: Watchable> Track<W> {
         self.recorder.end_line(line, name, heading);
     }
 
-    /// Returns the name of a line that ends now, and its heading.
+    /// Returns the name and heading of a line that ends now.
     fn name_of_ended(&self, line: LineId) -> (Text, String) {
         let newest = self.newest.map_or(0, Time::nanoseconds);
         let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());

@@ -27,7 +27,7 @@ pub(crate) fn can_ask() -> bool {
 
 /// Shows the plan and all other points that require consent, and asks about each, unless the command line has already
 /// consented. Returns the approved plan.
-pub fn agreed<P: Planned>(
+pub fn confirm_plan<P: Planned>(
     output: &Output,
     consent: &Consenting,
     prepared: P,

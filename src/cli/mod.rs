@@ -23,7 +23,7 @@ use args::{Arguments, ParsedCommand};
 
 pub use args::{Command, Common, Consenting, Decode, Do, Find, Position, Read, Restore, Save, Simulate, Status, Write};
 pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProfileCommands, ProtocolDecoder};
-pub use consent::{agreed, check_wear, require_consent};
+pub use consent::{check_wear, confirm_plan, require_consent};
 pub use output::{Lines, Output};
 pub use positions::{readings, try_readings};
 pub use profiles::{UnrestoredItems, restore_options, save_profile, to_restore, write_restore};
@@ -82,7 +82,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands
     let Arguments { common, profile, command } = arguments;
     match command {
         Some(_) if profile.is_some() => {
-            Invocation::Command(end(Err(usage("--profile is for the window, without a command"))))
+            Invocation::Command(end(Err(usage_error("--profile is for the window, without a command"))))
         }
         Some(command) => {
             output::log_to_stderr();
@@ -99,10 +99,10 @@ pub fn no_window(why: &str) -> u8 {
 
 fn window(common: Common, profile: Option<PathBuf>) -> Invocation {
     if common.only_master {
-        return Invocation::Command(end(Err(usage("--only-master needs a command; the window asks instead"))));
+        return Invocation::Command(end(Err(usage_error("--only-master needs a command; the window asks instead"))));
     }
     if common.json || common.trace.is_some() {
-        return Invocation::Command(end(Err(usage(
+        return Invocation::Command(end(Err(usage_error(
             "--json and --trace need a command; encoder-studio help lists them",
         ))));
     }
@@ -112,7 +112,7 @@ fn window(common: Common, profile: Option<PathBuf>) -> Invocation {
     }
 }
 
-fn usage(message: &str) -> Failure {
+fn usage_error(message: &str) -> Failure {
     Failure::Usage(message.to_owned())
 }
 
@@ -161,7 +161,7 @@ fn dispatch(common: &Common, command: &Command, output: &Output) -> Result {
         return Err(Failure::Usage(why));
     }
     let run = || {
-        let lacking = || Err(usage(&format!("{} is not for {chosen} devices", id.name())));
+        let lacking = || Err(usage_error(&format!("{} is not for {chosen} devices", id.name())));
         output.commands().device(chosen)?.run(common, output, command).unwrap_or_else(lacking)
     };
     match (command, output.commands().protocol(chosen)) {

@@ -47,7 +47,7 @@ impl Output {
     }
 
     pub fn show(&self, json: &Value, text: &str) -> Result<(), Failure> {
-        if self.json { self.print(&format!("{json}\n")) } else { self.print(&visible(text)) }
+        if self.json { self.print(&format!("{json}\n")) } else { self.print(&show_control_characters(text)) }
     }
 
     pub fn print(&self, printed: &str) -> Result<(), Failure> {
@@ -102,12 +102,12 @@ pub(super) fn print_usage_error(error: &clap::Error) {
 /// Writes to stderr, ignoring errors, since they cannot be reported anywhere.
 pub(crate) fn say(text: &str) {
     let mut err = io::stderr().lock();
-    let _ = err.write_all(visible(text).as_bytes()).and_then(|()| err.flush());
+    let _ = err.write_all(show_control_characters(text).as_bytes()).and_then(|()| err.flush());
 }
 
 /// Replaces control characters with visible ones, since text from a file, a device or an argument must not control the
 /// terminal.
-fn visible(text: &str) -> String {
+fn show_control_characters(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
         if c.is_control() && c != '\n' { shown.extend(c.escape_default()) } else { shown.push(c) }
@@ -135,6 +135,6 @@ mod tests {
 
     #[test]
     fn control_characters_are_shown() {
-        assert_eq!(visible("GB\u{1b}[31m\tÄ µ\r\u{9b}x\n"), "GB\\u{1b}[31m\\tÄ µ\\r\\u{9b}x\n");
+        assert_eq!(show_control_characters("GB\u{1b}[31m\tÄ µ\r\u{9b}x\n"), "GB\\u{1b}[31m\\tÄ µ\\r\\u{9b}x\n");
     }
 }

@@ -94,14 +94,14 @@ pub fn to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
     profile.into_profile().map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))
 }
 
-pub(crate) fn say_missing(output: &Output, items: &[impl Display]) {
+pub(crate) fn print_missing(output: &Output, items: &[impl Display]) {
     for item in items {
         output.remark(&format!("{item} is not restored: the encoder does not have it"));
     }
 }
 
 /// Reports which values of another device's mounting are left unchanged.
-pub(crate) fn say_mounting_left(output: &Output, items: &[impl Display]) {
+pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
     for item in items {
         output.remark(&format!(
             "{item} belongs to the mounting of another encoder and is not restored; use --with-mounting to restore it"
@@ -235,10 +235,10 @@ pub(crate) fn show_changed(
     changes: &str,
     spent: &WriteSummary,
 ) -> Result {
-    show_done(output, item, operations, spent, &[], changes)
+    print_done(output, item, operations, spent, &[], changes)
 }
 
-pub(crate) fn show_done(
+pub(crate) fn print_done(
     output: &Output,
     item: &str,
     operations: &[Json],

@@ -10,7 +10,7 @@ use crate::ui::{DeviceView, TabViews, ToolView};
 pub struct Kind {
     pub view: &'static dyn DeviceView,
     pub commands: &'static dyn DeviceCommands,
-    /// Virtual device for the virtual adapter, or `None` for a kind that does not use an adapter. The adapter only
+    /// The virtual device for the virtual adapter, or `None` for a kind that does not use an adapter. The adapter only
     /// offers the program's built-in list (`kinds::at_adapter`), which excludes external kinds.
     pub at_adapter: Option<&'static dyn AttachableKind>,
 }
@@ -20,7 +20,7 @@ pub struct ToolTab {
     pub view: &'static dyn ToolView,
 }
 
-/// Device kinds and tools that make up the program, for use by the studio, the window and the command line.
+/// The device kinds and tools that make up the program, for use by the studio, the window and the command line.
 #[derive(Clone, Copy)]
 pub struct Program {
     pub studio: Kinds,

@@ -12,7 +12,7 @@ pub trait DatagramChannel: Send {
     fn port(&self) -> u16;
 
     /// Sends subsequent packets to this port of the target.
-    fn aim(&mut self, port: u16);
+    fn set_target_port(&mut self, port: u16);
 
     /// Also receives the packets that the target sends to a multicast group. Virtual devices have a single receiver and
     /// ignore this call.

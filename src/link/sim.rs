@@ -109,7 +109,7 @@ impl DatagramChannel for SimDatagrams {
         self.port
     }
 
-    fn aim(&mut self, _port: u16) {
+    fn set_target_port(&mut self, _port: u16) {
         // The virtual device is the only receiver.
     }
 

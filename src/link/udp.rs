@@ -144,7 +144,7 @@ impl DatagramChannel for UdpChannel {
         self.port
     }
 
-    fn aim(&mut self, port: u16) {
+    fn set_target_port(&mut self, port: u16) {
         self.target.set_port(port);
     }
 
@@ -283,7 +283,7 @@ mod tests {
         target.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
         let clock = Arc::new(RealClock::start());
         let mut packets = UdpPort::new("127.0.0.1:44818", clock.clone()).open().unwrap();
-        packets.aim(target.local_addr().unwrap().port());
+        packets.set_target_port(target.local_addr().unwrap().port());
         (target, packets, clock)
     }
 

@@ -13,7 +13,7 @@ pub trait Values {
 
     fn allowed(&self) -> Expected;
 
-    /// Formats a value, if it is short enough to serve as an example.
+    /// Formats a value if it is short enough to serve as an example.
     fn print(&self, _value: &Self::Value) -> String {
         String::new()
     }
@@ -64,10 +64,10 @@ pub struct Maybe<V>(pub V);
 
 pub const SWITCH: Words<bool> = Words(&[("on", true), ("off", false)]);
 
-/// Any string; its meaning depends on other parameters, so none is refused at this stage.
+/// Any string. None is refused at this stage, because the meaning depends on other parameters.
 pub const ANY: Checked<String> = Checked(Expected::words(&[]), |text| Some(text.to_owned()));
 
-/// Parses a whole number that fits into `T`: decimal, or hexadecimal after `0x`.
+/// Parses a whole number that fits into `T`, in decimal or in hexadecimal after `0x`.
 pub fn number<T: TryFrom<i128>>(text: &str) -> Option<T> {
     let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         Some(digits) => u64::from_str_radix(digits, 16).ok()?.into(),

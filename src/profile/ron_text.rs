@@ -30,7 +30,7 @@ pub struct Entries {
 
 impl Entries {
     pub(super) fn open(path: &str, value: Value, reading: &Rc<Reading>) -> Result<Self, ProfileError> {
-        let map = match unwrapped(value) {
+        let map = match unwrap_value(value) {
             Value::Map(map) => map,
             // The crate reads an empty structure, `()` or `( )`, like this.
             Value::Unit => ron::Map::new(),
@@ -59,7 +59,7 @@ impl Entries {
     }
 
     /// Returns the remaining entry most similar to a missing name, if no more than `most` letters differ.
-    fn misspelt(&self, most: usize) -> Option<Misspelling> {
+    fn find_misspelling(&self, most: usize) -> Option<Misspelling> {
         if self.reading.is_newer() {
             return None;
         }
@@ -88,7 +88,10 @@ impl Entries {
         if matches!(value, Value::Option(None)) {
             return Ok(None);
         }
-        unwrapped(value).into_rust().map(Some).map_err(|_| ProfileError::Shape { path: self.path_of(name), expected })
+        unwrap_value(value)
+            .into_rust()
+            .map(Some)
+            .map_err(|_| ProfileError::Shape { path: self.path_of(name), expected })
     }
 
     /// Takes a required plain value.
@@ -138,7 +141,7 @@ impl Entries {
     /// Takes a list of structures, which is empty if missing.
     pub fn structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         let path = self.path_of(name);
-        match self.take(name).map(unwrapped) {
+        match self.take(name).map(unwrap_value) {
             None => Ok(Vec::new()),
             Some(Value::Seq(values)) => values
                 .into_iter()
@@ -151,7 +154,7 @@ impl Entries {
 
     /// Takes a map with arbitrary keys in their order, which is empty if missing.
     pub fn map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
-        match self.take(name).map(unwrapped) {
+        match self.take(name).map(unwrap_value) {
             None | Some(Value::Unit) => Ok(Vec::new()),
             Some(Value::Map(map)) => Ok(map.into_iter().collect()),
             Some(_) => Err(ProfileError::Shape { path: self.path_of(name), expected: Expected::Map }),
@@ -170,7 +173,7 @@ impl Entries {
             return Ok(left);
         }
         self.entries = left;
-        if let Some(slip) = self.misspelt(usize::MAX) {
+        if let Some(slip) = self.find_misspelling(usize::MAX) {
             return Err(slip.error());
         }
         let mut left = std::mem::take(&mut self.entries);
@@ -198,7 +201,7 @@ impl Entries {
 impl Drop for Entries {
     /// Looks for a misspelt name if reading ended before all names were requested.
     fn drop(&mut self) {
-        if let Some(slip) = self.misspelt(2) {
+        if let Some(slip) = self.find_misspelling(2) {
             self.reading.record_misspelling(slip);
         }
     }
@@ -213,7 +216,7 @@ fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
 }
 
 /// Returns `x` for `Some(x)`, which is allowed as well, and any other value unchanged.
-fn unwrapped(value: Value) -> Value {
+fn unwrap_value(value: Value) -> Value {
     match value {
         Value::Option(Some(inner)) => *inner,
         other => other,

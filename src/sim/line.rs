@@ -134,19 +134,19 @@ pub(crate) trait VirtualLine: Send {
 
     fn next_event(&self) -> Option<(Moment, Self::Event)>;
 
-    fn happen(&mut self, at: Moment, event: Self::Event);
+    fn schedule_event(&mut self, at: Moment, event: Self::Event);
 
     /// Transmits bytes of the host from `start` on; returns when the last one has been sent.
     fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment;
 
     /// Restores the power of every device that has lost it.
-    fn give_power(&mut self, now: Moment);
+    fn supply_power(&mut self, now: Moment);
 
     /// Processes all events due by `to`.
     fn advance(&mut self, to: Moment) {
         while let Some((at, event)) = self.next_event().filter(|(at, _)| *at <= to) {
             self.wires_mut().now = self.wires().now.max(at);
-            self.happen(at, event);
+            self.schedule_event(at, event);
         }
         self.wires_mut().now = self.wires().now.max(to);
     }
@@ -184,6 +184,6 @@ impl<L: VirtualLine> ByteDevice for L {
         self.advance(now);
         self.wires_mut().inbox.clear();
         let now = self.wires().now;
-        self.give_power(now);
+        self.supply_power(now);
     }
 }

@@ -109,7 +109,7 @@ fn statuses(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     });
 }
 
-/// Formats a logbook time in the local time zone.
+/// Formats the time of a logbook entry in the local time zone.
 pub(super) fn time(at: Timestamp) -> String {
     at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d  %H:%M:%S").to_string()
 }

@@ -7,14 +7,14 @@ use super::label_column::with_label_column;
 use super::{Theme, icons};
 use crate::app::Text;
 
-/// Height of a window in points below which folding cards fold.
+/// Window height in points below which folding cards are folded.
 const LOW: f32 = 720.0;
 
 pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
     card_with(ui, theme, title, |_| {}, content)
 }
 
-/// Draws a card with a heading; `aside` draws the part at the right of the heading.
+/// Draws a card with a heading. `aside` draws the content to the right of the heading.
 pub(crate) fn card_with<R>(
     ui: &mut Ui,
     theme: &Theme,
@@ -37,7 +37,7 @@ pub(crate) fn card_with<R>(
         .inner
 }
 
-/// Draws the heading of something that a click opens or closes; returns whether it was clicked.
+/// Draws a heading that opens or closes its section when clicked. Returns whether it was clicked.
 pub(crate) fn disclosure(ui: &mut Ui, heading: RichText, is_open: &mut bool) -> bool {
     let icon = if *is_open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
     let word = heading.text().to_owned();
@@ -50,7 +50,8 @@ pub(crate) fn disclosure(ui: &mut Ui, heading: RichText, is_open: &mut bool) -> 
     is_clicked
 }
 
-/// Draws a card for reference: in a low window only its heading, until it is opened with a click. It stays open until the
+/// Draws a card with reference information. In a low window, only the heading is drawn until the card is opened with a
+/// click; the card then stays open until the
 /// program ends.
 pub(crate) fn folding_card(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui)) {
     folding_card_with(ui, theme, title, |_| {}, content);

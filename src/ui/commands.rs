@@ -18,13 +18,13 @@ const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND }
 /// Key that shows or hides the help, even over a dialog.
 pub(super) const HELP_KEY: Key = Key::F1;
 
-/// Keys that select the tabs together with Ctrl, in tab order.
+/// Keys that select the tabs in combination with Ctrl, in tab order.
 const TAB_KEYS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 /// A named action.
 pub(super) struct Command {
-    /// Name of the device or tab that the command acts on; empty for the program.
+    /// Name of the device or tab that the command acts on. Empty for a command that acts on the whole program.
     pub(super) about: String,
     pub(super) name: String,
     pub(super) shortcut: Option<KeyboardShortcut>,
@@ -43,7 +43,7 @@ pub(super) enum Effect {
     ResetLayout,
 }
 
-/// A named action of one kind of device, for the command palette.
+/// A named action of one kind of device, offered in the command palette.
 pub struct NamedAction {
     pub name: String,
     pub is_enabled: bool,
@@ -93,7 +93,7 @@ pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command>
     commands
 }
 
-/// Returns the commands that need no device.
+/// Returns the commands that do not require a device.
 fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let command = |word: &'static str, effect| Command::new("", theme.say(word), effect);
     let act = |word: &'static str, action| command(word, Effect::Act(action));
@@ -179,7 +179,7 @@ fn targets(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
 }
 
 impl NamedAction {
-    /// Creates an action named after its button's label in the catalogue of common messages.
+    /// Creates an action with the same name as its button, taken from the catalogue of common messages.
     pub fn new(theme: &Theme, word: &'static str, is_enabled: bool, action: Action) -> Self {
         NamedAction { name: theme.say(word), is_enabled, action }
     }

@@ -6,18 +6,18 @@ use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
 pub use super::cards::card;
 pub(crate) use super::cards::{card_with, disclosure, folding_card, folding_card_with};
+pub use super::entries::{committed_entry, text_entry};
 pub(crate) use super::entries::{forget_secret, labelled_entry, mono_entry, secret_entry};
-pub use super::entries::{settled_entry, text_entry};
 pub(crate) use super::label_column::label_width;
 pub use super::label_column::{entry, row};
 use super::{Theme, icons};
 use crate::analysis::quality::Verdict;
 
-/// Minimum width in points for a label beside an entry; in narrower spaces, an icon replaces the label.
+/// Minimum width in points at which a label is drawn beside an entry. In narrower spaces, an icon replaces the label.
 const BESIDE: f32 = 64.0;
 /// Minimum width of a dialog in points.
 const MODAL: f32 = 240.0;
-/// Takes up the whole available width, which may be negative in a very small window.
+/// Expands the UI to the whole available width, which may be negative in a very small window.
 pub(crate) fn fill(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
 }
@@ -26,7 +26,7 @@ pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
     ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
 }
 
-/// Draws the reason why something cannot be shown or done.
+/// Draws the reason why an item cannot be shown or an action cannot be done.
 pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     match problem {
         Some(problem) => paragraph(ui, RichText::new(theme.words(problem)).color(theme.palette.bad)),
@@ -35,7 +35,8 @@ pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::T
     }
 }
 
-/// Draws the reason why entries are invalid below them. The space is always reserved, so that nothing below moves when
+/// Draws the reason why entries are invalid, below them. The space is always reserved, so that nothing further down
+/// moves when
 /// a message appears.
 pub(crate) fn problem_below(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
@@ -58,7 +59,7 @@ pub(crate) fn problem_beside(ui: &mut Ui, theme: &Theme, problem: Option<&crate:
     }
 }
 
-/// Draws a message on one line, or in a smaller font on two lines with a total height of one button, so that nothing
+/// Draws a message on one line, or on two lines in a smaller font, with a total height of one button so that nothing
 /// below moves. A longer message is shown in full in a tooltip.
 pub(crate) fn two_lines(ui: &mut Ui, theme: &Theme, words: String, ink: egui::Color32) -> Response {
     let width = ui.available_width();
@@ -98,8 +99,9 @@ pub(super) fn modal<R>(
     shown.inner
 }
 
-/// Draws the buttons at the end of a dialog, the first one at the far right, on a line as high as a button. If they
-/// were centred in the remaining space, they would keep the dialog from shrinking.
+/// Draws the buttons at the end of a dialog, right-aligned with the first one at the far right, on a line as high as a
+/// button. Buttons
+/// centred in the remaining space would keep the dialog from shrinking.
 pub(super) fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
@@ -114,7 +116,7 @@ pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str)
     name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
 }
 
-/// Draws a button, with the reason as a tooltip if it is disabled.
+/// Draws a button. If the button is disabled, its tooltip gives the reason.
 pub(crate) fn allowed_button(
     ui: &mut Ui,
     theme: &Theme,
@@ -146,7 +148,7 @@ pub(crate) fn icon_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) ->
     name(response, enabled, word).on_hover_text(word).on_disabled_hover_text(word)
 }
 
-/// Gives a widget the name by which screen readers and tests find it.
+/// Assigns a widget the name by which screen readers and tests find it.
 pub(crate) fn name(response: Response, enabled: bool, word: &str) -> Response {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, enabled, word));
     response
@@ -162,7 +164,7 @@ pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<eg
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, word));
 }
 
-/// Draws an empty state with the one action that fills it.
+/// Draws a placeholder for empty content, with the one action that adds content.
 pub(crate) fn empty(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&str, &str, bool)>) -> bool {
     let mut pressed = false;
     ui.vertical_centered(|ui| {
@@ -177,7 +179,7 @@ pub(crate) fn empty(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&st
     pressed
 }
 
-/// Draws an icon that opens a small panel below it. Clicks and typing inside the panel do not close it.
+/// Draws an icon that opens a small panel below it. Clicks and typing inside the panel do not close the panel.
 pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnce(&mut Ui)) {
     let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(icon).min_size(vec2(28.0, 28.0));
@@ -217,8 +219,8 @@ pub(crate) fn choice<T: PartialEq + Copy>(
     *value != before
 }
 
-/// Draws a choice with all options visible, as many per row as fit. This also works where a list could not open, such
-/// as in a panel that an outside click closes.
+/// Draws a choice with all options visible, as many per row as fit. Unlike a drop-down list, this also works
+/// in a panel that an outside click closes.
 pub(crate) fn options<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
@@ -243,7 +245,7 @@ pub(crate) fn options<T: PartialEq + Copy>(
     *value != before
 }
 
-/// Draws a spinner that turns slowly enough to use hardly any CPU time.
+/// Draws a spinner that turns slowly enough to use little CPU time.
 pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
     const STEPS: f64 = 8.0;
     let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
@@ -288,7 +290,7 @@ pub(crate) fn severity(theme: &Theme, severity: crate::app::Severity) -> (&'stat
     }
 }
 
-/// Draws two columns of cards if they fit, or a single column if not.
+/// Draws two columns of cards if they fit, or a single column otherwise.
 pub(crate) fn two_columns<C>(
     ui: &mut Ui,
     theme: &Theme,
@@ -299,7 +301,8 @@ pub(crate) fn two_columns<C>(
     split(ui, theme, (0.5, 640.0), context, left, right);
 }
 
-/// Draws an encoder's page, with its identity and check beside its readings; a profile has only the identity and the
+/// Draws an encoder's page, with its identity and check beside its readings. The page of a profile has only the
+/// identity and the
 /// wiring.
 pub(crate) fn encoder_page<C>(
     ui: &mut Ui,
@@ -349,7 +352,7 @@ pub(crate) fn split<C>(
     });
 }
 
-/// Draws a dot that is filled if connected and hollow if not.
+/// Draws a connection dot, which is filled if connected and hollow otherwise.
 pub(crate) fn dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
     let (rect, _) = ui.allocate_exact_size(vec2(12.0, 16.0), Sense::hover());
     let colour = colour.into();

@@ -9,14 +9,14 @@ use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
 use super::{Theme, status_line};
 use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, Rgb, Studio, Tab, Text, ToolKind};
 
-/// A page of a tab, for the navigation and the help. `word` and `help` are text ids.
+/// A page of a tab, as listed in the navigation and the help. `word` and `help` are text ids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PageInfo {
-    /// Icon in front of the name.
+    /// Icon in front of the page's name.
     pub icon: &'static str,
-    /// Text id of the name.
+    /// Text id of the page's name.
     pub word: &'static str,
-    /// Text id of the help.
+    /// Text id of the page's help.
     pub help: &'static str,
 }
 
@@ -29,7 +29,7 @@ impl PageInfo {
 
 /// Pages of a tab.
 pub trait TabPage: Copy + PartialEq + Default + 'static {
-    /// All pages in navigation order.
+    /// All pages, in navigation order.
     const PAGES: &'static [(Self, PageInfo)];
 
     /// Returns the index of the page within its tab.
@@ -47,26 +47,27 @@ pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
     P::PAGES.get(place).map(|(page, _)| *page)
 }
 
-/// View of a kind of device, implemented by the device.
+/// View of a kind of device. Each device kind implements this trait.
 pub trait TypedDeviceView: Sync + 'static {
-    /// Application state of the device, without drawing.
+    /// Application state of the device, independent of drawing.
     type Device: DeviceType;
     /// Pages of the device's tab.
     type Page: TabPage;
-    /// Text buffers and selections of one session, which are dropped when another device replies.
+    /// Text buffers and selections of one session. They are dropped when a different device replies.
     type Memory: Default + 'static;
     /// The form that edits a link to this device.
     type ConnectForm: TypedConnectForm;
 
-    /// Whether the undo and redo keys act on the device's edits; false if an editor handles the keys itself.
+    /// Whether the undo and redo keys act on the device's edits. False if an editor handles the keys itself.
     const HAS_UNDO_KEYS: bool;
 
-    /// Returns what distinguishes a device from others of its kind, or `None` if that is unknown or irrelevant.
+    /// Returns the serial number that distinguishes a device from others of its kind, or `None` if it is unknown or
+    /// irrelevant.
     fn serial_number(_device: &Self::Device) -> Option<&str> {
         None
     }
 
-    /// Returns whether a page contains edits that have not been written.
+    /// Returns whether a page contains edits that have not been written to the device.
     fn is_edited(_device: &Self::Device, _page: Self::Page) -> bool {
         false
     }
@@ -81,7 +82,7 @@ pub trait TypedDeviceView: Sync + 'static {
         actions: &mut Vec<Action>,
     );
 
-    /// Draws the progress of the running job in the status line, from the right.
+    /// Draws the progress of the running job in the status line, right-aligned.
     fn running_ui(
         ui: &mut Ui,
         theme: &Theme,
@@ -93,7 +94,7 @@ pub trait TypedDeviceView: Sync + 'static {
         status_line::running_ui(ui, theme, any, None, actions);
     }
 
-    /// Draws the large position in the given colour, with further values.
+    /// Draws the position in large digits in the given colour, followed by further values.
     fn value_ui(ui: &mut Ui, theme: &Theme, device: &Self::Device, ink: Rgb);
 
     /// Draws the menu of values that are read together with the position, if the device has any.
@@ -106,7 +107,7 @@ pub trait TypedDeviceView: Sync + 'static {
     ) {
     }
 
-    /// Returns the header text while the device moves, or `None` while it does not.
+    /// Returns the header text while the device moves, or `None` while it stands still.
     fn motion(_device: &Self::Device) -> Option<Text> {
         None
     }
@@ -116,12 +117,12 @@ pub trait TypedDeviceView: Sync + 'static {
         Vec::new()
     }
 
-    /// Draws what the tab offers without a device, below the buttons common to all kinds.
+    /// Draws what the tab offers while no device is open, below the buttons common to all kinds.
     fn empty_ui(_ui: &mut Ui, _skin: &Theme, _actions: &mut Vec<Action>) {}
 }
 
-/// Object-safe view of a kind of device, used by the window. It draws nothing for devices of other kinds, and reports
-/// no edits of them.
+/// Object-safe view of a kind of device, used by the window. For a device of another kind, it draws nothing and reports
+/// no edits.
 pub trait DeviceView: Sync {
     /// Returns the kind of device.
     fn kind(&self) -> &'static dyn DeviceKind;
@@ -132,7 +133,7 @@ pub trait DeviceView: Sync {
     /// Returns whether the undo and redo keys act on the edits of the device.
     fn has_undo_keys(&self) -> bool;
 
-    /// Returns the header text while the device moves, or `None` while it does not.
+    /// Returns the header text while the device moves, or `None` while it stands still.
     fn motion(&self, device: &AnyDevice) -> Option<Text>;
 
     /// Returns the actions of this kind for the command palette. None of them starts a motion.
@@ -147,11 +148,11 @@ pub trait DeviceView: Sync {
     /// Creates the view of a session.
     fn session(&self) -> Box<dyn SessionView>;
 
-    /// Draws what the tab offers without a device, below the buttons common to all kinds.
+    /// Draws what the tab offers while no device is open, below the buttons common to all kinds.
     fn empty_ui(&self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>);
 }
 
-/// View of one session: its open page, text buffers and selections.
+/// View of one session, with its open page, text buffers and selections.
 pub trait SessionView {
     /// Returns the index of the open page.
     fn page(&self) -> usize;
@@ -159,13 +160,13 @@ pub trait SessionView {
     /// Opens the page with the given index.
     fn open(&mut self, page: usize);
 
-    /// Returns whether a page contains edits that have not been written.
+    /// Returns whether a page contains edits that have not been written to the device.
     fn is_edited(&self, device: &AnyDevice, page: usize) -> bool;
 
     /// Draws the open page.
     fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>);
 
-    /// Draws the progress of the running job in the status line, from the right.
+    /// Draws the progress of the running job in the status line, right-aligned.
     fn running_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 
     /// Draws the menu of values that are read together with the position, if the device has any.
@@ -200,7 +201,7 @@ impl<V: TypedDeviceView> DeviceView for V {
     }
 
     fn connect_form(&self) -> Box<dyn ConnectForm> {
-        connect::form::begun::<V::ConnectForm>()
+        connect::form::new_form::<V::ConnectForm>()
     }
 
     fn session(&self) -> Box<dyn SessionView> {
@@ -224,7 +225,7 @@ struct Memory<M> {
 }
 
 impl<M: Default> Memory<M> {
-    /// Returns the memory for the given device, after clearing another device's text and selections.
+    /// Returns the memory for the given device. The text and selections of another device are cleared first.
     fn of(&mut self, serial_number: Option<&str>) -> &mut M {
         if let Some(own) = serial_number
             && self.serial_number.as_deref() != Some(own)
@@ -267,7 +268,7 @@ impl<V: TypedDeviceView> SessionView for Session<V> {
     }
 }
 
-/// View of a tab that requires no device.
+/// View of a tab that does not require a device.
 pub trait ToolView: Sync {
     /// Returns the tool.
     fn kind(&self) -> &'static dyn ToolKind;
@@ -275,14 +276,14 @@ pub trait ToolView: Sync {
     /// Returns the text id of the tab's name.
     fn title(&self) -> &'static str;
 
-    /// Returns all pages in navigation order.
+    /// Returns all pages, in navigation order.
     fn pages(&self) -> Vec<PageInfo>;
 
     /// Creates the view for a window.
     fn begin(&self) -> Box<dyn ToolPages>;
 }
 
-/// A window's view of a tab that requires no device: open page, text buffers and selections.
+/// A window's view of a tab that does not require a device, with its open page, text buffers and selections.
 pub trait ToolPages {
     /// Returns the index of the open page.
     fn page(&self) -> usize;
@@ -294,7 +295,7 @@ pub trait ToolPages {
     fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>);
 }
 
-/// Views of all tabs in navigation order, devices first.
+/// Views of all tabs in navigation order, with device tabs first.
 #[derive(Clone, Copy)]
 pub struct TabViews {
     devices: &'static [&'static dyn DeviceView],
@@ -302,7 +303,7 @@ pub struct TabViews {
 }
 
 impl TabViews {
-    /// Creates the list of views, one per tab.
+    /// Creates the list of views, which has one view per tab.
     pub const fn new(devices: &'static [&'static dyn DeviceView], tools: &'static [&'static dyn ToolView]) -> Self {
         TabViews { devices, tools }
     }

@@ -16,7 +16,7 @@ pub(super) enum Pane {
     Log,
 }
 
-/// Initial share of the row taken by the Live panel.
+/// Initial share of the row width taken by the Live panel.
 const LIVE: f32 = 0.3;
 /// Width in points of the Live panel without its plot.
 const VALUES: f32 = 248.0;
@@ -29,14 +29,14 @@ impl Pane {
 pub(super) struct Docks {
     tree: Tree<Pane>,
     edited: bool,
-    /// Whether the Live panel was last drawn without its plot; `None` before the first frame.
+    /// Whether the Live panel was drawn without its plot in the last frame; `None` before the first frame.
     alone: Option<bool>,
-    /// Share of the row taken by the Live panel when it shows its plot.
+    /// Share of the row width taken by the Live panel when it shows its plot.
     with_plot: f32,
 }
 
 impl Docks {
-    /// Loads the stored layout, or the default one.
+    /// Loads the stored layout, or the default layout if none is stored.
     pub(super) fn load(layout: Option<&str>) -> Self {
         let tree = layout.and_then(|text| ron::from_str::<Tree<Pane>>(text).ok()).filter(is_complete);
         Docks { tree: tree.unwrap_or_else(first_layout), edited: false, alone: None, with_plot: LIVE }
@@ -70,8 +70,9 @@ impl Docks {
         hidden.iter().for_each(|tile| self.tree.set_visible(*tile, true));
     }
 
-    /// Resizes the Live panel when its plot appears or disappears: to the width of its values, or to its previous width
-    /// with the plot.
+    /// Resizes the Live panel when its plot appears or disappears. Without the plot, the panel is as wide as its
+    /// values; with the plot, it regains
+    /// its previous width.
     fn fit_live(&mut self, alone: bool, width: f32) {
         if self.alone.replace(alone).is_none_or(|before| before == alone) {
             return;
@@ -97,8 +98,7 @@ impl Docks {
         }
     }
 
-    /// Returns the tiles that make up the lower panel, wherever they have been dragged: those that contain nothing but
-    /// its panes.
+    /// Returns the tiles that contain only panes of the lower panel, wherever they have been dragged.
     fn lower_tiles(&self) -> Vec<TileId> {
         let mut lower = Vec::new();
         if let Some(root) = self.tree.root() {
@@ -108,7 +108,7 @@ impl Docks {
     }
 
     /// Collects the outermost lower-panel tiles at or below `tile`. A pane that shares its tabs with a pane of another
-    /// panel is left out.
+    /// panel is not included.
     fn find_lower(&self, tile: TileId, lower: &mut Vec<TileId>) {
         if self.is_lower(tile) {
             lower.push(tile);

@@ -8,7 +8,7 @@ use super::{Theme, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 
-/// Width in points below which the buttons have no room for all their labels, beside a profile or a device's edit
+/// Width in points below which the labels of some buttons are omitted, beside a profile or a device's edit
 /// count.
 const NARROW: f32 = 660.0;
 
@@ -74,7 +74,7 @@ pub fn edit_bar_ui(
     });
 }
 
-/// Draws the number of edits, without the label if it does not fit.
+/// Draws the number of edits, omitting the label if it does not fit.
 fn edits(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     let color = theme.palette.staged;
     let font = egui::TextStyle::Body.resolve(ui.style());
@@ -85,7 +85,7 @@ fn edits(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     label.on_hover_text(words);
 }
 
-/// Draws the choice of a connected device of the matching kind to which the profile can be written.
+/// Draws the list of connected devices of the matching kind to which the profile can be written.
 fn write_into(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();

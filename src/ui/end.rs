@@ -8,7 +8,7 @@ use std::time::Duration;
 use crate::app::{Action, Brakes, Mailbox, Studio};
 
 const ANSWERS: Duration = Duration::from_secs(2);
-/// Exit status of a program ended by a signal: 128 plus the number of SIGTERM.
+/// Exit status of a program ended by a signal, which is 128 plus the number of SIGTERM.
 const ENDED: i32 = 143;
 
 /// Guard that releases the drives when its thread ends or when that thread ends the program.
@@ -22,8 +22,9 @@ impl Drop for ReleaseOnDrop {
 }
 
 thread_local! {
-    /// Guard of the window's thread: the display library ends the program itself when the display is lost, but
-    /// thread-local values are dropped even then.
+    /// Guard in the window's thread that releases the drives when the display is lost. The display library then ends
+    /// the program itself, but
+    /// thread-local values are still dropped.
     static LAST: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
 }
 
@@ -43,7 +44,7 @@ pub(super) fn prepare(studio: &Studio) {
     }
 }
 
-/// Ends the drives first, then closes the window without any questions. Returns whether the window closes.
+/// Ends the drives first, then closes the window without asking any questions. Returns whether the window closes.
 fn end(brakes: &Brakes, mailbox: &Mailbox) -> bool {
     brakes.begin();
     mailbox.send(Action::Quit);

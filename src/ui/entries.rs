@@ -50,13 +50,13 @@ pub(crate) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &s
     response
 }
 
-/// Clears a secret entry, including everything that could restore it.
+/// Clears a secret entry, including any state from which the secret could be restored.
 pub(crate) fn forget_secret(ui: &Ui, response: &Response, text: &mut String) {
     text.clear();
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
 }
 
-/// Draws a one-line entry after its label, which is also its name for screen readers.
+/// Draws a one-line entry to the right of its label, which is also its name for screen readers.
 pub(crate) fn labelled_entry(
     ui: &mut Ui,
     theme: &Theme,
@@ -70,8 +70,8 @@ pub(crate) fn labelled_entry(
 }
 
 /// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. `draft` holds the text until then;
-/// a text that `take` refuses stays in the entry, with the reason below.
-pub fn settled_entry(
+/// text refused by `take` stays in the entry, with the reason shown below.
+pub fn committed_entry(
     ui: &mut Ui,
     draft: &mut Option<(String, Option<crate::app::Text>)>,
     shown: &str,

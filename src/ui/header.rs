@@ -9,7 +9,7 @@ use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
 use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
 
-/// Width of the STOP button in points while nothing is moving.
+/// Width in points of the STOP button while nothing is moving.
 const STOP: f32 = 72.0;
 
 pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
@@ -153,7 +153,8 @@ fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Actio
     name(menu.response, true, &theme.say("shell.sessions"));
 }
 
-/// Returns a name shortened for the header. A device keeps its serial number, which distinguishes devices of one kind.
+/// Returns a name shortened for the header. The serial number is kept, because it distinguishes devices of the same
+/// kind.
 fn shortened(name: &str, most: usize) -> String {
     let cut = |text: &str, most: usize| match text.chars().count() {
         count if count <= most => text.to_owned(),
@@ -178,7 +179,7 @@ fn phase_dot(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     dot(ui, filled, colour);
 }
 
-/// Draws the status as a word: *virtual*, *offline*, *connected*, *moving*, *lost*.
+/// Draws the status as one word: *virtual*, *offline*, *connected*, *moving* or *lost*.
 fn status(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text>) {
     let palette = theme.palette;
     if device.is_virtual() {
@@ -198,7 +199,7 @@ fn status(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text>) 
     ui.label(RichText::new(theme.words(&text)).color(colour));
 }
 
-/// Whether the profile has a newer schema and can therefore be neither saved nor written.
+/// Returns whether the profile has a newer schema and can therefore be neither saved nor written.
 fn is_read_only(device: &AnyDevice) -> bool {
     matches!(device.source(), Source::File { document, .. } if document.is_newer())
 }
@@ -220,7 +221,7 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     let (moves, by_hand) = (studio.moves(), studio.moves_by_hand());
     let active = moves || studio.can_stop() || studio.is_in_control();
     // Live values alone are nothing to be alarmed about.
-    let is_alarming = moves || studio.works() || studio.is_in_control();
+    let is_alarming = moves || studio.is_working() || studio.is_in_control();
     let (word, hint) = if studio.has_drives() {
         (theme.say("hd_bar.stop"), theme.say("hd_bar.stop_hint"))
     } else {
@@ -247,8 +248,8 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     }
 }
 
-/// Draws the STOP button in its usual position, above anything that covers the window, while a drive moves.
-pub(super) fn stop_over_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
+/// Draws the STOP button in its usual position while a drive moves, on top of anything that covers the window.
+pub(super) fn stop_overlay_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     if !studio.moves() || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
         return;
     }

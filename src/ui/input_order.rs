@@ -4,13 +4,14 @@
 
 use egui::{Event, Key};
 
-/// Events held back for a later frame.
+/// Input events held back for a later frame.
 #[derive(Debug, Default)]
 pub(super) struct HeldInput(Vec<Event>);
 
 impl HeldInput {
-    /// Reduces `events` to those of the current frame, which end at the first event that may move the keyboard focus if
-    /// typing follows. Nothing is held back with `at_once`. Returns whether the next frame is due immediately.
+    /// Reduces `events` to those of the current frame, which ends at the first event that may move the keyboard focus
+    /// if
+    /// typing follows. With `at_once`, nothing is held back. Returns whether the next frame is due immediately.
     pub(super) fn divide(&mut self, events: &mut Vec<Event>, at_once: bool) -> bool {
         self.0.append(events);
         let after_first = self.0.iter().position(may_move_focus).map_or(self.0.len(), |at| at + 1);
@@ -51,7 +52,7 @@ mod tests {
         Event::Text(text.to_owned())
     }
 
-    /// Divides events into frames until nothing is held back.
+    /// Divides events into frames until no event is held back.
     fn frames(mut events: Vec<Event>) -> Vec<Vec<Event>> {
         let (mut held, mut frames) = (HeldInput::default(), Vec::new());
         while held.divide(&mut events, false) || !events.is_empty() {

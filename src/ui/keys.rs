@@ -10,7 +10,7 @@ use crate::app::{FreshKeys, PressKey};
 
 pub(super) struct Keys {
     fresh: FreshKeys,
-    /// Whether consent was requested in the previous frame.
+    /// Whether consent was being requested in the previous frame.
     asked: bool,
 }
 
@@ -20,7 +20,8 @@ impl Keys {
     }
 
     /// Removes the events that no widget may see from the current frame and returns whether all motion must stop.
-    /// `moves`: this window is moving something; `asks`: consent is requested, which only a key seen released since
+    /// `moves` states whether this window is moving a drive. `asks` states whether consent is requested, which only a
+    /// key seen released since
     /// then can give.
     pub(super) fn take(&mut self, ctx: &Context, moves: bool, asks: bool) -> bool {
         if asks && !std::mem::replace(&mut self.asked, asks) {
@@ -52,7 +53,7 @@ impl Keys {
                     Some(own) => fresh.press(own),
                     None => {
                         if !asks {
-                            fresh.press_other(now);
+                            fresh.press_other_key(now);
                         }
                         if !typing {
                             fresh.doubt(now);

@@ -4,14 +4,14 @@ use egui::{Id, RichText, Ui, vec2};
 
 use super::Theme;
 
-/// Width of the label column, unless a label of the card needs more.
+/// Default width of the label column. A longer label in the card makes the column wider.
 const LABELS: f32 = 132.0;
-/// Largest shares of the width for the label column: by default, and for long labels.
+/// Largest shares of the width for the label column, by default and for long labels.
 const LABEL_SHARES: (f32, f32) = (0.4, 0.55);
 
 #[derive(Clone, Copy, Default)]
 struct LabelColumn {
-    /// Width of the longest label in earlier frames.
+    /// Width of the longest label in previous frames.
     longest: f32,
     /// Width of the longest label drawn so far in the current frame.
     drawn: f32,

@@ -8,7 +8,7 @@ use super::controls::{card, name, paragraph};
 /// Selectable speeds in revolutions per minute.
 const SPEEDS: [f64; 5] = [-60.0, -6.0, 0.0, 6.0, 60.0];
 
-/// Draws the motor card; `turn` receives the requested speed in revolutions per minute.
+/// Draws the motor card. `turn` receives the requested speed in revolutions per minute.
 pub(crate) fn card_ui(ui: &mut Ui, theme: &Theme, now: f64, mut turn: impl FnMut(f64)) {
     card(ui, theme, "motor_card.title", |ui| {
         paragraph(ui, theme.caption(theme.say("motor_card.words")));

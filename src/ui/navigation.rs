@@ -37,7 +37,7 @@ pub(super) fn navigation_ui(
     }
 }
 
-/// Draws the pages of the open tab, if the tab has any content.
+/// Draws the page entries of the open tab, if the tab has any content.
 fn open_pages(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     let tab = studio.settings.tab;
     let pages = views.tabs.pages(tab);
@@ -55,8 +55,8 @@ fn open_pages(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     }
 }
 
-/// Draws the page entries of a tab and returns the index of the clicked entry. Unwritten edits mark the page named by
-/// `edited`.
+/// Draws the page entries of a tab and returns the index of the clicked entry. Pages for which `edited` returns true
+/// are marked as having unwritten edits.
 fn pages_ui(
     ui: &mut Ui,
     theme: &Theme,

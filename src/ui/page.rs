@@ -5,7 +5,7 @@ use egui::{AsIdSalt, Frame, Margin, ScrollArea, Ui, UiBuilder};
 use super::Theme;
 
 const NARROW: f32 = 720.0;
-/// Space above a page, and maximum space below.
+/// Space above a page, and the maximum space below.
 const ABOVE: i8 = 16;
 
 pub(crate) fn sides(ui: &Ui, theme: &Theme) -> i8 {
@@ -18,7 +18,7 @@ pub(crate) fn around(ui: &Ui, theme: &Theme) -> Margin {
     Margin { left: sides, right: sides, top: ABOVE, bottom: sides.min(ABOVE) }
 }
 
-/// Draws a page that scrolls as a whole; `id` distinguishes the page from others. The scroll bar lies in the margin, so
+/// Draws a page that scrolls as a whole. `id` distinguishes the page from others. The scroll bar lies in the margin, so
 /// nothing shifts when the bar appears.
 pub fn scrolling(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl FnOnce(&mut Ui)) {
     let frame = Frame::NONE.inner_margin(around(ui, theme));
@@ -31,8 +31,8 @@ pub fn scrolling(ui: &mut Ui, theme: &Theme, id: impl AsIdSalt, content: impl Fn
     });
 }
 
-/// Draws widgets whose ids do not depend on the widgets drawn before them; `name` must be unique in `ui`. Otherwise a
-/// widget appearing or disappearing above would change their ids, which loses the keyboard focus and any click between
+/// Draws widgets whose ids do not depend on the widgets drawn before them; `name` must be unique in `ui`. Otherwise, a
+/// widget that appears or disappears above would change their ids, which loses the keyboard focus and any click between
 /// press and release.
 pub(super) fn apart<R>(ui: &mut Ui, name: impl AsIdSalt, content: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.scope_id().with(name);

@@ -12,7 +12,7 @@ use super::{Theme, icons};
 use crate::app::review::{ChangeTexts, ExecutionMode, OperationTexts, Question, ReviewSheet, Stage, Toggle};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
-/// Draws the review dialog, if a write is under review.
+/// Draws the review dialog if a write is under review.
 pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     let Some(sheet) = device.sheet() else { return };
     let width = (ctx.content_rect().width() - 64.0).min(760.0);
@@ -147,7 +147,7 @@ fn buttons(
     });
 }
 
-/// Draws the operations and, during a write, the number of completed ones. Values are never truncated.
+/// Draws the operations and, during a write, the number of completed operations. Values are never truncated.
 fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], f32), done: Option<usize>) {
     let palette = theme.palette;
     theme.sunken().show(ui, |ui| {
@@ -190,7 +190,7 @@ fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], f32
     ui.add_space(theme.space.between);
 }
 
-/// Draws the old and new value on one line, if they fit beside the item.
+/// Returns the old and new value laid out on one line, or `None` if they do not fit beside the item.
 fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeTexts, ink: Rgb) -> Option<Arc<Galley>> {
     let mut job = LayoutJob::default();
     let font = FontId::monospace(theme.sizes.body);
@@ -233,7 +233,7 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeTexts, heads: [&'static 
 const LEAST: f32 = 200.0;
 const MOST: f32 = 440.0;
 const REST: f32 = 400.0;
-/// Width of the icon before an item, including the gap.
+/// Width of the icon before an item, including the gap after the icon.
 const ICON: f32 = 24.0;
 /// Width of the column for the "old" and "new" labels.
 const HEADS: f32 = 56.0;
@@ -252,7 +252,7 @@ fn remarks(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     }
 }
 
-/// Draws a red notice above the operations that lists the values to be set up again.
+/// Draws a red notice above the operations, listing the values that must be set up again.
 fn redo(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let Some(text) = &sheet.redo else { return };
     let colour = theme.palette.bad;

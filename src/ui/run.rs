@@ -8,7 +8,7 @@ use crate::app::{Environment, Kinds, Studio, ThemeData, Wake, explain};
 use crate::cli::Window as Start;
 use crate::store::{LogFile, Store};
 
-/// Opens the window with the given device kinds and tabs, and returns when the window is closed.
+/// Opens the window with the given device kinds and tabs. Returns when the window is closed.
 ///
 /// # Errors
 /// Returns a one-line reason if the window could not be opened.
@@ -62,10 +62,10 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
     result
 }
 
-/// Window as run by eframe.
+/// The application window, run by eframe.
 pub(crate) struct StudioApp {
     window: Window,
-    /// Start time of the program, until the first frame has been shown.
+    /// Start time of the program, or `None` once the first frame has been shown.
     began: Option<Instant>,
 }
 

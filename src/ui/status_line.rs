@@ -12,9 +12,9 @@ use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand, Notice, Studio, TraceFault, TraceLine, TraceLog, connect};
 use crate::link::Direction;
 
-/// Height of the status line: two lines of small text.
+/// Height of the status line, enough for two lines of small text.
 const HEIGHT: f32 = 36.0;
-/// Width share of the running job while a notice is shown beside it.
+/// Share of the width for the running job while a notice is shown beside it.
 const SHARE: f32 = 0.45;
 const TIME: &str = "%H:%M:%S%.3f";
 
@@ -61,7 +61,7 @@ fn chevron(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action
     }
 }
 
-/// Draws the line from the right, so that buttons stay in position however long the text is.
+/// Draws the status line from right to left, so that the buttons keep their position however long the text is.
 fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     let notice = studio.services.log.standing();
     let device = device_in_tab(studio, studio.settings.tab);
@@ -100,17 +100,18 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
             ui.label(RichText::new(icons::PLUGS).size(theme.sizes.section).color(theme.palette.bad));
             message(ui, theme, words, theme.palette.text.into());
         }
-        (None, None) if works.is_none() && !studio.settings.lower_open => latest(ui, theme, studio),
+        (None, None) if works.is_none() && !studio.settings.lower_open => latest_message_ui(ui, theme, studio),
         (None, None) => {}
     });
 }
 
-/// Returns whether a job runs or a link is being opened. An open review shows its own progress and does not count.
+/// Returns whether a job is running or a link is being opened. An open review does not count, because it shows its own
+/// progress.
 fn is_at_work(device: &AnyDevice) -> bool {
     *device.phase() == Phase::Opening || device.running().is_some() && !device.is_reviewing()
 }
 
-/// Returns the device and the reason if its connection was lost or the device is silent.
+/// Returns the device and the reason if the connection was lost or the device is silent.
 fn lost_of(device: &AnyDevice) -> Option<(&AnyDevice, &crate::app::Text)> {
     match device.phase() {
         Phase::Lost(why) | Phase::Silent(why) => Some((device, why)),
@@ -118,7 +119,7 @@ fn lost_of(device: &AnyDevice) -> Option<(&AnyDevice, &crate::app::Text)> {
     }
 }
 
-/// Draws the buttons for reconnecting, last one first.
+/// Draws the buttons for reconnecting, in reverse order.
 fn reconnect_buttons(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
         actions.push(Action::Connect(connect::ConnectAction::Open));
@@ -144,7 +145,7 @@ fn notice_words(theme: &Theme, notice: &Notice) -> String {
     format!("{}{}", notice.prefix(|text| theme.words(text)), words.join(" "))
 }
 
-/// Draws a message in the remaining space, in small text over two lines if one line is too short.
+/// Draws a message in the remaining space, in small text on two lines if one line is too short.
 fn message(ui: &mut Ui, theme: &Theme, words: String, colour: Color32) {
     let body = TextStyle::Body.resolve(ui.style());
     let width = ui.painter().layout_no_wrap(words.clone(), body.clone(), colour).size().x;
@@ -159,8 +160,8 @@ fn message(ui: &mut Ui, theme: &Theme, words: String, colour: Color32) {
     ui.add(egui::Label::new(job).wrap().selectable(false));
 }
 
-/// Draws the last frame of the displayed device, or the last message if newer.
-fn latest(ui: &mut Ui, theme: &Theme, studio: &Studio) {
+/// Draws the last frame of the displayed device, or the last message if it is newer.
+fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let frame = studio.selected_device().and_then(|device| Some((device.trace(), last_frame_line(device.trace())?)));
     let frame = frame.and_then(|(trace, line)| Some((trace.time_of(line)?, line)));
     let message = studio.services.log.notices().next_back();
@@ -182,8 +183,9 @@ fn latest(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     }
 }
 
-/// Returns the last reply if it is one of the last two frames, so that the line does not flicker between requests and
-/// replies; otherwise the last frame.
+/// Returns the last reply if it is one of the last two frames, so that the status line does not flicker between
+/// requests and
+/// replies. Otherwise, returns the last frame.
 fn last_frame_line(trace: &TraceLog) -> Option<&TraceLine> {
     let mut newest = trace.lines().iter().rev().take(2);
     let is_reply = |line: &&TraceLine| line.direction == Direction::Received;
@@ -208,7 +210,7 @@ fn frame_ui(ui: &mut Ui, theme: &Theme, time: &str, line: &TraceLine) {
     ui.add(egui::Label::new(RichText::new(line.words(theme.language)).color(colour)).truncate());
 }
 
-/// Draws the running job with its progress, or `instead`, and the stop button, from the right.
+/// Draws the running job with its progress, or the text `instead`, and the stop button, right-aligned.
 pub(crate) fn running_ui(
     ui: &mut Ui,
     theme: &Theme,

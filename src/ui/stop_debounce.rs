@@ -10,7 +10,7 @@ pub(crate) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
     with(ctx, |presses| presses.means_motion(moves, pressed, now))
 }
 
-/// Returns whether an earlier press stopped something so recently that another press must mean the same.
+/// Returns whether an earlier press stopped something so recently that another press must be meant as a stop too.
 pub(super) fn has_just_stopped(ctx: &Context, pressed: f64) -> bool {
     with(ctx, |presses| presses.has_just_stopped(pressed))
 }
@@ -30,13 +30,13 @@ pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
     is_press
 }
 
-/// Returns when the press that counts in this frame on a stop button began.
+/// Returns the time at which the stop button press that counts in this frame began.
 pub(crate) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
     let (now, released) = ui.input(|input| (input.time, input.pointer.any_released()));
     with(ui.ctx(), |presses| presses.pressed_at(goes_down || released, now))
 }
 
-/// Returns whether Esc is pressed in this frame; a held key that repeats does not count.
+/// Returns whether Esc is newly pressed in this frame. Repeats of a held key do not count.
 pub(super) fn escape_goes_down(ctx: &Context) -> bool {
     let is_press = |event: &Event| matches!(event, Event::Key { key: Key::Escape, pressed: true, repeat: false, .. });
     ctx.input(|input| input.events.iter().any(is_press))

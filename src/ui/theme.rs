@@ -42,13 +42,14 @@ impl Theme {
         text.words(self.language)
     }
 
-    /// Formats a number with the language's decimal sign.
+    /// Formats a number with the decimal sign of the current language.
     pub fn number(&self, value: f64, decimals: usize) -> String {
         crate::app::decimal(value, decimals, self.language)
     }
 
-    /// Formats a number with as many decimals as needed, up to twelve significant digits; anything beyond is rounding
-    /// noise.
+    /// Formats a number with as many decimals as needed, up to twelve significant digits. Further digits would only
+    /// show rounding
+    /// errors.
     pub fn plain(&self, value: f64) -> String {
         const DIGITS: i32 = 12;
         let before = if value == 0.0 { 1 } else { (value.abs().log10().floor() as i32).saturating_add(1) };
@@ -57,7 +58,7 @@ impl Theme {
         self.number(value, decimals)
     }
 
-    /// Formats a number as received, in hexadecimal digits, with its width.
+    /// Formats a number in hexadecimal digits, padded to its width.
     pub fn word(&self, word: Word) -> String {
         self.words(&Text::new("live.word").with("hex", word).with("count", word.bits))
     }
@@ -71,7 +72,7 @@ impl Theme {
         RichText::new(words).size(self.sizes.caption).color(self.palette.muted)
     }
 
-    /// Leaves the space between two groups: `space.groups`, less the spacing that egui puts before the next widget.
+    /// Adds the space between two groups: `space.groups`, less the spacing that egui puts before the next widget.
     pub fn gap(&self, ui: &mut egui::Ui) {
         ui.add_space((self.space.groups - ui.spacing().item_spacing.y).max(0.0));
     }
@@ -95,7 +96,7 @@ impl Theme {
         FontId::new(size, FontFamily::Name(STRONG.into()))
     }
 
-    /// Returns the frame of a card: raised, with a border but no shadow.
+    /// Returns the frame of a card, which is raised and has a border but no shadow.
     pub fn card(&self) -> egui::Frame {
         egui::Frame::NONE
             .fill(self.palette.raised.into())
@@ -109,7 +110,7 @@ impl Theme {
         egui::Frame::NONE.fill(self.palette.sunken.into()).corner_radius(self.radius).inner_margin(Margin::same(8))
     }
 
-    pub fn dress(&self, ctx: &egui::Context) {
+    pub fn apply_to(&self, ctx: &egui::Context) {
         let theme = match self.theme {
             ColorScheme::Dark => egui::Theme::Dark,
             ColorScheme::Light => egui::Theme::Light,
@@ -221,7 +222,8 @@ pub fn install_fonts(ctx: &egui::Context) {
 mod tests {
     use super::*;
 
-    /// An address is read off and typed into a script: no font may show 0x40 as 0×40, which contextual alternates do.
+    /// No font may show 0x40 as 0×40, which contextual alternates do, because users type displayed addresses into
+    /// scripts.
     #[test]
     fn no_font_substitutes_other_characters() {
         for (name, bytes) in FONTS {

@@ -52,7 +52,7 @@ impl Views {
         Some(tool.as_mut())
     }
 
-    /// Returns the open page of the open tab; for a device tab without an open device, its first page.
+    /// Returns the open page of the open tab. For a device tab without an open device, returns its first page.
     pub(super) fn page(&mut self, studio: &Studio) -> Option<PageInfo> {
         let tab = studio.settings.tab;
         let page = match (self.tool(tab), device_in_tab(studio, tab)) {

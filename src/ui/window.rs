@@ -26,7 +26,7 @@ pub struct Window {
     close_heard: bool,
     look: &'static ThemeData,
     dressed: Option<crate::app::ColorScheme>,
-    /// Displayed notice, and since when it has been shown on the window's clock.
+    /// Displayed notice, and the time on the window's clock since which it has been shown.
     notice_since: Option<(jiff::Zoned, f64)>,
 }
 
@@ -51,7 +51,7 @@ impl Window {
         &self.studio
     }
 
-    /// Splits the input of a frame so that text reaches the entry that was clicked before. Nothing is held back while
+    /// Splits the input of a frame so that typed text reaches the entry clicked just before. Nothing is held back while
     /// drives are under control.
     pub fn split_input(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
         let at_once = !input.focused || self.studio.is_in_control();
@@ -68,11 +68,11 @@ impl Window {
         self.take_input(&ctx, &theme, &mut actions);
         let in_use = egui::Popup::is_any_open(&ctx) || ctx.dragged_id().is_some();
         if self.dressed.replace(self.studio.settings.theme) != Some(self.studio.settings.theme) {
-            theme.dress(&ctx);
+            theme.apply_to(&ctx);
         }
         self.shell(ui, &theme, &mut actions);
         self.dialogs(&ctx, &theme, &mut actions);
-        header::stop_over_ui(&ctx, &theme, &self.studio, &mut actions);
+        header::stop_overlay_ui(&ctx, &theme, &self.studio, &mut actions);
         self.take_escape(&ctx, in_use, &mut actions);
         if !actions.is_empty() {
             // Their effect must be drawn.
@@ -152,7 +152,7 @@ impl Window {
         dialogs::question_ui(ctx, theme, &self.studio, actions);
     }
 
-    /// Draws the status line at the bottom, with the current notice, if any. Notices that need an action stay until
+    /// Draws the status line at the bottom, with the current notice, if any. Notices that require an action stay until
     /// dismissed; the others disappear by themselves.
     fn status_line(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         status_line::status_line_ui(ui, theme, &self.studio, &mut self.views, actions);
@@ -166,14 +166,15 @@ impl Window {
             _ => now,
         };
         self.notice_since = Some((notice.at.clone(), since));
-        match notice.severity.stands_for(Duration::from_secs_f64(now - since)) {
+        match notice.severity.display_time(Duration::from_secs_f64(now - since)) {
             Some(Duration::ZERO) => actions.push(Action::Dismiss),
             Some(left) => ui.ctx().request_repaint_after(left),
             None => {}
         }
     }
 
-    /// Handles closing even if nothing is drawn, since a minimised window must still be closed. This never keeps a
+    /// Handles requests to close the window even if nothing is drawn, since a minimised window must still be closable.
+    /// This never keeps a
     /// motion going.
     pub fn logic(&mut self, ctx: &egui::Context) {
         self.handle_close_request(ctx);
@@ -197,7 +198,7 @@ impl Window {
         ctx.request_repaint_after(Duration::from_millis(30));
     }
 
-    /// Handles the request to close the window: motion is stopped first, then any questions are asked.
+    /// Handles a request to close the window. All motion is stopped before any questions are asked.
     fn handle_close_request(&mut self, ctx: &egui::Context) {
         let (asked, minimised) = ctx.input(|input| {
             let viewport = input.raw.viewport();
@@ -220,7 +221,7 @@ impl Window {
         }
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         actions.extend(dropped.iter().map(|file| Action::Open(file.path().to_owned())));
-        let (moves, asks) = (self.studio.moves_by_hand(), self.asks());
+        let (moves, asks) = (self.studio.moves_by_hand(), self.is_asking());
         if self.keys.take(ctx, moves, asks) {
             actions.push(Action::StopMotion);
         }
@@ -255,7 +256,7 @@ impl Window {
         }
     }
 
-    /// Carries out a command chosen by its key or in the command palette.
+    /// Carries out a command chosen by its shortcut or in the command palette.
     fn carry_out(&mut self, effect: Effect, actions: &mut Vec<Action>) {
         let Window { studio, views, docks, .. } = self;
         match effect {
@@ -291,16 +292,16 @@ impl Window {
             || self.views.about
             || self.views.palette.is_some()
             || self.studio.comparison().is_some();
-        self.studio.connect.is_some() || self.asks() || dialog
+        self.studio.connect.is_some() || self.is_asking() || dialog
     }
 
-    fn asks(&self) -> bool {
+    fn is_asking(&self) -> bool {
         let asks = self.studio.question.is_some() || self.studio.diverged.is_some();
         asks || self.studio.selected_device().is_some_and(AnyDevice::is_reviewing)
     }
 
     /// Handles Esc, which first stops what is running and then closes what is open. Anything that holds the keyboard or
-    /// pointer takes precedence: a half-typed byte, an open menu, a field being dragged.
+    /// pointer takes precedence, such as a half-typed byte, an open menu or a field being dragged.
     fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
         // Pressed while this window moves a drive, it applies to the motion, whatever else is open or dragged.
         let moves = self.studio.moves_by_hand();
@@ -323,7 +324,7 @@ impl Window {
         }
         let views = &mut self.views;
         if !moves
-            && !self.studio.works()
+            && !self.studio.is_working()
             && (views.palette.take().is_some()
                 || views.file.take().is_some()
                 || std::mem::take(&mut views.about)

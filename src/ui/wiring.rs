@@ -6,7 +6,7 @@ use super::Theme;
 use super::controls::paragraph;
 use crate::app::Catalogue;
 
-/// Draws a list of wires with texts from the given catalogue; wire names share a column of the given width.
+/// Draws a list of wires with texts from the given catalogue. The wire names form a column of the given width.
 pub(crate) fn wires_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -24,7 +24,7 @@ pub(crate) fn wires_ui(
     }
 }
 
-/// Checks that each wire has the given name and English text, and a different German text.
+/// Checks that each wire has the given name and English text, and a German text that differs from the English.
 #[cfg(test)]
 pub(crate) fn check_wires(texts: &'static Catalogue, wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
     assert_eq!(wires.len(), expected.len());
@@ -34,7 +34,7 @@ pub(crate) fn check_wires(texts: &'static Catalogue, wires: &[(&str, &'static st
     }
 }
 
-/// Checks that a card's notes have the given English texts, and different German texts.
+/// Checks that a card's notes have the given English texts, and German texts that differ from the English.
 #[cfg(test)]
 pub(crate) fn check_notes(texts: &'static Catalogue, notes: &[&'static str], facts: &[&str]) {
     use crate::app::Language::{English, German};

@@ -177,12 +177,12 @@ fn undoing_a_restore_deletes_only_the_fields_it_created() {
         let told = bench.run(&restore).json();
         let backup = told["backup"].as_str().unwrap().to_owned();
         assert_eq!(
-            target.host(&["40 4E"]),
+            target.host_address(&["40 4E"]),
             [frame("40 4E 6D 03")],
             "two fields of one block were created, 109 of 112 are free"
         );
         if changed {
-            target.host(&["40 4B 01 00 01 55 77"]);
+            target.host_address(&["40 4B 01 00 01 55 77"]);
         }
         target.requests();
         let undo = bench.run(&[&["restore", &backup, "--yes"], &at[..]].concat());
@@ -193,12 +193,12 @@ fn undoing_a_restore_deletes_only_the_fields_it_created() {
             // The last one is as written; the one before it is not.
             assert_eq!(defined, [deleted(2)], "{undo:?}");
             assert!(undo.err.contains("Data field 1"), "{undo:?}");
-            assert_eq!(target.host(&["40 4A 01 00 01 55"]), [frame("40 4A 01 00 01 77")]);
+            assert_eq!(target.host_address(&["40 4A 01 00 01 55"]), [frame("40 4A 01 00 01 77")]);
         } else {
             assert_eq!(defined, [deleted(2), deleted(1)], "{undo:?}");
             assert!(!undo.err.contains("data field"), "{undo:?}");
         }
         // The previous fields have their bytes again.
-        assert_eq!(target.host(&["40 4A 00 00 01 55"]), [frame("40 4A 00 00 01 AA")]);
+        assert_eq!(target.host_address(&["40 4A 00 00 01 55"]), [frame("40 4A 00 00 01 AA")]);
     }
 }

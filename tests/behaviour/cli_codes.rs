@@ -7,9 +7,9 @@ use super::support::{Bench, Foreign, finish, frame};
 const FIELDS: &str = r#"[{"status":"C8","bytes":"0815"},{"status":"E8","bytes":"0102"}]"#;
 
 /// Starts an encoder whose code 2 is A7h and protects field 1.
-fn guarded(bench: &Bench) -> Option<Foreign> {
+fn run_guarded(bench: &Bench) -> Option<Foreign> {
     let encoder = bench.encoder(&["--fields", FIELDS])?;
-    assert_eq!(encoder.host(&["40 4F 02 55 A7"]), [frame("40 4F 02")]);
+    assert_eq!(encoder.host_address(&["40 4F 02 55 A7"]), [frame("40 4F 02")]);
     encoder.requests();
     Some(encoder)
 }
@@ -17,7 +17,7 @@ fn guarded(bench: &Bench) -> Option<Foreign> {
 #[test]
 fn a_field_with_an_unknown_code_is_saved_as_locked_and_not_written() {
     let bench = Bench::new();
-    let Some(encoder) = guarded(&bench) else { return };
+    let Some(encoder) = run_guarded(&bench) else { return };
     let file = bench.file("p.ron");
     let ran = bench.run(&["save", "hiperface", "--link", &encoder.url, "-o", &file, "--json"]);
     ran.json();
@@ -37,7 +37,7 @@ fn a_field_with_an_unknown_code_is_saved_as_locked_and_not_written() {
 #[test]
 fn a_complete_save_fails_and_leaves_no_file() {
     let bench = Bench::new();
-    let Some(encoder) = guarded(&bench) else { return };
+    let Some(encoder) = run_guarded(&bench) else { return };
     let file = bench.file("p.ron");
     let ran = bench.run(&["save", "hiperface", "--complete", "--link", &encoder.url, "-o", &file, "--json"]);
     ran.fails(1, &["field 1", "code 2"]);
@@ -47,7 +47,7 @@ fn a_complete_save_fails_and_leaves_no_file() {
 #[test]
 fn a_code_opens_a_field_and_is_never_printed() {
     let bench = Bench::new();
-    let Some(encoder) = guarded(&bench) else { return };
+    let Some(encoder) = run_guarded(&bench) else { return };
     let trace = bench.file("t.trace");
     let mut shown = String::new();
     let mut codes_in = |arguments: &[&str], environment: Option<&str>| {
@@ -92,7 +92,7 @@ fn a_code_opens_a_field_and_is_never_printed() {
 #[test]
 fn a_wrong_code_is_refused_with_its_number() {
     let bench = Bench::new();
-    let Some(encoder) = guarded(&bench) else { return };
+    let Some(encoder) = run_guarded(&bench) else { return };
     for arguments in [&["read", "hiperface", "field:1"][..], &["write", "hiperface", "field:1", "00", "--yes"]] {
         let ran = bench.run(&[arguments, &["--link", &encoder.url, "--code", "2=A8", "--json"]].concat());
         ran.fails(1, &["code 2"]);
@@ -119,7 +119,7 @@ fn an_invalid_code_is_not_echoed() {
 #[test]
 fn a_recording_without_the_reply_does_not_reveal_the_code() {
     let bench = Bench::new();
-    let Some(encoder) = guarded(&bench) else { return };
+    let Some(encoder) = run_guarded(&bench) else { return };
     let trace = bench.file("t.trace");
     bench.run(&["identify", "hiperface", "--link", &encoder.url, "--trace", &trace, "--json"]).json();
     bench.write("t.trace", bench.read("t.trace") + "1.0 > 40 4C 01 0D\n1.1 < 40 4C 01 E8 E5\n");

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::support::{Bench, asked, frame, python};
+use super::support::{Bench, frame, python, requested_frame};
 
 #[test]
 fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
@@ -14,14 +14,14 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
     // On a terminal the program asks about a drive as well (issue 22.30), unless the answer was given.
     let arguments = ["write", "hiperface", "field:0@1", "16", "--only-master", "--link", &encoder.url];
     for no in ["n\n", "\n", "what?\n"] {
-        let ran = asked(&bench, &arguments, no);
+        let ran = requested_frame(&bench, &arguments, no);
         assert_eq!(ran.status, Some(1), "{ran:?}");
         for words in ["field:0@1+1", "15", "16", "nothing was written"] {
             assert!(ran.out.contains(words), "{words}: {ran:?}");
         }
         assert_eq!(encoder.writes(), [""; 0]);
     }
-    let ran = asked(&bench, &arguments, "y\n");
+    let ran = requested_frame(&bench, &arguments, "y\n");
     assert_eq!(ran.status, Some(0), "{ran:?}");
     assert_eq!(encoder.writes(), [frame("40 4B 00 01 01 55 16")]);
 }
@@ -37,7 +37,7 @@ fn on_a_terminal_the_user_must_rule_out_a_drive_on_the_line() {
     }
     let arguments = ["identify", "hiperface", "--link", &encoder.url];
     for reply in ["yes\n", "y\n", "not sure\n", "\n"] {
-        let ran = asked(&bench, &arguments, reply);
+        let ran = requested_frame(&bench, &arguments, reply);
         assert_eq!(ran.status, Some(1), "{ran:?}");
         assert!(
             ran.out.contains("Is a drive or controller connected") && ran.out.contains("Nothing was sent"),
@@ -45,7 +45,7 @@ fn on_a_terminal_the_user_must_rule_out_a_drive_on_the_line() {
         );
         assert_eq!(encoder.requests(), [""; 0], "{reply:?}");
     }
-    let ran = asked(&bench, &arguments, "no\n");
+    let ran = requested_frame(&bench, &arguments, "no\n");
     assert!(ran.status == Some(0) && ran.out.contains("serial number"), "{ran:?}");
 }
 
@@ -83,7 +83,7 @@ fn mounting_values_are_not_copied_to_another_encoder_by_default() {
     assert!(ran.err.contains("Set up these values again") && ran.err.contains("field:0@0+16"), "{ran:?}");
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
     // For its own encoder no value is left out.
-    source.host(&["40 4B 00 00 01 55 00"]);
+    source.host_address(&["40 4B 00 00 01 55 00"]);
     let own = bench.run(&["restore", &file, "--yes", "--link", &source.url, "--json"]).json();
     assert_eq!(own["written"], json!(1));
 }
@@ -129,16 +129,16 @@ fn on_a_terminal_save_asks_before_replacing_a_file() {
     }
     std::fs::write(&file, "dear").unwrap();
     for no in ["n\n", "\n"] {
-        let ran = asked(&bench, &save, no);
+        let ran = requested_frame(&bench, &save, no);
         assert_eq!(ran.status, Some(1), "{ran:?}");
         assert!(ran.out.contains("already exists") && ran.out.contains("was not changed"), "{ran:?}");
         assert_eq!(bench.read("layout.ron"), "dear");
     }
-    assert_eq!(asked(&bench, &save, "y\n").status, Some(0));
+    assert_eq!(requested_frame(&bench, &save, "y\n").status, Some(0));
     assert_eq!(bench.read("layout.ron"), written);
     // With an option as the answer, there is no question.
     std::fs::write(&file, "dear").unwrap();
-    assert_eq!(asked(&bench, &[&save[..], &["--force"]].concat(), "").status, Some(0));
+    assert_eq!(requested_frame(&bench, &[&save[..], &["--force"]].concat(), "").status, Some(0));
     assert_eq!(bench.read("layout.ron"), written);
 }
 
@@ -158,7 +158,7 @@ fn a_write_refused_for_unknown_wear_needs_no_confirmation() {
         &["write", "hiperdrive", "24", "5"],
     ];
     for write in writes {
-        let ran = asked(&bench, &[write, &["--link", "sim:"]].concat(), "y\n");
+        let ran = requested_frame(&bench, &[write, &["--link", "sim:"]].concat(), "y\n");
         assert_eq!(ran.status, Some(1), "{ran:?}");
         assert!(ran.out.contains("--force-wear") && !ran.out.contains("Write?"), "{ran:?}");
     }

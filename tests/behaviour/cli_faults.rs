@@ -131,7 +131,7 @@ fn an_unprotected_field_is_named_and_the_next_restore_protects_it() {
     assert_eq!(encoder.writes(), [frame("40 4D 00 C8 55"), frame("40 4B 00 00 04 55 0A 0B 0C 0D")]);
 
     bench.run(&["restore", &file, "--yes", "--link", &encoder.url, "--json"]).json();
-    assert_eq!(encoder.host(&["40 4C 00"]), [frame("40 4C 00 88")]);
+    assert_eq!(encoder.host_address(&["40 4C 00"]), [frame("40 4C 00 88")]);
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
 }
 

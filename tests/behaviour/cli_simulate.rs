@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 
-use super::support::{Bench, Simulated, frame, host, python};
+use super::support::{Bench, Simulated, frame, host_address, python};
 
 /// Checks an encoder with factory settings against the reference, with the two ways an error frame may begin.
 fn examine(path: &str) {
-    let replies = host(
+    let replies = host_address(
         path,
         &[
             "40 52 12",
@@ -60,8 +60,11 @@ fn a_pseudoterminal_answers_the_reference_frames_for_successive_clients() {
     assert!(bench.path("enc").is_symlink());
     examine(&simulated.place);
     // The next client finds the content that the first has left.
-    assert_eq!(host(&simulated.place, &["40 4A 00 00 04 55 5B"]), ["40 4A 00 00 04 DE AD BE EF 2C"]);
-    assert_eq!(host(&simulated.place, &["FF 50 AF", "40 53 13", "40 50 10"]), ["40 50 00 10", "-", "40 50 00 10"]);
+    assert_eq!(host_address(&simulated.place, &["40 4A 00 00 04 55 5B"]), ["40 4A 00 00 04 DE AD BE EF 2C"]);
+    assert_eq!(
+        host_address(&simulated.place, &["FF 50 AF", "40 53 13", "40 50 10"]),
+        ["40 50 00 10", "-", "40 50 00 10"]
+    );
     let url = format!("serial:{}", simulated.place);
     let told = bench.run(&["identify", "hiperface", "--link", &url, "--json"]).json();
     assert_eq!((&told["address"], &told["data_fields"]), (&json!(0x40), &json!(1)));
@@ -79,7 +82,7 @@ fn a_tcp_port_answers_the_reference_frames_for_successive_clients() {
     assert!(simulated.place.starts_with("127.0.0.1:") && !simulated.place.ends_with(":0"));
     let path = format!("tcp:{}", simulated.place);
     examine(&path);
-    assert_eq!(host(&path, &["40 4A 00 00 04 55 5B"]), ["40 4A 00 00 04 DE AD BE EF 2C"]);
+    assert_eq!(host_address(&path, &["40 4A 00 00 04 55 5B"]), ["40 4A 00 00 04 DE AD BE EF 2C"]);
     let told = bench.run(&["identify", "hiperface", "--link", &path, "--json"]).json();
     assert_eq!(told["data_fields"], json!(1));
     simulated.end("TERM");
@@ -142,14 +145,15 @@ fn power_lost_in_a_store_returns_with_the_next_client() {
         return;
     }
     let simulated = Simulated::start(&bench, &["hiperface", "--pty", &bench.file("enc"), "--fault", "die-in-store:1"]);
-    let replies = host(&simulated.place, &["40 4D 00 C9 55 91", "40 4B 00 00 04 55 DE AD BE EF 78", "40 50 10"]);
+    let replies =
+        host_address(&simulated.place, &["40 4D 00 C9 55 91", "40 4B 00 00 04 55 DE AD BE EF 78", "40 50 10"]);
     assert_eq!(replies, ["40 4D 00 C9 C4", "-", "-"]);
     sleep(Duration::from_millis(1500));
     let url = format!("serial:{}", simulated.place);
     let arguments = ["write", "hiperface", "field:0@0+4", "DEADBEEF", "--yes", "--link", &url, "--json"];
     let told = bench.run(&arguments).json();
     assert_eq!(told["verified"], told["written"]);
-    assert_eq!(host(&simulated.place, &["40 4A 00 00 04 55 5B"]), ["40 4A 00 00 04 DE AD BE EF 2C"]);
+    assert_eq!(host_address(&simulated.place, &["40 4A 00 00 04 55 5B"]), ["40 4A 00 00 04 DE AD BE EF 2C"]);
 }
 
 #[test]

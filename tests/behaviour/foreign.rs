@@ -88,7 +88,7 @@ fn write_stores_exactly_these_bytes() {
     let told = bench.run(&arguments).json();
     assert_eq!((&told["written"], &told["write_cycles"]), (&json!(2), &json!(1)));
     assert_eq!(encoder.writes(), [frame("40 4B 00 03 02 55 AA BB")]);
-    assert_eq!(encoder.host(&["40 4A 00 02 04 55"]), [frame("40 4A 00 02 04 FF AA BB FF")]);
+    assert_eq!(encoder.host_address(&["40 4A 00 02 04 55"]), [frame("40 4A 00 02 04 FF AA BB FF")]);
     // Repeated: nothing differs, nothing is sent.
     encoder.requests();
     assert_eq!(bench.run(&arguments).json()["write_cycles"], json!(0));
@@ -105,7 +105,7 @@ fn changes_by_another_host_are_found_restored_and_verified() {
     assert_eq!((&equal["equal"], &equal["differences"], &equal["missing"]), (&json!(true), &json!([]), &json!([])));
     assert!(equal["compared"].as_u64() >= Some(48));
 
-    encoder.host(&["40 4B 00 03 02 55 AA BB", "40 4B 00 1F 01 55 00"]);
+    encoder.host_address(&["40 4B 00 03 02 55 AA BB", "40 4B 00 1F 01 55 00"]);
     let differences = json!([
         {"item": "field:0@3+2", "left": "FFFF", "right": "AABB"},
         {"item": "field:0@31+1", "left": "FF", "right": "00"},
@@ -125,7 +125,7 @@ fn changes_by_another_host_are_found_restored_and_verified() {
     let backup = told["backup"].as_str().unwrap();
     let undone = bench.run(&[&["restore", backup, "--yes"], &link[..]].concat()).json();
     assert_eq!(undone["written"], json!(3));
-    assert_eq!(encoder.host(&["40 4A 00 03 02 55"]), [frame("40 4A 00 03 02 AA BB")]);
+    assert_eq!(encoder.host_address(&["40 4A 00 03 02 55"]), [frame("40 4A 00 03 02 AA BB")]);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use encoder_studio::store::{DeviceKey, Logbook, Outcome};
 use jiff::Timestamp;
 use serde_json::{Value, json};
 
-use super::support::{Bench, Foreign, Ran, asked};
+use super::support::{Bench, Foreign, Ran, requested_frame};
 
 fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
@@ -288,11 +288,11 @@ fn the_stores_of_an_eeprom_are_counted() {
     encoder.requests();
     let typed = ["write", "interbus", "zero-shift", "5", "--link", &encoder.url];
     for no in ["n\n", "y\nn\n"] {
-        let ran = asked(&bench, &typed, no);
+        let ran = requested_frame(&bench, &typed, no);
         assert!(ran.status == Some(1) && ran.out.contains("nothing was written"), "{ran:?}");
     }
     assert!(written(&encoder).is_empty());
-    let ran = asked(&bench, &typed, "y\ny\n");
+    let ran = requested_frame(&bench, &typed, "y\ny\n");
     assert!(ran.status == Some(0) && ran.out.contains("must be stopped"), "{ran:?}");
     assert_eq!(written(&encoder), ["W 0A000005", "STORE parameters"]);
     wear_to(449);

@@ -32,7 +32,7 @@ fn family(text: &str) -> Layout {
 
 /// Returns an unusual layout: Gray over everything, parity, both words of a repetition, exchanged wires, an error bit that
 /// is active at 0.
-fn unusual() -> Layout {
+fn unusual_step_cost() -> Layout {
     Layout::new(Descriptor {
         clocks: 51,
         code: Code::Gray,
@@ -71,7 +71,7 @@ fn layouts() -> Vec<(String, Layout)> {
         "ttk70,clocks=31",
     ];
     let mut all: Vec<(String, Layout)> = texts.iter().map(|text| ((*text).to_owned(), family(text))).collect();
-    all.push(("unusual */ /* ??/".to_owned(), unusual()));
+    all.push(("unusual */ /* ??/".to_owned(), unusual_step_cost()));
     all
 }
 

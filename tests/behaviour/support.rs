@@ -291,8 +291,8 @@ impl Foreign {
     }
 
     /// Sends frames as another host would; the checksum is added.
-    pub(crate) fn host(&self, frames: &[&str]) -> Vec<String> {
-        host(&self.place, &[&["--sum"], frames].concat())
+    pub(crate) fn host_address(&self, frames: &[&str]) -> Vec<String> {
+        host_address(&self.place, &[&["--sum"], frames].concat())
     }
 }
 
@@ -303,7 +303,7 @@ impl Drop for Foreign {
 }
 
 /// Runs a foreign HIPERFACE host at a path or `tcp:HOST:PORT`: a line per reply, `-` for none.
-pub(crate) fn host(path: &str, arguments: &[&str]) -> Vec<String> {
+pub(crate) fn host_address(path: &str, arguments: &[&str]) -> Vec<String> {
     foreign_host("master.py", path, arguments)
 }
 
@@ -364,7 +364,7 @@ impl Drop for Simulated {
 const ON_A_TERMINAL: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
 
 /// Runs the program on a terminal on which an answer is typed.
-pub(crate) fn asked(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
+pub(crate) fn requested_frame(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
     let program = bench.program(arguments);
     let mut command = Command::new("python3");
     command.args(["-c", ON_A_TERMINAL]).arg(program.get_program()).args(program.get_args());

@@ -14,7 +14,7 @@ use crate::support::{Desk, Fields, backup, bytes, restore_of};
 /// 0, the protected field, a plain one, and a new one that is to be protected.
 fn scene() -> (Desk, HiperfaceProfile) {
     let mut desk = Desk::new("codes=2:66");
-    desk.know_code(2, 0x66);
+    desk.remember_code(2, 0x66);
     let status = DataFieldStatus::from_byte;
     for (number, byte, count) in [(1, 0xE8, 16), (2, 0xC9, 32), (3, 0xC8, 16)] {
         desk.change(Change::CreateField { number, status: status(byte) }).unwrap();
@@ -124,7 +124,7 @@ impl Ending<'_> {
         for field in [1, 4] {
             let open = memory.get(usize::from(field)).is_some_and(|(status, _)| status & 0x40 != 0);
             let told = interrupted.end_state.unlocked.contains(&field);
-            let changes_it = |op: &Op| op.field() == Some(field) && (op.unlocks() || op.locks(field));
+            let changes_it = |op: &Op| op.field() == Some(field) && (op.is_unlock() || op.locks(field));
             let unclear = in_flight.is_some_and(changes_it);
             assert!(open == told || told && unclear, "{context}: field {field} open {open}, told {told}");
         }
@@ -141,13 +141,13 @@ impl Ending<'_> {
 /// Checks that from any state the profile can be restored, and that the backup restores the previous content.
 fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fields, kept: Option<&HiperfaceProfile>) {
     let mut forwards = desk.copied();
-    forwards.know_code(2, 0x66);
+    forwards.remember_code(2, 0x66);
     forwards.restore(wanted).unwrap();
     assert_eq!(forwards.memory(), fields_of(wanted));
     assert_eq!(forwards.prepare(restore_of(wanted)).unwrap().plan.ops, [], "a third run has nothing to do");
     let Some(kept) = kept else { return };
     let mut backwards = desk.copied();
-    backwards.know_code(2, 0x66);
+    backwards.remember_code(2, 0x66);
     backwards.restore(kept).unwrap();
     // A field that was created remains; restoring never deletes.
     assert_eq!(backwards.memory()[..before.len()], before[..]);
@@ -162,7 +162,7 @@ fn disturbed(
 ) -> bool {
     let (original, wanted) = scene;
     let mut desk = original.copied();
-    desk.know_code(2, 0x66);
+    desk.remember_code(2, 0x66);
     let (before, worn_before) = (desk.memory(), desk.wear());
     let prepared = desk.prepare(restore_of(wanted)).unwrap();
     disturb(&mut desk);
@@ -235,7 +235,7 @@ fn a_warning_during_a_write_hides_no_operation() {
     for store in 1..=7 {
         for steps in 0..40 {
             let mut desk = original.copied();
-            desk.know_code(2, 0x66);
+            desk.remember_code(2, 0x66);
             let (before, worn_before) = (desk.memory(), desk.wear());
             let prepared = desk.prepare(restore_of(&wanted)).unwrap();
             desk.session.set_cancel(Cancel::after(steps));
@@ -305,7 +305,7 @@ fn power_lost_in_any_store_is_reported() {
     // field 0: 3, field 1: 3, field 2: 1, field 4: 1
     for store in 1..=8 {
         let mut desk = original.copied();
-        desk.know_code(2, 0x66);
+        desk.remember_code(2, 0x66);
         let before = desk.memory();
         let prepared = desk.prepare(restore_of(&wanted)).unwrap();
         let stores =
@@ -325,7 +325,7 @@ fn power_lost_in_any_store_is_reported() {
         assert_can_be_completed(&reconnected, &wanted, &before, Some(&backup(&path)));
     }
     let mut desk = original.copied();
-    desk.know_code(2, 0x66);
+    desk.remember_code(2, 0x66);
     let stores =
         desk.bus().encoders()[0].wear().writes(encoder_studio::devices::hiperface::protocol::Command::StoreData);
     desk.bus().set_faults(&format!("die-in-store:{}", stores + 9).parse().unwrap());

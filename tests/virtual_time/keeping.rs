@@ -76,8 +76,8 @@ fn a_backup_is_a_profile_of_the_previous_state() {
 #[test]
 fn no_access_code_is_stored() {
     let mut desk = Desk::new("codes=0:9D,2:66");
-    desk.know_code(0, 0x9D);
-    desk.know_code(2, 0x66);
+    desk.remember_code(0, 0x9D);
+    desk.remember_code(2, 0x66);
     desk.change(store_byte(0xEE)).unwrap();
     let number = CodeNumber::new(2).unwrap();
     desk.change(Change::ChangeCode { number, new: AccessCode::new(0xC3) }).unwrap();

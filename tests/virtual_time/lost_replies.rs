@@ -65,7 +65,7 @@ fn a_changed_access_code_is_used_afterwards() {
     robbed(
         "codes=0:9D",
         &change,
-        |desk| desk.know_code(0, 0x9D),
+        |desk| desk.remember_code(0, 0x9D),
         |desk, context| {
             assert_eq!(desk.bus().encoders()[0].memory().code(zero).byte(), 0xC3, "{context}");
             // The session knows the code as well: it guards field 0.

@@ -12,7 +12,7 @@ const NOISE: [&str; 5] = ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garb
 /// Returns three fields with varied content besides the name plate; then the line becomes noisy.
 fn noisy_desk(seed: u8, noise: &str) -> Desk {
     let mut desk = Desk::new(&format!("seed={seed}&codes=2:66&position={}", u32::from(seed) * 64_123));
-    desk.know_code(2, 0x66);
+    desk.remember_code(2, 0x66);
     for (number, status) in [(1, 0xE8), (2, 0xCB), (3, 0xC7)] {
         let status = encoder_studio::devices::hiperface::protocol::DataFieldStatus::from_byte(status);
         desk.change(Change::CreateField { number, status }).unwrap();
@@ -21,7 +21,7 @@ fn noisy_desk(seed: u8, noise: &str) -> Desk {
     }
     set_noise(&desk, noise);
     let mut noisy = desk.copied();
-    noisy.know_code(2, 0x66);
+    noisy.remember_code(2, 0x66);
     noisy
 }
 
@@ -138,7 +138,7 @@ fn a_save_is_correct_or_an_error() {
             let mut desk = noisy_desk(seed, "");
             let truth = desk.save().unwrap();
             let mut desk = desk.copied();
-            desk.know_code(2, 0x66);
+            desk.remember_code(2, 0x66);
             set_noise(&desk, noise);
             match desk.save() {
                 Ok(profile) => {

@@ -231,7 +231,7 @@ impl Desk {
         self.tap.lock().unwrap()
     }
 
-    pub(crate) fn know_code(&mut self, number: u8, code: u8) {
+    pub(crate) fn remember_code(&mut self, number: u8, code: u8) {
         self.session.codes_mut().set(CodeNumber::new(number).unwrap(), AccessCode::new(code));
     }
 

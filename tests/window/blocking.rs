@@ -89,7 +89,7 @@ fn a_search_on_a_hanging_link_can_be_cancelled() {
 #[cfg(unix)]
 #[test]
 fn a_hanging_disk_blocks_nothing() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let (profile, types) = (desk.outside.path("pipe.ron"), desk.outside.store().device_file("hiperface"));
     pipe(&profile);
     pipe(&types);
@@ -108,7 +108,7 @@ fn a_hanging_disk_blocks_nothing() {
 #[cfg(unix)]
 #[test]
 fn a_hanging_disk_does_not_keep_the_window_open() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let settings = desk.outside.store().settings_path();
     desk.until("the settings are kept", |_| settings.exists());
     desk.settle();
@@ -150,7 +150,7 @@ fn hanging_settings_do_not_delay_the_start() {
 
 #[test]
 fn an_unwritable_folder_is_reported() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.ask(Hiperface::Save(desk.outside.path("no/such/folder/mine.ron")));
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.severity == Severity::Error));
     assert_eq!(desk.notice_ids(Severity::Error), ["file.no_folder", "session.not_saved"]);
@@ -172,7 +172,7 @@ fn refused(desk: &mut Desk) -> &'static str {
 
 #[test]
 fn without_a_backup_nothing_is_written() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     fs::create_dir_all(desk.outside.path("data")).unwrap();
     fs::write(desk.outside.path("data/backups"), "a file in the way").unwrap();
     assert_eq!(refused(&mut desk), "write.not_kept");
@@ -183,7 +183,7 @@ fn without_a_backup_nothing_is_written() {
 /// does.
 #[test]
 fn without_a_logbook_a_write_needs_a_permission_and_warns() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     fs::create_dir_all(desk.outside.store().logbook_path()).unwrap();
     assert_eq!((refused(&mut desk), desk.wire().wear()), ("write.uncounted", 0));
     desk.command(DeviceCommand::Review);
@@ -209,7 +209,7 @@ fn without_polling(condition: impl Fn() -> bool) {
 
 #[test]
 fn unread_samples_and_frames_are_counted_and_the_newest_kept() {
-    let mut desk = Desk::begun("rpm=60");
+    let mut desk = Desk::new_form("rpm=60");
     let wire = desk.wire();
     desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
     without_polling(|| wire.count(0x42) > 10_500);

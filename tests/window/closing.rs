@@ -10,7 +10,7 @@ use crate::support::Desk;
 
 #[test]
 fn the_window_closes_if_nothing_would_be_lost() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     assert!(!desk.studio.may_close());
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
     desk.act(Action::Close);
@@ -20,7 +20,7 @@ fn the_window_closes_if_nothing_would_be_lost() {
 
 #[test]
 fn a_write_ends_at_a_safe_point_before_closing() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.put(0, 2, b"Y");
     desk.command(DeviceCommand::Review);
@@ -49,7 +49,7 @@ fn a_write_ends_at_a_safe_point_before_closing() {
 
 #[test]
 fn escape_stops_first_then_closes_the_dialog_then_the_review() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
     desk.until_planned();
@@ -72,7 +72,7 @@ fn escape_stops_first_then_closes_the_dialog_then_the_review() {
 
 #[test]
 fn closing_the_review_cancels_planning() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.wire().hold_at(0x56, 1);
     desk.command(DeviceCommand::Review);
@@ -87,7 +87,7 @@ fn closing_the_review_cancels_planning() {
 
 #[test]
 fn a_writing_review_stays_open_until_the_end() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
     desk.until_planned();
@@ -105,7 +105,7 @@ fn a_writing_review_stays_open_until_the_end() {
 
 #[test]
 fn closing_a_reading_session_ends_its_job() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.wire().hold_at(0x46, 1);
     desk.ask(Hiperface::ReadCounter);
     desk.wire().wait_until_held();

@@ -75,7 +75,7 @@ impl Desk {
 
 #[test]
 fn nothing_is_read_before_the_checklist_is_complete() {
-    let mut desk = Desk::begun(AT_REST);
+    let mut desk = Desk::new_form(AT_REST);
     let before = desk.wire().sent();
     for (change, why) in [
         ((|_| {}) as fn(&mut Form), "commutation.unprepared"),
@@ -101,7 +101,7 @@ fn nothing_is_read_before_the_checklist_is_complete() {
 
 #[test]
 fn a_complete_run_stores_the_offset_in_the_encoder() {
-    let mut desk = Desk::begun(AT_REST);
+    let mut desk = Desk::new_form(AT_REST);
     desk.prepare();
     // Polled meanwhile: the readings take place in between.
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::ZERO)));
@@ -182,7 +182,7 @@ fn a_typed_position_yields_the_offset_of_the_reference() {
 
 #[test]
 fn positions_too_far_apart_are_refused() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.prepare();
     // Half a period of 128 is 1.40625°, with four pole pairs 5.625°.
     desk.type_in(Slot::OneSide, "127.9");
@@ -201,7 +201,7 @@ fn positions_too_far_apart_are_refused() {
 
 #[test]
 fn the_second_vector_reveals_wiring_faults() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.prepare();
     desk.edit(|form| form.address = "0".to_owned());
     desk.type_in(Slot::OneSide, "4");
@@ -239,7 +239,7 @@ fn the_second_vector_reveals_wiring_faults() {
 
 #[test]
 fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
-    let mut desk = Desk::begun(AT_REST);
+    let mut desk = Desk::new_form(AT_REST);
     desk.prepare();
     desk.read(Slot::OneSide);
     desk.read(Slot::OtherSide);
@@ -262,7 +262,7 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
 /// Section 5: with 16 periods and 5 pole pairs a step is 112.5° electrical; with 4 of 128 periods 14°.
 #[test]
 fn method_2_is_refused_if_its_step_is_too_large() {
-    let mut desk = Desk::begun(AT_REST);
+    let mut desk = Desk::new_form(AT_REST);
     desk.prepare();
     desk.type_in(Slot::OneSide, "3.47");
     for (periods, pairs, result) in [
@@ -296,7 +296,7 @@ fn method_2_is_refused_if_its_step_is_too_large() {
 
 #[test]
 fn a_moving_shaft_is_refused_at_its_entry() {
-    let mut desk = Desk::begun("rpm=60");
+    let mut desk = Desk::new_form("rpm=60");
     desk.prepare();
     desk.read(Slot::OneSide);
     assert_eq!(desk.why_not(), Some("encoder.moving"));
@@ -309,7 +309,7 @@ fn a_moving_shaft_is_refused_at_its_entry() {
 #[test]
 fn a_position_out_of_phase_is_reported() {
     // The word is shifted by exactly half a period against the signals.
-    let mut desk = Desk::begun("position=8");
+    let mut desk = Desk::new_form("position=8");
     desk.prepare();
     for (shift, expected) in [(16, Some("commutation.far_apart")), (4, None), (-20, None)] {
         desk.ask(Hiperface::Plan(Change::ShiftPosition { steps: shift }));
@@ -365,7 +365,7 @@ fn readings_survive_a_lost_cable_but_not_another_encoder() {
 
 #[test]
 fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let path = desk.outside.path("mine.ron");
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", |_| path.exists());
@@ -405,7 +405,7 @@ fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
 
 #[test]
 fn a_linear_encoder_has_no_pole_pairs() {
-    let mut desk = Desk::begun("type=0x90");
+    let mut desk = Desk::new_form("type=0x90");
     desk.prepare();
     desk.type_in(Slot::OneSide, "3.5");
     assert_eq!(desk.offset(), Err("commutation.linear"));

@@ -12,7 +12,7 @@ use crate::support::Desk;
 
 /// The connected encoder, and a profile of it in which the byte at address 0 of field 0 differs: E became X.
 fn with_changed_profile() -> (Desk, std::path::PathBuf) {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let path = desk.outside.path("mine.ron");
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "session.saved"));

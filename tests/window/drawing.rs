@@ -63,7 +63,7 @@ fn pictures(screen: &mut Screen) -> usize {
 
 /// Returns an encoder that is read and edited: with something to review, and to lose.
 fn edited() -> Screen {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
     screen
 }
@@ -71,7 +71,7 @@ fn edited() -> Screen {
 /// Waits until all temporary changes have ended: notices, animations of opening, results of threads.
 fn settle(screen: &mut Screen) {
     for _ in 0..2 {
-        screen.until("nothing runs", |studio| !studio.works());
+        screen.until("nothing runs", |studio| !studio.is_working());
         // Drafts and settings are written on threads.
         for _ in 0..50 {
             screen.harness.step();
@@ -139,7 +139,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     ];
     for (tab, link, is_read) in kinds {
         let mut screen = Screen::opened_in(tab, link, SIZE);
-        screen.until("it is read", |studio| is_read(studio) && !studio.works());
+        screen.until("it is read", |studio| is_read(studio) && !studio.is_working());
         if screen.studio().is_live() {
             screen.key(egui::Key::Escape);
             screen.until("it is not polled", |studio| !studio.is_live());

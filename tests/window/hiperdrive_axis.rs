@@ -134,13 +134,13 @@ fn a_recall_does_not_change_the_drive() {
     let told = words::differences(&seen(&desk)).unwrap().words(Language::English);
     assert!(told.contains("154 is 400 instead of 256") && !told.contains("152"), "{told}");
     // The request is lost: the shown step remains, and names the one that has to be repeated.
-    assert_eq!((axis(&desk).step(), axis(&desk).fallen()), (AxisStep::Jog, Some(AxisStep::Request)));
+    assert_eq!((axis(&desk).step(), axis(&desk).invalidated_text()), (AxisStep::Jog, Some(AxisStep::Request)));
 }
 
 /// Issue 21.6 (a): the pads of the run send their own effort, and the Motion page keeps its own.
 #[test]
 fn the_jog_pads_of_the_setup_have_a_separate_effort() {
-    let mut desk = begun("sim:");
+    let mut desk = new_form("sim:");
     let percent = |value| Percent::new(value).unwrap();
     let chosen = Effort { speed: percent(80), torque: percent(100) };
     act(&mut desk, Hiperdrive::Drive(Motor::JogEffort(chosen)));
@@ -154,7 +154,7 @@ fn the_jog_pads_of_the_setup_have_a_separate_effort() {
         (Motor::SlowJogPress { direction: Direction::Clockwise, repeated: false }, 10, 25),
         (Motor::JogPress { direction: Direction::Clockwise, repeated: false }, 80, 100),
     ] {
-        held_until(&mut desk, press, "it turns", |own| own.moves.held(own.drive()).is_some());
+        held_until(&mut desk, press, "it turns", |own| own.moves.held_motion(own.drive()).is_some());
         let sent = unit(&desk).moves.sent(unit(&desk).drive()).unwrap();
         assert_eq!((sent.speed.get(), sent.torque.get()), (speed, torque));
         act(&mut desk, Hiperdrive::Drive(Motor::JogRelease));
@@ -166,7 +166,7 @@ fn the_jog_pads_of_the_setup_have_a_separate_effort() {
 /// Issue 21.6 (f): typed text is no spindle until the step is left with it; none of it is remembered.
 #[test]
 fn a_pitch_applies_only_after_confirmation() {
-    let mut desk = begun("sim:");
+    let mut desk = new_form("sim:");
     assert_eq!((axis(&desk).entries().pitch.as_str(), unit(&desk).pitch(unit(&desk).drive())), ("", None));
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| own.pitch = "4".to_owned());
@@ -179,7 +179,7 @@ fn a_pitch_applies_only_after_confirmation() {
     let drive = unit(&desk).drive();
     act(&mut desk, Hiperdrive::SetPitch(drive, Some(Length { nanometres: 5_000_000 })));
     desk.settle();
-    assert_eq!((axis(&desk).step(), axis(&desk).fallen()), (AxisStep::Confirm, Some(AxisStep::Scale)));
+    assert_eq!((axis(&desk).step(), axis(&desk).invalidated_text()), (AxisStep::Confirm, Some(AxisStep::Scale)));
 }
 
 /// Issue 21.6 (h): the next run reports an interrupted one, also after a restart of the program.
@@ -348,7 +348,7 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
 
 #[test]
 fn a_write_without_consent_leaves_the_step_unchanged() {
-    let mut desk = begun(FRESH);
+    let mut desk = new_form(FRESH);
     run(&mut desk, Run::Press(Button::Do));
     desk.until("the plan is there", |studio| {
         studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))

@@ -39,7 +39,7 @@ fn lost_control_shows_the_reason_until_taken_again() {
     // Nothing is requested from the device: the loss is reported without that.
     command(&mut desk, DeviceCommand::Poll(None));
     desk.settle();
-    assert_eq!(unit(&desk).why_lost(), None);
+    assert_eq!(unit(&desk).loss_reason(), None);
     fall_silent(&desk);
     desk.until("the loss is told", |studio| {
         let told = |text: &Text| text.id() == "hd_lost.silent";
@@ -47,7 +47,7 @@ fn lost_control_shows_the_reason_until_taken_again() {
     });
     desk.settle();
     assert_eq!(desk.notice_count("hd_lost.silent"), 1);
-    assert_eq!(unit(&desk).why_lost().unwrap().id(), "hd_lost.silent");
+    assert_eq!(unit(&desk).loss_reason().unwrap().id(), "hd_lost.silent");
     drive(&mut desk, Motor::Step { by: 64 });
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_lost.silent", "hd_refused.not_taken"]);
     desk.until("everything is read anew", |studio| {
@@ -57,10 +57,10 @@ fn lost_control_shows_the_reason_until_taken_again() {
     desk.settle();
     act(&mut desk, Hiperdrive::Take);
     desk.until("it is taken again", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_ready());
-    assert_eq!(unit(&desk).why_lost(), None);
+    assert_eq!(unit(&desk).loss_reason(), None);
     act(&mut desk, Hiperdrive::Give);
     desk.until("it is given back", |studio| !is_open(studio));
-    assert_eq!(unit(&desk).why_lost(), None, "nobody has lost it");
+    assert_eq!(unit(&desk).loss_reason(), None, "nobody has lost it");
 }
 
 #[test]

@@ -20,7 +20,7 @@ use crate::support::LONG;
 
 /// An encoder is watched in one session, and a drive is in hand in another.
 pub(crate) fn in_hand() -> Screen {
-    let mut screen = Screen::begun([1280.0, 1200.0]);
+    let mut screen = Screen::new_form([1280.0, 1200.0]);
     screen.click("live.start");
     screen.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     screen.act(Action::Connect(Connect::Open));

@@ -163,7 +163,7 @@ fn a_running_machine_is_not_disturbed_before_standstill_is_confirmed() {
         studio.interbus().is_some_and(|own| own.record.last().is_some() && own.session.is_ready())
     });
     desk.settle();
-    assert!(encoder(&desk).survey.is_none() && encoder(&desk).asks_for_standstill());
+    assert!(encoder(&desk).survey.is_none() && encoder(&desk).needs_standstill());
     let sent = |desk: &Desk| desk.outside.wire(GATE).outs();
     assert_eq!(sent(&desk), 0, "no OUT word");
     wish(&mut desk, DeviceCommand::Read);

@@ -58,7 +58,7 @@ fn a_wire_is_reopened_only_after_its_write_has_ended() {
 #[cfg(unix)]
 #[test]
 fn the_draft_of_a_closed_session_is_awaited() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let draft = desk.outside.path("data/drafts/hiperface-virtual/37-GB0450179.ron");
     std::fs::create_dir_all(draft.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(&draft).status().unwrap().success());

@@ -44,7 +44,7 @@ fn with_a_profile(desk: &mut Desk) {
 
 #[test]
 fn a_stopped_restore_reports_progress_and_can_be_completed() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     with_a_profile(&mut desk);
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     assert_eq!(prepared.plan.ops.len(), 4);
@@ -441,7 +441,7 @@ fn a_late_failure_does_not_affect_newer_live_values() {
 #[test]
 fn stop_and_escape_end_live_values() {
     for stop in [|| Action::Stop, || Action::Escape] {
-        let mut desk = Desk::begun("");
+        let mut desk = Desk::new_form("");
         desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
         desk.until("samples come", |studio| studio.hiperface().unwrap().record.positions() > 3);
         desk.act(stop());

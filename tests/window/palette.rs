@@ -35,7 +35,7 @@ fn find_and_choose(screen: &mut Screen, text: &str) {
 
 #[test]
 fn pages_devices_and_settings_are_found_by_name() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     find_and_choose(&mut screen, "memo");
     assert!(!is_open(&screen));
     assert!(screen.has_button("memory.review"), "the page Memory is open");
@@ -50,7 +50,7 @@ fn pages_devices_and_settings_are_found_by_name() {
 
 #[test]
 fn actions_of_the_shown_device_are_carried_out() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     let before = screen.outside.wire(PORT).count(0x56);
     find_and_choose(&mut screen, "read again");
     screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
@@ -62,7 +62,7 @@ fn actions_of_the_shown_device_are_carried_out() {
 
 #[test]
 fn disabled_actions_and_no_match_do_nothing() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     for typed in ["discard edits", "xyzzy"] {
         find_and_choose(&mut screen, typed);
         assert!(is_open(&screen), "{typed}");
@@ -73,7 +73,7 @@ fn disabled_actions_and_no_match_do_nothing() {
 
 #[test]
 fn arrows_select_and_escape_closes() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     open(&mut screen);
     // Both languages and themes, one below the other.
     type_text(&mut screen, "theme");
@@ -90,7 +90,7 @@ fn arrows_select_and_escape_closes() {
 
 #[test]
 fn a_dialog_keeps_the_palette_closed() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     screen.click("shell.connect");
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::K);
     screen.steps();

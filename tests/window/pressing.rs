@@ -52,7 +52,7 @@ fn check(screen: &Screen, before: &BTreeMap<String, String>, what: &str) {
 
 fn ready(screen: &mut Screen) {
     screen.until("it is ready", |studio| {
-        studio.selected_device().is_some_and(|own| own.is_readable()) && !studio.works()
+        studio.selected_device().is_some_and(|own| own.is_readable()) && !studio.is_working()
     });
 }
 
@@ -95,7 +95,7 @@ fn notices_and_progress_do_not_move_buttons() {
 #[test]
 fn a_click_counts_despite_layout_changes_during_it() {
     for comes in [true, false] {
-        let mut screen = Screen::begun(SIZE);
+        let mut screen = Screen::new_form(SIZE);
         if !comes {
             screen.act(Action::NoThread("told".to_owned()));
         }

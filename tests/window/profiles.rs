@@ -17,7 +17,7 @@ use encoder_studio::store::read_text;
 use crate::support::{Desk, OTHER_PORT, is_review};
 
 fn saved() -> (Desk, std::path::PathBuf) {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let path = desk.outside.path("mine.ron");
     desk.ask(Hiperface::Save(path.clone()));
     desk.until("it is saved", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "session.saved"));
@@ -58,7 +58,7 @@ fn a_profile_of_a_locked_encoder_lists_missing_values() {
     };
     assert_eq!(ids(&desk), (Severity::Warning, vec!["session.saved", "session.saved_locked"]));
 
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"XY");
     let path = desk.outside.path("mine.ron");
     desk.ask(Hiperface::Save(path.clone()));
@@ -76,7 +76,7 @@ fn a_profile_of_a_locked_encoder_lists_missing_values() {
 
 #[test]
 fn saving_suggests_a_file_named_after_the_encoder() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.command(DeviceCommand::AskSave);
     let suggested = "SKM36-GB0450179.ron".into();
     let session = desk.studio.hiperface().unwrap().session.id;
@@ -92,7 +92,7 @@ fn saving_suggests_a_file_named_after_the_encoder() {
 /// Two saves at once: the second is refused, and the first goes to its own file.
 #[test]
 fn a_refused_save_does_not_redirect_another() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let (first, second) = (desk.outside.path("first.ron"), desk.outside.path("second.ron"));
     desk.wire().hold_at(0x4A, 1);
     desk.ask(Hiperface::Save(first.clone()));
@@ -107,7 +107,7 @@ fn a_refused_save_does_not_redirect_another() {
 
 #[test]
 fn an_unreadable_profile_is_reported_and_not_changed() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let path = desk.outside.path("broken.ron");
     for (content, id) in
         [("(schema: 1,, )", "profile.invalid"), ("(schema: 99, device: \"hiperface\")", "profile.schema")]
@@ -342,7 +342,7 @@ fn read_values_can_be_saved_after_the_line_is_lost() {
 /// A typed path replaces nothing without a question.
 #[test]
 fn an_existing_file_is_replaced_only_after_confirmation() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("kept.ron");
     std::fs::write(&path, "dear").unwrap();

@@ -43,7 +43,7 @@ fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
 /// The 4096 turns end during the recording: without unwrapping, position and speed would jump by 4096 turns.
 #[test]
 fn a_wrap_at_the_end_of_the_range_is_no_spike() {
-    let mut desk = Desk::begun("rpm=600&position=16600000");
+    let mut desk = Desk::new_form("rpm=600&position=16600000");
     desk.command(FAST);
     desk.until("the range has ended", |studio| {
         recorded(studio) > 200 && studio.hiperface().unwrap().record.last().is_some_and(|reading| reading.raw < 1 << 23)
@@ -58,7 +58,7 @@ fn a_wrap_at_the_end_of_the_range_is_no_spike() {
 
 #[test]
 fn a_linear_encoder_is_recorded_in_millimetres() {
-    let mut desk = Desk::begun("type=0x90");
+    let mut desk = Desk::new_form("type=0x90");
     desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 5);
     let line = line(recorder(&desk), "position");
@@ -109,7 +109,7 @@ fn another_encoder_starts_another_recording() {
 
 #[test]
 fn the_recording_is_saved_as_a_table() {
-    let mut desk = Desk::begun("rpm=60");
+    let mut desk = Desk::new_form("rpm=60");
     let desk_of = own(&desk);
     desk.act(Action::Recorder(desk_of, recorder::RecorderAction::Clear));
     let path = desk.outside.path("samples.csv");
@@ -145,7 +145,7 @@ fn the_recording_is_saved_as_a_table() {
 
 #[test]
 fn a_snapshot_is_saved() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let picture = Picture::new(1, 1, vec![1, 2, 3]).unwrap();
     desk.act(Action::AskPicture(picture));
     let asked = desk.studio.take_file_question().unwrap();
@@ -157,7 +157,7 @@ fn a_snapshot_is_saved() {
 
 #[test]
 fn watched_values_are_recorded_with_the_position() {
-    let mut desk = Desk::begun("rpm=60&temperature=37");
+    let mut desk = Desk::new_form("rpm=60&temperature=37");
     for what in [Watch::Analogue(0x48), Watch::Analogue(0x07), Watch::Counter] {
         desk.ask(Hiperface::Watch(what, true));
     }
@@ -179,7 +179,7 @@ fn watched_values_are_recorded_with_the_position() {
 
 #[test]
 fn reading_a_position_while_polling_disturbs_nothing() {
-    let mut desk = Desk::begun("rpm=600");
+    let mut desk = Desk::new_form("rpm=600");
     desk.command(FAST);
     for round in 1..=5 {
         desk.until("samples come", |studio| recorded(studio) > round * 40);
@@ -198,7 +198,7 @@ fn reading_a_position_while_polling_disturbs_nothing() {
 /// Issue 21.12: a closed session discards its recording. Elsewhere, too, the question comes from two minutes on.
 #[test]
 fn closing_a_session_with_minutes_of_recording_asks_first() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let id = desk.encoder().session.id;
     desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 5);

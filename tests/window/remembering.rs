@@ -24,7 +24,7 @@ fn restarted(desk: Desk) -> Desk {
 
 #[test]
 fn theme_language_layout_and_links_are_remembered() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let first = (desk.studio.settings.theme, desk.studio.settings.language);
     assert_eq!(first, (ColorScheme::Dark, Language::English));
     desk.act(Action::SetTheme(ColorScheme::Light));

@@ -73,7 +73,7 @@ fn saving_writes_the_open_file_and_save_as_asks_for_another() {
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
 
     // An encoder has no file.
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     save(&mut desk);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
 }
@@ -260,14 +260,14 @@ fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     desk.until("it is open", |studio| studio.interbus().is_some());
     desk.settle();
     let own = |desk: &Desk| desk.studio.interbus().unwrap().session.id;
-    assert!(desk.studio.interbus().unwrap().shown_marks(None).is_empty());
+    assert!(desk.studio.interbus().unwrap().visible_marks(None).is_empty());
     let steps = Interbus::Edit(Box::new(Edit::Steps(1800)));
     let id = own(&desk);
     desk.act(Action::device(id, steps));
-    let told: Vec<_> = desk.studio.interbus().unwrap().shown_marks(None).iter().map(|text| text.id()).collect();
+    let told: Vec<_> = desk.studio.interbus().unwrap().visible_marks(None).iter().map(|text| text.id()).collect();
     assert_eq!(told, ["cams.mark_beyond"]);
     let shown = ProgramNumber::FIRST;
-    assert_eq!(desk.studio.interbus().unwrap().shown_marks(Some(shown)).len(), 1, "once, wherever it is shown");
+    assert_eq!(desk.studio.interbus().unwrap().visible_marks(Some(shown)).len(), 1, "once, wherever it is shown");
     save(&mut desk);
     desk.until("it is saved", |studio| !studio.selected_device().unwrap().is_dirty());
     let standing = desk.studio.services.log.standing().unwrap();

@@ -60,7 +60,7 @@ impl Screen {
     }
 
     /// Creates a window in which the virtual encoder is connected and read.
-    pub(crate) fn begun(size: [f32; 2]) -> Self {
+    pub(crate) fn new_form(size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), None, size);
         screen.until("the encoder is read", |studio| {
             studio.hiperface().is_some_and(|encoder| encoder.session.is_ready() && encoder.identity.is_some())

@@ -60,7 +60,7 @@ impl Served {
         }
     }
 
-    pub(crate) fn asked(&self, request: &Request) -> usize {
+    pub(crate) fn requested_frame(&self, request: &Request) -> usize {
         self.heard.lock().unwrap().iter().filter(|own| *own == request).count()
     }
 }

@@ -35,7 +35,7 @@ fn places(screen: &Screen, ids: &[&'static str]) -> Vec<Rect> {
 
 #[test]
 fn the_lower_panel_is_one_line_until_it_is_opened_and_is_remembered() {
-    let mut screen = Screen::begun(LARGE);
+    let mut screen = Screen::new_form(LARGE);
     let trace = screen.say("panel.trace");
     let is_open = |screen: &Screen| screen.harness.query_all_by_label(&trace).next().is_some();
     use egui_kittest::kittest::Queryable;
@@ -62,7 +62,7 @@ fn the_lower_panel_is_one_line_until_it_is_opened_and_is_remembered() {
 #[test]
 fn nothing_that_can_be_clicked_moves_when_a_message_or_a_job_comes() {
     for size in [LARGE, SMALL] {
-        let mut screen = Screen::begun(size);
+        let mut screen = Screen::new_form(size);
         screen.click("page.memory");
         screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0xEE] });
         let ids = ["memory.undo", "memory.review", "shell.stop", "live.start", "status_line.open", "page.encoder"];
@@ -168,7 +168,7 @@ fn live_values_that_start_by_themselves_only_read() {
 
 #[test]
 fn a_pause_says_which_job_it_is_for_and_moves_nothing() {
-    let mut screen = Screen::begun(LARGE);
+    let mut screen = Screen::new_form(LARGE);
     screen.click("live.start");
     let ids = ["live.pause", "live.hide_plot"];
     let before = places(&screen, &ids);
@@ -189,7 +189,7 @@ fn a_pause_says_which_job_it_is_for_and_moves_nothing() {
 
 #[test]
 fn live_narrows_to_values_alone_and_remembers_it() {
-    let mut screen = Screen::begun(LARGE);
+    let mut screen = Screen::new_form(LARGE);
     let wide = screen.button("live.start").rect().left();
     screen.click("live.hide_plot");
     assert!(!screen.has_button("recorder.large") && screen.studio().settings.values_alone);
@@ -202,7 +202,7 @@ fn live_narrows_to_values_alone_and_remembers_it() {
 #[test]
 fn the_last_frames_are_in_reach_and_stay_while_others_come() {
     use egui_kittest::kittest::Queryable;
-    let mut screen = Screen::begun(SMALL);
+    let mut screen = Screen::new_form(SMALL);
     screen.act(Action::OpenLowerPanel(true));
     screen.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     screen.until("many frames", |studio| studio.hiperface().unwrap().session.trace.lines().len() > 200);
@@ -239,7 +239,7 @@ fn the_last_frames_are_in_reach_and_stay_while_others_come() {
 /// A file that is asked for by its path stands over the window: the keys of the lower panel wait.
 #[test]
 fn the_key_of_the_lower_panel_waits_for_dialogs() {
-    let mut screen = Screen::begun(SMALL);
+    let mut screen = Screen::new_form(SMALL);
     screen.act(Action::TypePath(FileQuestion::Open));
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::T);
     screen.steps();

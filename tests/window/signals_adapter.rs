@@ -66,8 +66,8 @@ fn a_network_adapter_streams_without_a_gap_and_is_stopped() {
         desk.signals(Signals::Source(SourceAction::Stop));
         // The next start waits until this one has released the connection.
     }
-    desk.until("it was told to stop", |_| served.asked(&Request::AnalogStream { on: false }) == 3);
-    assert_eq!(served.asked(&Request::AnalogStream { on: true }), 3);
+    desk.until("it was told to stop", |_| served.requested_frame(&Request::AnalogStream { on: false }) == 3);
+    assert_eq!(served.requested_frame(&Request::AnalogStream { on: true }), 3);
     assert!(desk.notice_ids(Severity::Warning).is_empty(), "{:?}", desk.notice_ids(Severity::Warning));
 }
 
@@ -79,7 +79,7 @@ fn a_closing_window_stops_the_adapter_first() {
     desk.until("samples come", |studio| recorded(studio).0 > 100);
     desk.act(Action::Close);
     desk.until("the window may close", Studio::may_close);
-    assert_eq!(served.asked(&Request::AnalogStream { on: false }), 1);
+    assert_eq!(served.requested_frame(&Request::AnalogStream { on: false }), 1);
 }
 
 #[test]

@@ -112,7 +112,7 @@ fn both_positions_are_read_from_the_selected_encoder() {
 
 #[test]
 fn a_turning_shaft_yields_no_reading() {
-    let mut desk = Desk::begun("rpm=60");
+    let mut desk = Desk::new_form("rpm=60");
     desk.ask(Hiperface::ReadRest);
     desk.until("it is told", |studio| studio.signals().synchronise().problem.is_some());
     let state = desk.studio.signals().synchronise();

@@ -62,7 +62,7 @@ fn every_page_is_drawn_at_every_size_with_a_capture_and_without() {
 
 #[test]
 fn the_tab_opens_by_key_and_click_and_loads_an_example() {
-    let mut screen = Screen::begun(SIZES[0]);
+    let mut screen = Screen::new_form(SIZES[0]);
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Num6);
     screen.steps();
     assert_eq!(screen.studio().settings.tab, crate::tabs::SIGNALS);

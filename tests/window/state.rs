@@ -13,7 +13,7 @@ use crate::support::{Desk, OTHER_PORT};
 
 #[test]
 fn the_studio_starts_with_the_virtual_encoder_and_no_polling() {
-    let desk = Desk::begun("");
+    let desk = Desk::new_form("");
     let encoder = desk.encoder();
     assert_eq!(encoder.session.phase, Phase::Connected);
     assert_eq!(encoder.session.source, Source::Link(LinkUrl::sim()));
@@ -33,7 +33,7 @@ fn the_studio_starts_with_the_virtual_encoder_and_no_polling() {
 
 #[test]
 fn nothing_is_sent_without_a_request() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let (sent, frames) = (desk.wire().sent(), desk.encoder().session.trace.lines().len());
     assert_eq!(
         desk.encoder().session.trace.lines().iter().filter(|line| line.direction == Direction::Sent).count(),
@@ -50,14 +50,14 @@ fn nothing_is_sent_without_a_request() {
 
 #[test]
 fn every_frame_is_shown_with_its_meaning() {
-    let desk = Desk::begun("");
+    let desk = Desk::new_form("");
     let lines = desk.encoder().session.trace.lines();
     assert!(lines.iter().all(|line| !line.bytes.is_empty() && !line.meaning.is_empty()), "{lines:?}");
 }
 
 #[test]
 fn each_read_is_a_job_that_succeeds() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let jobs = desk.studio.services.jobs().len();
     let id = desk.encoder().session.id;
     for action in [
@@ -81,7 +81,7 @@ fn each_read_is_a_job_that_succeeds() {
 
 #[test]
 fn a_missing_value_is_a_result_and_not_a_warning() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.ask(Hiperface::ReadAnalogue(0x07));
     desk.until_ready();
     assert!(desk.encoder().analogue[&0x07].is_err());
@@ -90,7 +90,7 @@ fn a_missing_value_is_a_result_and_not_a_warning() {
 
 #[test]
 fn a_restart_triggers_a_fresh_reading() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let surveys = desk.wire().count(0x52);
     desk.ask(Hiperface::Reset);
     desk.until("the restart is told", |studio| {
@@ -102,7 +102,7 @@ fn a_restart_triggers_a_fresh_reading() {
 
 #[test]
 fn a_second_job_is_refused_with_a_message() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.wire().hold_at(0x50, 1);
     desk.ask(Hiperface::ReadStatus);
     desk.wire().wait_until_held();
@@ -114,7 +114,7 @@ fn a_second_job_is_refused_with_a_message() {
 
 #[test]
 fn two_encoders_are_shown_one_at_a_time() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let first = desk.encoder().session.id;
     desk.open(&format!("serial:{OTHER_PORT}"));
     desk.until_read();

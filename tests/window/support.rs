@@ -235,7 +235,7 @@ impl Desk {
     }
 
     /// Creates one that is connected to the virtual encoder, which is read.
-    pub(crate) fn begun(query: &str) -> Self {
+    pub(crate) fn new_form(query: &str) -> Self {
         let mut desk = Self::fresh(query);
         desk.studio.begin(None, None);
         desk.until_read();

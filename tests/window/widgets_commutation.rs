@@ -35,7 +35,7 @@ impl Screen {
 
 #[test]
 fn the_page_works_by_clicks_and_keys() {
-    let mut screen = Screen::begun(TALL);
+    let mut screen = Screen::new_form(TALL);
     screen.click("page.commutation");
     assert!(!screen.is_enabled("commutation.read_one") && !screen.is_enabled("commutation.store"));
     for id in ["commutation.disabled", "commutation.uncoupled", "commutation.released"] {
@@ -76,7 +76,7 @@ fn the_page_works_by_clicks_and_keys() {
 
 #[test]
 fn entry_errors_are_shown_next_to_the_entry() {
-    let mut screen = Screen::begun(TALL);
+    let mut screen = Screen::new_form(TALL);
     screen.click("page.commutation");
     let numbers = [
         "is not a number from 0.001 to 1000",

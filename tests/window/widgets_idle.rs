@@ -20,7 +20,7 @@ fn next_picture(screen: &Screen) -> Duration {
 
 #[test]
 fn an_idle_window_requests_no_frame() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     for page in encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE) {
         screen.click(page);
         for _ in 0..30 {
@@ -36,7 +36,7 @@ fn an_idle_window_requests_no_frame() {
 
 #[test]
 fn results_from_a_thread_wake_the_window() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     let wakes = screen.outside.wakes.clone();
     let before = wakes.load(std::sync::atomic::Ordering::SeqCst);
     screen.ask(Hiperface::ReadCounter);
@@ -46,7 +46,7 @@ fn results_from_a_thread_wake_the_window() {
 
 #[test]
 fn f5_reloads() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     let before = screen.outside.wire(PORT).count(0x56);
     screen.key(Key::F5);
     screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
@@ -61,7 +61,7 @@ fn f5_reloads() {
 
 #[test]
 fn control_enter_without_edits_is_reported() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
     screen.steps();
     assert!(screen.shows(&screen.say("session.nothing_edited")));
@@ -70,7 +70,7 @@ fn control_enter_without_edits_is_reported() {
 
 #[test]
 fn the_system_close_button_asks_before_losing_edits() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
     let viewport = screen.harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
     viewport.events.push(ViewportEvent::Close);

@@ -51,7 +51,7 @@ fn check_every_page(screen: &mut Screen, size: [f32; 2]) {
 #[test]
 fn every_page_is_drawn_with_the_virtual_encoder() {
     for size in [LARGE, SMALL] {
-        check_every_page(&mut Screen::begun(size), size);
+        check_every_page(&mut Screen::new_form(size), size);
     }
 }
 
@@ -230,7 +230,7 @@ fn every_page_of_a_profile_is_drawn() {
 #[test]
 fn the_connect_dialog_opens_by_click_and_closes_with_escape() {
     for size in [LARGE, SMALL] {
-        let mut screen = Screen::begun(size);
+        let mut screen = Screen::new_form(size);
         screen.click("shell.connect");
         assert!(screen.studio().connect.is_some());
         assert!(screen.shows(&screen.say("connect.title")));
@@ -281,7 +281,7 @@ fn a_search_is_started_and_a_result_chosen_by_click() {
 
 #[test]
 fn f1_opens_help_and_escape_closes_it() {
-    let mut screen = Screen::begun(SMALL);
+    let mut screen = Screen::new_form(SMALL);
     for (page, help) in encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE).into_iter().zip([
         "help.encoder",
         "help.memory",
@@ -304,7 +304,7 @@ fn f1_opens_help_and_escape_closes_it() {
 
 #[test]
 fn language_and_theme_change_with_one_click() {
-    let mut screen = Screen::begun(LARGE);
+    let mut screen = Screen::new_form(LARGE);
     let pages = encoder_studio::kinds::program().tabs.page_words(crate::tabs::HIPERFACE);
     let english: Vec<String> = pages.iter().map(|page| screen.say(page)).collect();
     screen.click("shell.language");
@@ -324,7 +324,7 @@ fn language_and_theme_change_with_one_click() {
 /// If the system has no dialogs, a path is typed.
 #[test]
 fn a_path_can_be_typed_without_a_file_dialog() {
-    let mut screen = Screen::begun(SMALL);
+    let mut screen = Screen::new_form(SMALL);
     let session = screen.encoder().session.id;
     for question in [FileQuestion::Open, FileQuestion::Save { session, suggested: "x.ron".into() }] {
         screen.act(Action::TypePath(question));

@@ -27,7 +27,7 @@ fn type_bytes(screen: &mut Screen, digits: &str) {
 
 #[test]
 fn a_byte_is_typed_reviewed_written_and_read_back() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     screen.click("page.memory");
     assert!(!screen.is_enabled("memory.review"), "nothing is edited");
     type_bytes(&mut screen, "58");
@@ -62,7 +62,7 @@ fn a_byte_is_typed_reviewed_written_and_read_back() {
 
 #[test]
 fn the_review_is_closed_with_escape_and_writes_nothing() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     type_bytes(&mut screen, "58");
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
     screen.until("the plan is ready", |studio| {
@@ -83,7 +83,7 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
 /// Issue 22.4: a write that needs a permission cannot be started without it.
 #[test]
 fn without_a_logbook_the_write_button_needs_a_permission() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     std::fs::create_dir_all(screen.outside.store().logbook_path()).unwrap();
     type_bytes(&mut screen, "58");
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
@@ -98,7 +98,7 @@ fn without_a_logbook_the_write_button_needs_a_permission() {
 
 #[test]
 fn actions_a_field_does_not_allow_are_disabled() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     screen.click("page.memory");
     assert!(screen.is_enabled("memory.delete"), "it is the last");
     let size = encoder_studio::devices::hiperface::protocol::FieldSize::from_bytes(16).unwrap();
@@ -126,7 +126,7 @@ fn actions_a_field_does_not_allow_are_disabled() {
 
 #[test]
 fn stop_is_enabled_only_while_a_job_runs() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     assert!(!screen.is_enabled("shell.stop"));
     screen.outside.wire(PORT).hold_at(0x46, 1);
     screen.ask(Hiperface::ReadCounter);
@@ -146,7 +146,7 @@ fn stop_is_enabled_only_while_a_job_runs() {
 
 #[test]
 fn a_restore_can_be_stopped_by_click() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     for address in [0, 2, 4] {
         let edit = Hiperface::Put { field: 0, address, bytes: vec![0] };
         screen.ask(edit);
@@ -193,7 +193,7 @@ fn a_pulled_cable_offers_to_reconnect_and_keeps_the_edits() {
 
 #[test]
 fn closing_with_edits_asks_and_can_be_declined() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     type_bytes(&mut screen, "58");
     screen.act(Action::Close);
     assert!(screen.shows(&screen.words(&screen.studio().question.as_ref().unwrap().text)));
@@ -206,7 +206,7 @@ fn closing_with_edits_asks_and_can_be_declined() {
 
 #[test]
 fn a_notice_stays_until_dismissed() {
-    let mut screen = Screen::begun(SIZE);
+    let mut screen = Screen::new_form(SIZE);
     screen.act(Action::Open(screen.outside.path("none.ron")));
     screen.until("it is told", |studio| studio.services.log.standing().is_some());
     screen.click("shell.dismiss");

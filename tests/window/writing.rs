@@ -21,7 +21,7 @@ const RATED: usize = 19;
 
 #[test]
 fn a_byte_is_edited_reviewed_written_and_read_back() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, RATED, &[0x23]);
     let staged = &desk.encoder().staged;
     assert_eq!((staged.on_device(0, RATED), staged.byte(0, RATED)), (Some(0x22), Some(0x23)));
@@ -53,7 +53,7 @@ fn a_byte_is_edited_reviewed_written_and_read_back() {
 
 #[test]
 fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, RATED, &[0x23]);
     desk.write();
     let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
@@ -89,7 +89,7 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
 
 #[test]
 fn nothing_is_written_without_consent() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let before = desk.wire().field(0);
     desk.put(0, 0, b"X");
     desk.write_as_shown();
@@ -109,7 +109,7 @@ fn nothing_is_written_without_consent() {
 
 #[test]
 fn write_pressed_twice_writes_once() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
     desk.until_planned();
@@ -125,7 +125,7 @@ fn write_pressed_twice_writes_once() {
 
 #[test]
 fn equal_bytes_are_not_written() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.command(DeviceCommand::Review);
     assert_eq!(desk.notice_ids(Severity::Note).last(), Some(&"session.nothing_edited"));
     desk.put(0, 0, b"E");
@@ -139,7 +139,7 @@ fn equal_bytes_are_not_written() {
 
 #[test]
 fn edits_made_after_planning_are_not_written() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
     desk.until_planned();
@@ -152,7 +152,7 @@ fn edits_made_after_planning_are_not_written() {
 
 #[test]
 fn an_encoder_changed_since_the_plan_is_not_written() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
     desk.until_planned();
@@ -166,7 +166,7 @@ fn an_encoder_changed_since_the_plan_is_not_written() {
 
 #[test]
 fn consent_covers_only_the_plan_that_was_shown() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
     desk.until_planned();
@@ -186,7 +186,7 @@ fn consent_covers_only_the_plan_that_was_shown() {
 
 #[test]
 fn an_earlier_forced_write_does_not_force_another_plan() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.write();
     let ReviewState::Done(_, committed) = &desk.review().state else { panic!() };
@@ -203,7 +203,7 @@ fn an_earlier_forced_write_does_not_force_another_plan() {
 
 #[test]
 fn changes_that_would_discard_edits_are_refused() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 20, b"X");
     let (memory, first) = (desk.encoder().identity.as_ref().unwrap().memory.unwrap(), desk.encoder().field(0).unwrap());
     let offered = rules::delete(memory, first, &desk.encoder().staged);
@@ -257,7 +257,7 @@ fn an_access_code_is_checked_and_never_shown() {
 /// Lists and backups that were asked for before the encoder was exchanged.
 #[test]
 fn late_results_for_another_encoder_are_dropped() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 0, b"X");
     desk.write();
     desk.ask(Hiperface::CloseReview);
@@ -288,7 +288,7 @@ fn late_results_for_another_encoder_are_dropped() {
 
 /// Returns a second field, so that the first is no longer the last.
 fn with_two_fields() -> Desk {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     let status = DataFieldStatus::new(FieldSize::from_bytes(16).unwrap(), CodeNumber::ZERO, true);
     change(&mut desk, Change::CreateField { number: 1, status });
     assert_eq!(desk.encoder().staged.device().len(), 2);
@@ -344,7 +344,7 @@ fn changes_against_the_field_rules_are_refused_with_a_reason() {
 
 #[test]
 fn a_field_exceeding_the_memory_is_refused() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     // 112 blocks less the name plate's two: 13 fields of 128 bytes leave six blocks.
     let size = FieldSize::from_bytes(128).unwrap();
     let status = DataFieldStatus::new(size, CodeNumber::ZERO, false);
@@ -360,7 +360,7 @@ fn a_field_exceeding_the_memory_is_refused() {
 
 #[test]
 fn a_write_protected_field_cannot_be_edited() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     change(&mut desk, Change::LockField { number: 0, lock: true });
     desk.put(0, 0, b"X");
     assert!(!desk.encoder().staged.is_dirty());
@@ -372,7 +372,7 @@ fn a_write_protected_field_cannot_be_edited() {
 
 #[test]
 fn an_edit_outside_a_field_is_refused_with_a_reason() {
-    let mut desk = Desk::begun("");
+    let mut desk = Desk::new_form("");
     desk.put(0, 31, &[1, 2]);
     desk.put(3, 0, &[1]);
     assert!(desk.edits().is_empty());

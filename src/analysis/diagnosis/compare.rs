@@ -97,7 +97,8 @@ fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -
     let Some(earlier) = before.findings.iter().find(same) else { return true };
     let factor = if matches!(finding.kind, FindingKind::Limit(_) | FindingKind::Level { .. }) { FURTHER } else { MORE };
     let comparable = discriminant(&earlier.kind) == discriminant(&finding.kind);
-    finding.severity > earlier.severity || comparable && amount(&finding.kind) >= factor * amount(&earlier.kind)
+    finding.severity > earlier.severity
+        || comparable && finding_magnitude(&finding.kind) >= factor * finding_magnitude(&earlier.kind)
 }
 
 /// Returns whether the earlier finding is of the later one's kind, or a worse form of it.
@@ -119,7 +120,7 @@ fn covers(earlier: &FindingKind, later: &FindingKind) -> bool {
     }
 }
 
-fn amount(what: &FindingKind) -> f64 {
+fn finding_magnitude(what: &FindingKind) -> f64 {
     let beyond = |value: f64, (least, most): (f64, f64)| (least - value).max(value - most).max(0.0);
     match *what {
         FindingKind::Limit(OutOfLimits::Amplitude { volts, ok_v, .. }) => beyond(volts, ok_v),

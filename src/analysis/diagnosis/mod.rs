@@ -87,7 +87,7 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
             shapes(record, analysis, harmonics, modulation, &mut say);
             trust::times(analysis, &mut say);
             trust::correction(analysis, &mut say);
-            if let Some(what) = trust::uncertain(&diagnosis.findings) {
+            if let Some(what) = trust::uncertainty_finding(&diagnosis.findings) {
                 diagnosis.findings.push(DiagnosisFinding { severity: Severity::Warning, kind: what });
             }
             let by_lines =

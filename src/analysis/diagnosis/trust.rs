@@ -40,7 +40,7 @@ pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, Find
 }
 
 /// Returns the uncertainty of the ellipse, approximately the combined share of the disturbances found.
-pub(super) fn uncertain(findings: &[DiagnosisFinding]) -> Option<FindingKind> {
+pub(super) fn uncertainty_finding(findings: &[DiagnosisFinding]) -> Option<FindingKind> {
     let share = |finding: &DiagnosisFinding| match finding.kind {
         FindingKind::Hum { share, .. }
         | FindingKind::Interference { share, .. }

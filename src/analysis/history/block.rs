@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::flags::{FlagBlock, Flags};
 use super::number::Number;
-use super::spread::{Spread, extremes, extremes_of_eight, together};
+use super::spread::{Spread, combine_spreads, extremes, extremes_of_eight};
 use super::{BLOCK, FAN};
 
 #[derive(Clone, Copy)]
@@ -293,7 +293,7 @@ impl<T: Number> Block<T> {
     }
 
     fn spread_of(&self, range: Range<usize>) -> Option<Spread<T>> {
-        self.flags.good(range).map(|good| Spread::of(self.values.get(good)?)).fold(None, together)
+        self.flags.good(range).map(|good| Spread::of(self.values.get(good)?)).fold(None, combine_spreads)
     }
 
     fn scan(&self, range: Range<usize>) -> Extent {

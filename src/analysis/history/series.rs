@@ -7,7 +7,7 @@ use super::BLOCK;
 use super::block::{Block, Extent};
 use super::flags::Flags;
 use super::number::Number;
-use super::spread::{Spread, together};
+use super::spread::{Spread, combine_spreads};
 
 #[derive(Debug)]
 pub(super) struct Series<T> {
@@ -89,7 +89,7 @@ impl<T: Number> Series<T> {
     }
 
     pub(super) fn spread(&self, range: Range<u64>) -> Option<Spread<T>> {
-        self.parts(range).map(|(_, block, range)| block.spread(range)).fold(None, together)
+        self.parts(range).map(|(_, block, range)| block.spread(range)).fold(None, combine_spreads)
     }
 
     /// Returns the first sample in `range` that has a value.

@@ -44,7 +44,7 @@ impl<T: Number> Spread<T> {
     }
 }
 
-pub(super) fn together<T: Number>(one: Option<Spread<T>>, other: Option<Spread<T>>) -> Option<Spread<T>> {
+pub(super) fn combine_spreads<T: Number>(one: Option<Spread<T>>, other: Option<Spread<T>>) -> Option<Spread<T>> {
     match (one, other) {
         (Some(one), Some(other)) => Some(one.with(other)),
         (one, other) => one.or(other),
@@ -59,18 +59,18 @@ pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
         let (mut least, mut most) = (*first, *first);
         for group in others {
             for ((least, most), value) in least.iter_mut().zip(&mut most).zip(group) {
-                *least = lesser(*least, *value);
-                *most = greater(*most, *value);
+                *least = smaller_of(*least, *value);
+                *most = larger_of(*most, *value);
             }
         }
-        (of_eight(least, lesser), of_eight(most, greater))
+        (of_eight(least, smaller_of), of_eight(most, larger_of))
     });
     let start = of_groups.or_else(|| rest.first().map(|first| (*first, *first)))?;
-    Some(rest.iter().fold(start, |(least, most), value| (lesser(least, *value), greater(most, *value))))
+    Some(rest.iter().fold(start, |(least, most), value| (smaller_of(least, *value), larger_of(most, *value))))
 }
 
 pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
-    (of_eight(*values, lesser), of_eight(*values, greater))
+    (of_eight(*values, smaller_of), of_eight(*values, larger_of))
 }
 
 /// Combines values in pairs, so that no operation waits for the previous one.
@@ -78,11 +78,11 @@ fn of_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, T) -
     choose(choose(choose(a, e), choose(b, f)), choose(choose(c, g), choose(d, h)))
 }
 
-fn lesser<T: Number>(one: T, other: T) -> T {
+fn smaller_of<T: Number>(one: T, other: T) -> T {
     if other < one { other } else { one }
 }
 
-fn greater<T: Number>(one: T, other: T) -> T {
+fn larger_of<T: Number>(one: T, other: T) -> T {
     if other > one { other } else { one }
 }
 

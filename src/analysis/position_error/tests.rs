@@ -31,7 +31,7 @@ fn made(ellipse: &Ellipse, count: usize, motion: impl Fn(f64) -> f64, disturbed:
 }
 
 impl Made {
-    fn noisy(mut self, rms: f64, seed: u64) -> Self {
+    fn add_noise(mut self, rms: f64, seed: u64) -> Self {
         let mut random = fastrand::Rng::with_seed(seed);
         for value in self.sine.iter_mut().chain(&mut self.cosine) {
             // The sum of twelve even numbers: variance 1.
@@ -98,7 +98,7 @@ fn harmonics_are_not_corrected() {
         let amplitude = 0.3_f64.to_radians();
         // Over a single period an accelerating motion cannot be distinguished from an error: that one is even.
         let motion = |t: f64| periods * t + if periods > 2.0 { 0.1 * t * t } else { 0.0 };
-        let capture = made(&REFERENCE, count, motion, |angle| amplitude * (4.0 * angle).sin()).noisy(1e-3, 3);
+        let capture = made(&REFERENCE, count, motion, |angle| amplitude * (4.0 * angle).sin()).add_noise(1e-3, 3);
         let told = capture.analysed().unwrap();
         let left = harmonics(&told.error.corrected_deg);
         assert!((left[3] - 0.3).abs() < 0.03, "{count}: {left:?}");
@@ -112,7 +112,7 @@ fn harmonics_are_not_corrected() {
 
 #[test]
 fn uneven_motion_is_not_mistaken_for_an_error() {
-    let there_and_back = made(&REFERENCE, 5000, |t| 3.0 * (TAU * t).sin(), |_| 0.0).noisy(1e-3, 4);
+    let there_and_back = made(&REFERENCE, 5000, |t| 3.0 * (TAU * t).sin(), |_| 0.0).add_noise(1e-3, 4);
     let told = there_and_back.analysed().unwrap();
     assert_eq!(told.error.basis, Basis::Ellipse);
     assert!(told.error.corrected_pp_deg < 0.5, "{}", told.error.corrected_pp_deg);
@@ -137,10 +137,10 @@ fn a_fraction_of_a_period_is_refused() {
     assert!(matches!(quarter.analysed(), Err(AnalysisError::Coverage { octants: 3 })), "{:?}", quarter.analysed());
     let resting = made(&REFERENCE, 500, |_| 0.2, |_| 0.0);
     assert_eq!(resting.analysed(), Err(AnalysisError::Fit(FitError::Constant)));
-    let noise = resting.noisy(1e-3, 5).analysed();
+    let noise = resting.add_noise(1e-3, 5).analysed();
     assert_eq!(noise, Err(AnalysisError::AtRest));
     let mut dead = made(&REFERENCE, 500, |t| 3.0 * t, |_| 0.0);
     dead.sine.fill(0.0);
-    let told = dead.noisy(1e-3, 6).analysed();
+    let told = dead.add_noise(1e-3, 6).analysed();
     assert_eq!(told, Err(AnalysisError::Fit(FitError::Dead(Channel::Sine))));
 }

@@ -33,7 +33,7 @@ impl Studio {
                 self.edit(|connect| (connect.device, connect.typed) = (device, None));
                 self.list_ports();
             }
-            ConnectAction::Edit(entries) => self.take_entries(entries),
+            ConnectAction::Edit(entries) => self.apply_entries(entries),
             ConnectAction::Find(action) => self.find(action),
             ConnectAction::Use(link) => self.edit(|connect| connect.take(link)),
             ConnectAction::AskRecording => self.services.file_question = Some(FileQuestion::Recording),
@@ -68,7 +68,7 @@ impl Studio {
         }
     }
 
-    fn take_entries(&mut self, entries: Payload) {
+    fn apply_entries(&mut self, entries: Payload) {
         let Some(connect) = &mut self.connect else { return };
         let form = connect.forms_mut().find(|form| form.is_of_form(&entries));
         if form.is_none_or(|form| form.edit(entries).is_err()) {
@@ -95,7 +95,7 @@ impl Studio {
         }
     }
 
-    /// Continues after the user has confirmed that no other master is on the line of the form.
+    /// Continues the search after the user has confirmed that no other master is on the line.
     pub(in crate::app) fn start_confirmed_search(&mut self, tab: Tab) {
         let at = |connect: &Connect| connect.forms.iter().position(|(own, _)| *own == tab);
         if let Some(place) = self.connect.as_ref().and_then(at) {
@@ -118,7 +118,7 @@ impl Studio {
         forms.iter().enumerate().find_map(|(at, (tab, form))| is_it(form.as_ref()).then_some((*tab, at)))
     }
 
-    /// Lends the rest of the studio to a form of the dialog, and executes the requests of the form.
+    /// Lends the rest of the studio to a form of the dialog, and then executes the requests of the form.
     fn with_finder(&mut self, tab: Tab, place: usize, act: impl FnOnce(&mut dyn AnyForm, &mut FinderContext<'_>)) {
         let Some(mut connect) = self.connect.take() else { return };
         let link = connect.url();
@@ -135,7 +135,7 @@ impl Studio {
         }
     }
 
-    /// Lists the serial ports, starting with those used before for this kind of device.
+    /// Starts listing the serial ports. Ports previously used for the current kind of device come first.
     fn list_ports(&self) {
         if let Some(connect) = &self.connect {
             list_ports(&self.services, self.settings.links(connect.device));

@@ -18,11 +18,11 @@ pub struct FinderContext<'a> {
     problem: Option<Text>,
 }
 
-/// The next act of the dialog after a request to a search.
+/// The next action of the dialog after a request to a search.
 #[derive(Default)]
 pub(super) struct Next {
     pub(super) found: Option<LinkUrl>,
-    /// Shows why that was not done.
+    /// Reason why the request was not executed, to be shown to the user.
     pub(super) problem: Option<Text>,
 }
 
@@ -42,7 +42,7 @@ impl<'a> FinderContext<'a> {
     /// Returns the link of the dialog.
     ///
     /// # Errors
-    /// Explains why the link cannot be used.
+    /// Returns a text that explains why the link cannot be used.
     pub fn link(&self) -> Result<LinkUrl, Text> {
         self.link.clone()
     }
@@ -52,7 +52,7 @@ impl<'a> FinderContext<'a> {
         self.studio.new_number()
     }
 
-    /// Releases the session and the tool on a connection, unless the session is writing; `why` is reported there. The
+    /// Releases the session and the tool on a connection, unless the session is writing. `why` is reported there. The
     /// returned channel, if any, closes when the connection is free.
     ///
     /// # Errors
@@ -63,7 +63,7 @@ impl<'a> FinderContext<'a> {
         Ok(earlier)
     }
 
-    /// Asks whether another master is on the line; the search continues if there is none.
+    /// Asks whether another master is on the line. The search continues if the user confirms that there is none.
     pub fn confirm_other_master(&mut self, url: &LinkUrl) {
         self.studio.question =
             Some(Question::other_master(self.studio.services.world.kinds.display_link(url), Then::Find(self.tab)));

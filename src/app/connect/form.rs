@@ -14,12 +14,12 @@ use crate::app::payload::{Payload, PayloadKindError};
 use crate::app::services::Services;
 use crate::link::LinkUrl;
 
-/// A link to a kind of device, as form entries. Entries of other connection types are preserved.
+/// A form whose entries make up a link to a kind of device. Entries of other connection types are preserved.
 pub trait FormModel: Clone + PartialEq + Send + 'static {
-    /// Search for devices, or [`NoFinder`] if there is none.
+    /// The search for devices, or [`NoFinder`] if the form has none.
     type Finder: Finder<Form = Self>;
 
-    /// Returns the link to the virtual device, with which the form starts.
+    /// Returns the link to the virtual device, which the form contains initially.
     fn usual() -> LinkUrl;
 
     /// Fills in a new form from a link.
@@ -31,29 +31,29 @@ pub trait FormModel: Clone + PartialEq + Send + 'static {
     /// Returns a message that names the invalid entry and the allowed values.
     fn url(&self) -> Result<LinkUrl, Text>;
 
-    /// Enters the path of a recording.
+    /// Sets the path of a recording.
     fn set_file(&mut self, _file: String) {}
 
-    /// Returns an example of a link, shown as a hint.
+    /// Returns an example link, shown as a hint.
     fn example(&self) -> &'static str;
 }
 
-/// A search for devices, started from a connection form, on a serial line or in the network.
+/// A search for devices on a serial line or in the network, started from a connection form.
 pub trait Finder: Default + 'static {
-    /// Form that the search fills in.
+    /// The form that the search fills in.
     type Form;
     /// The actions of the search.
     type Action: Any + Send;
-    /// Results of the tasks of the search.
+    /// The results of the search tasks.
     type Done: Any + Send;
 
     /// Executes an action of the search.
     fn act(&mut self, action: Self::Action, form: &mut Self::Form, context: &mut FinderContext<'_>);
 
-    /// Handles the result of a task; `finder` is `None` if the dialog has been closed in the meantime.
+    /// Handles the result of a task. `finder` is `None` if the dialog has been closed in the meantime.
     fn done(finder: Option<&mut Self>, done: Self::Done, services: &mut Services);
 
-    /// Continues after the user has confirmed that no other master is on the line.
+    /// Continues the search after the user has confirmed that no other master is on the line.
     fn confirmed(&mut self, _context: &mut FinderContext<'_>) {}
 
     /// Processes all events received since the last call.
@@ -111,9 +111,9 @@ pub trait AnyForm {
     fn url(&self) -> Result<LinkUrl, Text>;
     /// Fills in the entries from a link.
     fn take(&mut self, url: &LinkUrl);
-    /// Enters the path of a recording.
+    /// Sets the path of a recording.
     fn set_file(&mut self, file: String);
-    /// Returns an example of a link, shown as a hint.
+    /// Returns an example link, shown as a hint.
     fn example(&self) -> &'static str;
     /// Returns whether the payload contains entries of this form.
     fn is_of_form(&self, entries: &Payload) -> bool;
@@ -122,14 +122,14 @@ pub trait AnyForm {
     /// Replaces the entries with edited ones.
     ///
     /// # Errors
-    /// The entries belong to another kind of device.
+    /// Returns an error if the entries belong to a different kind of device.
     fn edit(&mut self, entries: Payload) -> Result<(), PayloadKindError>;
-    /// Passes an action to the finder; returns whether it has filled in the form.
+    /// Passes an action to the finder. Returns whether the finder has filled in the form.
     ///
     /// # Errors
-    /// The action belongs to another kind of device.
+    /// Returns an error if the action belongs to a different kind of device.
     fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, PayloadKindError>;
-    /// Continues after the user has confirmed that no other master is on the line.
+    /// Continues the search after the user has confirmed that no other master is on the line.
     fn confirmed(&mut self, context: &mut FinderContext<'_>);
     /// Processes pending events of the finder.
     fn pump(&mut self);
@@ -141,7 +141,7 @@ pub trait AnyForm {
     fn end(&mut self, services: &mut Services) -> Option<Receiver<()>>;
 }
 
-/// The adapter from [`FormModel`] to [`AnyForm`].
+/// Adapter from [`FormModel`] to [`AnyForm`].
 pub(in crate::app) struct Filled<F: FormModel> {
     form: F,
     finder: F::Finder,

@@ -30,11 +30,11 @@ pub enum ConnectAction {
     Close,
     ListPorts,
     Device(Tab),
-    /// The form of a kind of device has been edited; see [`ConnectAction::edit`].
+    /// The form for a kind of device has been edited; see [`ConnectAction::edit`].
     Edit(Payload),
     /// A request to the search for devices; see [`ConnectAction::find`].
     Find(Payload),
-    /// A link was typed, pasted or selected; a valid one fills in the form.
+    /// A link was typed, pasted or selected. A valid link fills in the form.
     Use(String),
     AskRecording,
     Recording(PathBuf),
@@ -56,7 +56,7 @@ pub struct Connect {
     pub device: Tab,
     kinds: Kinds,
     forms: Vec<(Tab, Box<dyn AnyForm>)>,
-    /// The typed link until the form is edited, or `None` if the link is that of the form.
+    /// The link as typed, or `None` once the form has been edited and determines the link.
     pub typed: Option<String>,
     /// Serial ports of this computer, or `None` while they are being listed.
     pub ports: Option<Result<Vec<PortEntry>, Text>>,
@@ -64,7 +64,7 @@ pub struct Connect {
 }
 
 impl Connect {
-    /// Creates the dialog for a kind of device; `last` returns the link last used in a tab.
+    /// Creates the dialog for a kind of device. `last` returns the link last used in a tab.
     pub(super) fn new(kinds: Kinds, device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
         let forms = kinds.devices().iter().map(|kind| (kind.tab(), kind.form(last(kind.tab())))).collect();
         Connect { device, kinds, forms, typed: None, ports: None, problem: None }
@@ -86,10 +86,10 @@ impl Connect {
         self.forms.iter_mut().map(|(_, form)| form)
     }
 
-    /// Returns the typed link, or else that of the form.
+    /// Returns the typed link or, if there is none, the link of the form.
     ///
     /// # Errors
-    /// Names the invalid part and the allowed values.
+    /// Returns a text that names the invalid part and the allowed values.
     pub fn url(&self) -> Result<LinkUrl, Text> {
         match &self.typed {
             Some(link) => self.read(link),
@@ -97,13 +97,13 @@ impl Connect {
         }
     }
 
-    /// Parses a link to the chosen kind of device.
+    /// Parses a link as a link to the chosen kind of device.
     fn read(&self, link: &str) -> Result<LinkUrl, Text> {
         let url: LinkUrl = link.parse().map_err(|error| target::other(explain::url(&error)))?;
         target::checked(url, |url| self.kinds.kind_for_tab(self.device).map_or(Ok(()), |kind| kind.check(url)))
     }
 
-    /// Adopts a typed link; a valid one fills in the form.
+    /// Adopts a typed link. A valid link fills in the form.
     pub(super) fn take(&mut self, link: String) {
         let (device, url) = (self.device, self.read(&link));
         if let (Ok(url), Some((_, form))) = (url, self.forms.iter_mut().find(|(tab, _)| *tab == device)) {
@@ -112,12 +112,13 @@ impl Connect {
         self.typed = Some(link);
     }
 
-    /// Returns whether a search for a device runs, on the wire of the form.
+    /// Returns whether a search for a device is running on the connection of the form.
     pub fn is_searching(&self) -> bool {
         self.forms.iter().any(|(_, form)| form.is_running())
     }
 
-    /// Returns the link as typed, or else that of the form; empty if the form has none.
+    /// Returns the link as typed or, if none was typed, the link of the form. The string is empty if the form has no
+    /// valid link.
     pub fn link(&self) -> String {
         match &self.typed {
             Some(link) => link.clone(),
@@ -138,7 +139,7 @@ impl Connect {
     }
 }
 
-/// Lists the serial ports, as a task's result; `links` are the links used, the latest first.
+/// Starts a task that lists the serial ports. `links` are the previously used links, latest first.
 pub(super) fn list_ports(services: &Services, links: &[String]) {
     let (ports, links) = (services.world.ports.clone(), links.to_vec());
     services.tasks.run("ports", move || {

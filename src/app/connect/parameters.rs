@@ -10,17 +10,18 @@ use crate::parameter::Entry;
 /// Name and value of a link parameter.
 pub(crate) type Pair = (String, String);
 
-/// Returns the parameters of a link that have no form entry; `take` fills in an entry and returns whether there is one.
+/// Returns the parameters of a link that have no form entry. `take` fills in an entry and returns whether the entry
+/// exists.
 pub(crate) fn without_entry(query: &Query, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
 
-/// Typed values of form entries by parameter name.
+/// Values typed into form entries, by parameter name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Typed(BTreeMap<&'static str, String>);
 
 impl Typed {
-    /// Returns the typed value of a parameter; empty for the default.
+    /// Returns the typed value of a parameter, or an empty string for the default.
     pub fn get(&self, key: &str) -> &str {
         self.0.get(key).map_or("", String::as_str)
     }
@@ -34,14 +35,14 @@ impl Typed {
         };
     }
 
-    /// Fills in an entry; returns `false` if there is none.
+    /// Fills in an entry. Returns `false` if the entry does not exist.
     pub(crate) fn take(&mut self, entries: &[Entry], name: &str, value: &str) -> bool {
         let entry = entries.iter().find(|entry| entry.key == name);
         entry.inspect(|entry| self.set(entry.key, value)).is_some()
     }
 }
 
-/// Link parameters derived from form entries, in that order. Default values are omitted.
+/// Link parameters derived from the form entries, in order. Default values are omitted.
 #[derive(Default)]
 pub(crate) struct Parameters(Vec<Pair>);
 
@@ -70,12 +71,17 @@ impl Parameters {
         self.entry(name, &entry.replace(',', "."));
     }
 
-    /// Adds parameters without an entry; those of a virtual device only if the link leads to one.
-    pub(crate) fn rest_of(&mut self, rest: &[Pair], is_virtual: bool, (link, of_the_virtual): (&[&str], &[&str])) {
+    /// Adds parameters that have no form entry. Parameters of a virtual device are added only if the link leads to one.
+    pub(crate) fn set_remaining(
+        &mut self,
+        rest: &[Pair],
+        is_virtual: bool,
+        (link, of_the_virtual): (&[&str], &[&str]),
+    ) {
         self.rest(rest, |name| is_virtual || link.contains(&name) || !of_the_virtual.contains(&name));
     }
 
-    /// Adds the parameters without an entry that belong to the link. An entry overrides an older parameter.
+    /// Adds the parameters that have no form entry but belong to the link. An entry overrides an older parameter.
     pub(crate) fn rest(&mut self, rest: &[Pair], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
             if self.0.iter().all(|(own, _)| own != name) {
@@ -87,7 +93,7 @@ impl Parameters {
     /// Returns the link with these parameters.
     ///
     /// # Errors
-    /// Explains that a character would end a part of the link, or that the parts do not form a link.
+    /// Returns an error if a character would end a part of the link, or if the parts do not form a link.
     pub(crate) fn link(&self, (scheme, target): (Scheme, String)) -> Result<LinkUrl, Text> {
         let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
         let unfit = unfit(&target, &['?'])
@@ -106,7 +112,7 @@ impl Parameters {
 pub(crate) mod tests {
     use super::*;
 
-    /// Checks that each link fills in a form that yields an equivalent link.
+    /// Checks that each link fills in a form from which an equivalent link is built.
     pub(crate) fn assert_comes_back(links: &[&str], through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>) {
         let sorted = |url: &LinkUrl| {
             let mut pairs = url.query.pairs().to_vec();

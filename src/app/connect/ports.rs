@@ -4,17 +4,19 @@ use crate::link::{LinkUrl, PortInfo, Scheme};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PortEntry {
-    /// Path or name, as used in a link.
+    /// Path or name of the port, as used in a link.
     pub path: String,
-    /// Description of the adapter by the system; may be empty.
+    /// Description of the adapter as given by the system, which may be empty.
     pub description: String,
     pub used: bool,
-    /// Whether the port exists now: the system lists it, or its path exists, as for a pseudo-terminal, which is never
-    /// listed. A port used before may have been unplugged.
+    /// Whether the port currently exists. The system lists it, or its path exists, as for a pseudo-terminal, which is
+    /// never
+    /// listed. A previously used port may have been unplugged.
     pub listed: bool,
 }
 
-/// Returns ports used before, the latest first, then USB adapters, then the rest. `links` are the links used, the latest
+/// Returns previously used ports, latest first, then USB adapters, then all others. `links` are the previously used
+/// links, latest
 /// first; `exists` checks a path that the system does not list.
 pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str) -> bool) -> Vec<PortEntry> {
     let mut offers: Vec<PortEntry> = Vec::new();

@@ -11,7 +11,7 @@ use crate::worker::OpenError;
 /// Returns an entry without surrounding blanks.
 ///
 /// # Errors
-/// `missing`, if the entry is empty.
+/// Returns the text `missing` if the entry is empty.
 pub(crate) fn entered(entry: &str, missing: &'static str) -> Result<String, Text> {
     let entry = entry.trim();
     if entry.is_empty() { Err(Text::new(missing)) } else { Ok(entry.to_owned()) }
@@ -37,13 +37,13 @@ pub fn is_missing(problem: &Text) -> bool {
 /// Returns the link if its kind of device accepts it.
 ///
 /// # Errors
-/// As for [`refused`].
+/// Returns the same texts as [`refused`].
 pub(crate) fn checked(url: LinkUrl, check: impl FnOnce(&LinkUrl) -> Result<(), OpenError>) -> Result<LinkUrl, Text> {
     check(&url).map_err(|error| refused(&url, &error))?;
     Ok(url)
 }
 
-/// Explains why a link cannot be used, in terms of the invalid entry, if any.
+/// Explains why a link cannot be used, with reference to the invalid entry, if any.
 pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     let (name, value, allowed) = match error {
         OpenError::Url(UrlError::Value { name, value, allowed })
@@ -65,15 +65,15 @@ pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     }
 }
 
-/// Returns the message for an unusable link without an invalid entry.
+/// Returns the message for a link that cannot be used although none of its entries is invalid.
 pub(crate) fn other(why: Text) -> Text {
     Text::new("form.other").with_text("why", why)
 }
 
-/// Returns host and port in the format of a link.
+/// Formats host and port as in a link.
 ///
 /// # Errors
-/// Names the invalid part.
+/// Returns a text that names the invalid part.
 pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     let host = entered(host, "form.host_missing")?;
     let host = match host.parse::<Ipv6Addr>() {
@@ -90,10 +90,10 @@ pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     }
 }
 
-/// Returns host and port in the format of a link; an empty port selects the default.
+/// Formats host and port as in a link. An empty port selects the default.
 ///
 /// # Errors
-/// As for [`host_and_port`]; `missing`, if no host is entered.
+/// Returns the same errors as [`host_and_port`], or `missing` if no host is entered.
 pub(crate) fn host_and_default_port(
     host: &str,
     missing: &'static str,
@@ -103,30 +103,30 @@ pub(crate) fn host_and_default_port(
     host_and_port(&entered(host, missing)?, filled(port).as_deref().unwrap_or(usual))
 }
 
-/// Splits a network address of a link into host and port; the port is empty if there is none.
-pub(crate) fn parted(place: &str) -> (String, String) {
+/// Splits a network address of a link into host and port. The port is empty if the address has none.
+pub(crate) fn split_target(place: &str) -> (String, String) {
     let (host, port) = place.rsplit_once(':').unwrap_or((place, ""));
     (host.to_owned(), port.to_owned())
 }
 
-/// Splits a network address of a link into host and port; the port is empty if it is the default.
+/// Splits a network address of a link into host and port. The port is empty if it is the default port.
 pub(crate) fn split_host_default_port(place: &str, usual: &str) -> (String, String) {
-    let (host, port) = parted(place);
+    let (host, port) = split_target(place);
     (host, Some(port).filter(|port| port != usual).unwrap_or_default())
 }
 
-/// Prefix of the target for an adapter in the network.
+/// Prefix of the link target for an adapter in the network.
 const TCP: &str = "tcp:";
 
-/// Returns the network address of an adapter, or `None` for one at a serial port.
+/// Returns the network address of an adapter, or `None` for an adapter at a serial port.
 pub(crate) fn adapter_in_network(target: &str) -> Option<&str> {
     target.strip_prefix(TCP)
 }
 
-/// Returns the target of a link to an adapter in the network.
+/// Returns the link target for an adapter in the network.
 ///
 /// # Errors
-/// As [`host_and_port`].
+/// Returns the same errors as [`host_and_port`].
 pub(crate) fn to_adapter(host: &str, port: &str) -> Result<String, Text> {
     Ok(format!("{TCP}{}", host_and_port(host, port)?))
 }

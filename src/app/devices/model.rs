@@ -6,7 +6,7 @@ use std::any::Any;
 use std::path::{Path, PathBuf};
 
 use crate::app::action::{Opened, ReadError, ReviewAction};
-use crate::app::documents::only_looked_at;
+use crate::app::documents::read_only_reason;
 use crate::app::recorder::Recorder;
 use crate::app::review::ReviewSheet;
 use crate::app::services::{Environment, Services};
@@ -244,7 +244,7 @@ impl<'a> ActContext<'a> {
     /// The profile is read-only.
     pub(crate) fn profile_of(&self, id: SessionId) -> Result<Option<Body>, Text> {
         let Some(other) = self.others.iter().find(|other| other.id() == id) else { return Ok(None) };
-        only_looked_at(other.source()).map_or_else(|| Ok(other.wanted_body()), Err)
+        read_only_reason(other.source()).map_or_else(|| Ok(other.wanted_body()), Err)
     }
 }
 

@@ -57,8 +57,9 @@ pub fn open(error: &OpenError) -> Text {
     }
 }
 
-/// Explains why a link could not be opened, including that no thread could be started; `open` supplies the explanation
-/// of the kind.
+/// Explains why a link could not be opened, including the case that no thread could be started. `open` supplies the
+/// explanation
+/// for the kind of device.
 pub fn open_failed(failed: &OpenFailure, open: impl Fn(&OpenError) -> Text) -> Text {
     match failed {
         OpenFailure::Link(error) => open(error),
@@ -86,7 +87,8 @@ pub fn file(error: &FileError) -> Text {
     }
 }
 
-/// Explains an error of the program's folders. Errors of device-specific files are explained where these are read.
+/// Explains an error in the program's folders. Errors in device-specific files are explained by the code that reads
+/// them.
 pub fn store(error: &StoreError) -> Text {
     match error {
         StoreError::NoHome => Text::new("store.no_home"),
@@ -96,8 +98,8 @@ pub fn store(error: &StoreError) -> Text {
     }
 }
 
-/// Explains why a profile cannot be read. `kinds` supplies the explanations of devices; the command line, which is in
-/// English, requires none.
+/// Explains why a profile cannot be read. `kinds` supplies the explanations of devices. The command line, which is in
+/// English, does not require them.
 pub fn profile(path: &Path, error: &ProfileError, kinds: Kinds) -> Text {
     let path = path.display();
     match error {
@@ -114,7 +116,7 @@ pub fn profile(path: &Path, error: &ProfileError, kinds: Kinds) -> Text {
     }
 }
 
-/// Returns notes about an opened profile: a newer schema, or entries that the schema does not define.
+/// Returns remarks about an opened profile that has a newer schema or entries that the schema does not define.
 pub fn profile_remarks(path: &Path, document: &Document) -> Vec<Text> {
     if document.is_newer() {
         return vec![newer_profile(path, document)];

@@ -54,7 +54,7 @@ fn capture(path: &Path, error: &CaptureError) -> Text {
     }
 }
 
-/// Explains why samples cannot be analysed; `path` is their file.
+/// Explains why samples cannot be analysed. `path` is the file that contains them.
 pub fn analysis(path: &Path, error: &AnalysisError) -> Text {
     let text = |id| Text::new(id).with("path", path.display());
     match error {
@@ -90,7 +90,7 @@ pub fn spectrum(error: &SpectrumError) -> Text {
     }
 }
 
-/// Explains why a reference yields no deviation over the revolution.
+/// Explains why a reference yields no deviation over one revolution.
 pub fn revolution(error: &RevolutionError) -> Text {
     match error {
         RevolutionError::Periods { found, given } => {

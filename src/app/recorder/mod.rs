@@ -183,7 +183,7 @@ impl Recorder {
         let Some(Group { history, .. }) = self.groups.get_mut(&group) else { return Err(Refused::Shape) };
         let before = history.all().end;
         history.append(times, parts)?;
-        self.look_for_trigger(group, before);
+        self.find_trigger(group, before);
         Ok(())
     }
 

@@ -154,7 +154,7 @@ impl Recorder {
     }
 
     /// Searches the samples of a group from `from` on, which have just arrived.
-    pub(super) fn look_for_trigger(&mut self, group: GroupId, from: u64) {
+    pub(super) fn find_trigger(&mut self, group: GroupId, from: u64) {
         let Some(mut watch) = self.watch else { return };
         let Some(line) = self.line(watch.trigger.line).filter(|line| line.group == group) else { return };
         let (Some(history), column) = (self.history(line), line.column) else { return };

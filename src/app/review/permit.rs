@@ -7,13 +7,13 @@ pub enum Permit {
     OtherDevice,
     OtherType,
     Mounting,
-    /// Delete and create fields again.
+    /// Delete fields and create them again.
     Recreate,
-    /// Copy bytes of unknown meaning in this data field to another device.
+    /// Copy bytes of unknown meaning in the given data field to a different device.
     Copy(u8),
 }
 
-/// A permit that results in another plan, and whether it is granted.
+/// A permit that results in a different plan, with whether it is granted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Toggle {
     pub permit: Permit,
@@ -21,7 +21,7 @@ pub struct Toggle {
 }
 
 impl Permit {
-    /// All permits in display order, except those of single fields.
+    /// All permits in display order, except those for individual fields.
     pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::OtherType, Permit::Mounting, Permit::Recreate];
 
     pub const fn word(self) -> &'static str {
@@ -43,7 +43,8 @@ impl Permit {
         }
     }
 
-    /// Returns the corresponding option of a restore, or `None` if there is none common to all kinds of devices.
+    /// Returns the restore option that corresponds to the permit, or `None` if no such option is common to all kinds of
+    /// devices.
     pub fn option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
         match self {
             Permit::OtherDevice => Some(&mut options.allow_other_device),

@@ -16,11 +16,13 @@ type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
 /// A session with edits.
 pub trait Drafted: HasSession {
-    /// Returns the key in the logbook, or `None` before the device was read and for a device without an identity.
+    /// Returns the key of the device in the logbook. Returns `None` before the device has been read, and for a device
+    /// without an identity.
     fn key(&self) -> Option<DeviceKey>;
 
-    /// Returns the type and serial number of the device, under which its draft is stored, since another type may use
-    /// the same number. The serial number is empty for a device without an identity; `None` if nothing has been read.
+    /// Returns the type and serial number under which the device's draft is stored, since a different type may use
+    /// the same number. The serial number is empty for a device without an identity. Returns `None` if nothing has been
+    /// read.
     fn type_and_serial(&self) -> Option<(String, String)> {
         self.key().map(|key| (key.device_type, key.serial_number))
     }
@@ -28,10 +30,10 @@ pub trait Drafted: HasSession {
     /// Returns the current edits.
     fn edited(&self) -> Edits<Self>;
 
-    /// Restores earlier edits; those that are no longer valid are omitted.
+    /// Restores earlier edits, omitting those that are no longer valid.
     fn take_edits(&mut self, edits: Edits<Self>);
 
-    /// Adopts a profile that was read again from its file; edits are kept.
+    /// Adopts a profile that was read again from its file. Edits are kept.
     fn take_document(&mut self, file: ProfileFile, document: Document);
 
     /// Returns the edits for counting.
@@ -40,12 +42,12 @@ pub trait Drafted: HasSession {
     /// Returns the edits for undo and redo.
     fn pending_mut(&mut self) -> &mut dyn PendingEdits;
 
-    /// Discards all edits, as one step.
+    /// Discards all edits as one step.
     fn revert_edits(&mut self) {
         self.pending_mut().revert();
     }
 
-    /// Handles a profile of a connected device that has been written to a file.
+    /// Handles the successful saving of a connected device's profile to a file.
     fn written_beside(&mut self, _document: Document) {}
 
     /// Returns the key of the draft, or `None` for a device that does not identify itself.
@@ -63,14 +65,14 @@ pub trait Drafted: HasSession {
         }
     }
 
-    /// Looks up the draft with earlier edits.
+    /// Starts looking up the draft with earlier edits.
     fn load_draft(&mut self, services: &Services) {
         if let Some(key) = self.draft_key() {
             self.session_mut().drafting.load(key, services);
         }
     }
 
-    /// Takes the result of a task.
+    /// Handles the result of a draft task.
     fn take_draft(&mut self, done: DraftOutcome, services: &mut Services) {
         let (key, name, dirty) = (self.draft_key(), self.session().name(), !self.edited().is_nothing());
         if let Some(edits) = self.session_mut().drafting.take(done, key.as_ref(), dirty, &name, services) {
@@ -80,7 +82,7 @@ pub trait Drafted: HasSession {
         }
     }
 
-    /// Stores the edits if they have changed. Call this once per frame.
+    /// Stores the edits if they have changed. This must be called once per frame.
     fn write_draft(&mut self, services: &mut Services) {
         if !self.session().drafting.is_due() {
             return;
@@ -97,18 +99,18 @@ pub trait Drafted: HasSession {
         self.session_mut().drafting.save(key, edits, services);
     }
 
-    /// Returns whether edits are restored after the device has been closed.
+    /// Returns whether the edits can be restored after the device has been closed.
     fn keeps_edits(&self) -> bool {
         self.session().drafting.is_loaded() && self.draft_key().is_some()
     }
 
-    /// Leaves the edits of the previous device on disk because another device, or none, is being opened.
+    /// Leaves the edits of the previous device on disk, because a different device or none is being opened.
     fn leave_draft(&mut self, services: &mut Services) {
         let (key, edits) = (self.draft_key(), self.edited());
         self.session_mut().drafting.leave(key, edits, services);
     }
 
-    /// Handles a written profile, or the failure. A profile saved to a new file has no earlier draft and leaves none.
+    /// Handles the result of writing a profile. A profile saved to a new file has no earlier draft and leaves none.
     fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services) {
         let name = self.session().name();
         self.session_mut().is_saving = false;
@@ -135,7 +137,7 @@ pub trait Drafted: HasSession {
         services.notify(severity, std::iter::once(saved).chain(saving.remarks).collect(), Some(&name));
     }
 
-    /// Records that the profile is now stored in this file.
+    /// Records that the profile is now stored in the given file.
     fn take_written(&mut self, file: ProfileFile, document: Document, services: &mut Services) {
         let moves = !matches!(&self.session().source, Source::File { key: own, .. } if *own == file.key);
         if moves {

@@ -17,7 +17,7 @@ use crate::store::{Claim, Drafts, FileError};
 
 pub(super) const DRAFT_BACK: &str = "session.draft_back";
 
-/// Time allowed for another session to release its claim; a closed one may still be writing.
+/// Time allowed for another session to release its claim. A closed session may still be writing.
 const PATIENCE: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_millis(20);
 
@@ -28,7 +28,7 @@ pub struct DraftKey {
 }
 
 impl DraftKey {
-    /// Creates the key of a device from its type and serial number; virtual devices are separate.
+    /// Creates the key of a device from its type and serial number. Virtual devices have separate keys.
     pub(in crate::app) fn of_device(kind: &str, is_virtual: bool, name: String) -> Self {
         DraftKey { kind: if is_virtual { format!("{kind}-virtual") } else { kind.to_owned() }, name }
     }
@@ -65,19 +65,20 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
 #[derive(Debug)]
 pub(crate) struct ActiveDraft<E> {
     session: SessionId,
-    /// The edits last passed on for storing.
+    /// The edits most recently passed on for storing.
     kept: E,
     busy: bool,
-    /// Whether the edits may differ from those last passed on.
+    /// Whether the edits may differ from those most recently passed on.
     due: bool,
-    /// Whether the earlier draft has been looked up; it is not overwritten before that.
+    /// Whether the earlier draft has been looked up. The draft is not overwritten before that.
     is_loaded: bool,
-    /// Claim to store the draft; without it, the draft belongs to another window or session.
+    /// Claim to store the draft. If there is none, the draft belongs to another window or session.
     claim: Option<Arc<Claim>>,
     is_failure_reported: bool,
 }
 
-/// Returns the draft name of a file, which does not depend on the path leading to it. Accesses the disk, so run it in a
+/// Returns the draft name for a file, which does not depend on the path leading to it. This accesses the disk and must
+/// therefore run in a
 /// task.
 pub(in crate::app) fn file_key(path: &Path) -> String {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
@@ -90,7 +91,7 @@ pub(in crate::app) fn file_key(path: &Path) -> String {
 }
 
 impl<E: DraftEdits> ActiveDraft<E> {
-    /// Creates the drafting of a session, before any draft was looked for.
+    /// Creates the draft state of a session, before any draft has been looked up.
     pub(in crate::app) fn new(session: SessionId) -> Self {
         ActiveDraft {
             session,
@@ -107,7 +108,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         self.claim(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
     }
 
-    /// Starts again, because the saved profile has no edits, and earlier ones belong to the file it replaced.
+    /// Starts again, because the saved profile has no edits, and earlier drafts belong to the file that it replaced.
     pub(in crate::app) fn begin(&mut self, key: DraftKey, services: &Services) {
         self.claim(key, services, |drafts, key| drafts.remove(&key.kind, &key.name).map(|()| None));
     }
@@ -137,7 +138,8 @@ impl<E: DraftEdits> ActiveDraft<E> {
         });
     }
 
-    /// Handles the result of a task: the edits of an earlier session, if any. A result about a draft other than `own`
+    /// Handles the result of a task, which contains the edits of an earlier session, if any. A result about a draft
+    /// other than `own`
     /// is outdated; edits made in the meantime (`dirty`) take precedence.
     pub(in crate::app) fn take(
         &mut self,
@@ -188,7 +190,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         }
     }
 
-    /// Records that earlier edits were restored; `edits` are those still valid.
+    /// Records that earlier edits have been restored. `edits` are those that are still valid.
     pub(in crate::app) fn restore_edits(&mut self, edits: E, name: &str, services: &mut Services) {
         if !edits.is_nothing() {
             services.notify(Severity::Warning, vec![Text::new(DRAFT_BACK)], Some(name));
@@ -212,12 +214,12 @@ impl<E: DraftEdits> ActiveDraft<E> {
         self.due = true;
     }
 
-    /// Returns whether the edits must be checked, because events occurred since the last check.
+    /// Returns whether the edits must be compared again, because events have occurred since the last check.
     pub(in crate::app) fn is_due(&self) -> bool {
         self.due && !self.busy
     }
 
-    /// Stores the edits if they have changed. Only one task runs at a time: later changes follow in the next one.
+    /// Stores the edits if they have changed. Only one task runs at a time, and later changes follow in the next one.
     pub(in crate::app) fn save(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         if self.busy {
             return;
@@ -232,14 +234,15 @@ impl<E: DraftEdits> ActiveDraft<E> {
         store_edits(key, edits, self.claim.clone(), self.session, services);
     }
 
-    /// Reports once, with the first edit, that a device without a serial number has no draft.
+    /// Reports that a device without a serial number has no draft. This is reported once, at the first edit.
     pub(in crate::app) fn report_no_draft(&mut self, name: &str, services: &mut Services) {
         if !std::mem::replace(&mut self.is_failure_reported, true) {
             services.notify(Severity::Warning, vec![Text::new("session.draft_none")], Some(name));
         }
     }
 
-    /// Returns whether the earlier draft has been looked up, so that edits are restored after the session is closed.
+    /// Returns whether the earlier draft has been looked up. If so, edits are restored after the session has been
+    /// closed.
     pub(crate) fn is_loaded(&self) -> bool {
         self.is_loaded
     }
@@ -248,7 +251,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         !self.busy
     }
 
-    /// Leaves the edits of the previous device on disk because another device, or none, is being opened.
+    /// Leaves the edits of the previous device on disk, because a different device or none is being opened.
     pub(in crate::app) fn leave(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key
@@ -259,7 +262,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
         }
     }
 
-    /// Removes the draft, because the edits are now in another file.
+    /// Removes the draft, because the edits are now stored in another file.
     pub(in crate::app) fn forget(&mut self, key: Option<DraftKey>, services: &mut Services) {
         let before = std::mem::replace(self, ActiveDraft::new(self.session));
         if let Some(key) = key
@@ -270,7 +273,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
     }
 }
 
-/// Passes edits on for storing; the claim is held until they are stored.
+/// Passes edits on for storing. The claim is held until the edits are stored.
 fn store_edits<E: DraftEdits>(
     key: DraftKey,
     edits: E,

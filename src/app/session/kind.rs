@@ -11,18 +11,18 @@ use crate::link::LinkUrl;
 use crate::store::Store;
 use crate::worker::{Device, Event, JobId, OpenError, Session};
 
-/// A kind of device, as required by its sessions.
+/// A kind of device, with everything that its sessions require.
 pub trait Kind: Device + Sized {
-    /// Name of the kind in profiles.
+    /// Name of the device kind in profiles.
     const KIND: &'static str;
 
     /// Edits that survive a crash.
     type Edits: DraftEdits;
 
-    /// Part of a session outside its thread.
+    /// The part of a session that stays outside its thread.
     type SessionHandle: Send;
 
-    /// Review of a write: the [`Review`](crate::app::review::Review) of a kind with a memory.
+    /// Review of a write, which is [`Review`](crate::app::review::Review) for a kind with a memory.
     type Review;
 
     /// Whether live values may start automatically on a line without another master.
@@ -34,7 +34,7 @@ pub trait Kind: Device + Sized {
     /// Opens a link to a device of this kind.
     ///
     /// # Errors
-    /// The link cannot be opened, or leads to another kind of device.
+    /// Returns an error if the link cannot be opened or leads to a different kind of device.
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError>;
 
     /// Explains why a link cannot be opened and what to do.
@@ -42,7 +42,7 @@ pub trait Kind: Device + Sized {
         explain::open(error)
     }
 
-    /// Explains why a link could not be opened, including that no thread could be started.
+    /// Explains why a link could not be opened, including the case that no thread could be started.
     fn open_failed(failed: &OpenFailure) -> Text {
         explain::open_failed(failed, Self::open_error)
     }
@@ -55,13 +55,13 @@ pub trait Kind: Device + Sized {
         false
     }
 
-    /// Returns the job that reads everything displayed about the device.
+    /// Returns the job that reads all displayed values of the device.
     fn survey() -> Self::Job;
 
     /// Describes a step of a job.
     fn step_text(what: &Self::JobStep) -> Text;
 
-    /// Describes the result of a job that writes; `None` for other jobs.
+    /// Describes the result of a job that writes. Returns `None` for other jobs.
     fn result_texts(_output: &Self::Output) -> Option<(Severity, Vec<Text>)> {
         None
     }
@@ -69,10 +69,10 @@ pub trait Kind: Device + Sized {
     /// Explains why a job ended early and what to do.
     fn error_texts(error: &Self::Error) -> Vec<Text>;
 
-    /// Explains why the connection failed, if no more requests are possible over it.
+    /// Explains why the connection failed. Returns `None` if further requests are still possible over the connection.
     fn connection_error(error: &Self::Error) -> Option<Text>;
 
-    /// Returns the last message about the job from an event of a released session.
+    /// Returns the final message about the job from an event of a released session, if the event ends the job.
     fn job_endings(event: &Event<Self>) -> Option<JobEnding> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {
@@ -91,7 +91,7 @@ pub trait Kind: Device + Sized {
     }
 }
 
-/// End of the last job of a released session.
+/// The end of the last job of a released session.
 pub struct JobEnding {
     pub(in crate::app) job: JobId,
     pub(in crate::app) end: JobEnd,

@@ -18,7 +18,7 @@ type Op<T> = review::Op<<T as HasSession>::Device>;
 type Prepared<T> = <<T as HasSession>::Device as Reviewed>::Prepared;
 type Committed<T> = worker::Committed<<<T as HasSession>::Device as Reviewed>::Written>;
 
-/// A plan to which the user has consented.
+/// A plan that the user has approved.
 pub type ApprovedPlanOf<K> = worker::commit::ApprovedPlan<<K as Reviewed>::Prepared>;
 
 /// A device with writable memory.
@@ -49,7 +49,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     /// Returns whether a change was made for a device other than the connected one.
     fn is_for_another(&self, change: &Change<Self>) -> bool;
 
-    /// Returns whether a change was made for another type of device, if that requires a separate permit.
+    /// Returns whether a change was made for a different type of device, provided that this requires a separate permit.
     fn is_for_another_type(&self, _change: &Change<Self>) -> bool {
         false
     }
@@ -65,26 +65,26 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     /// Creates the job that executes an approved plan.
     fn commit(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
 
-    /// Discards everything known about the device, because another one has replied.
+    /// Discards all data about the device, because a different device has replied.
     fn forget_device(&mut self);
 
     /// Prepares for displaying a review.
-    fn before_review(&mut self) {}
+    fn prepare_review(&mut self) {}
 
-    /// Returns why a change is impossible, as far as known without querying the device.
+    /// Returns the reason why a change is impossible, as far as this is known without querying the device.
     fn objection(&self, _change: &Change<Self>) -> Option<Text> {
         None
     }
 
-    /// Returns why a plan cannot be executed.
+    /// Returns the reason why a plan cannot be executed, if any.
     fn objection_to(&self, _prepared: &Prepared<Self>) -> Option<Text> {
         None
     }
 
     /// Marks the values that the running plan changes as unread, however the plan ends.
-    fn reads_again(&mut self) {}
+    fn rereads_after_write(&mut self) {}
 
-    /// Handles the end of an executed plan.
+    /// Handles the end of a plan that has been executed.
     fn carried_out(&mut self, _committed: &Committed<Self>, _services: &mut Services) {}
 
     /// Logs the start of a write and its changes.
@@ -95,7 +95,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         services.note(Severity::Note, vec![text], Some(&self.session().name()));
     }
 
-    /// Requests the plan of the edits for review.
+    /// Requests a plan for writing the edits, to be reviewed by the user.
     fn review_edits(&mut self, services: &mut Services) {
         match self.edited_change() {
             Some(change) => self.plan(change, services),
@@ -106,9 +106,9 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Requests the plan of a change for review.
+    /// Requests a plan for a change, to be reviewed by the user.
     fn plan(&mut self, change: Change<Self>, services: &mut Services) {
-        self.before_review();
+        self.prepare_review();
         if let Some(why) = self.session().why_not_ready() {
             return services.notify(Severity::Warning, vec![why], Some(&self.session().name()));
         }
@@ -128,7 +128,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         if self.session().is_busy() {
             return;
         }
-        if let Some(change) = self.review().and_then(|review| review.toggled(permit)) {
+        if let Some(change) = self.review().and_then(|review| review.with_toggled_permit(permit)) {
             self.plan(change, services);
         }
     }
@@ -140,8 +140,9 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Adopts a plan for review. The plan is discarded if the device has been exchanged, because the change was meant
-    /// for the previous one.
+    /// Adopts a plan for review. The plan is discarded if the device has been exchanged, because the change was
+    /// intended
+    /// for the previous device.
     fn planned(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
         if self.is_of_another(&prepared) {
             *self.review_mut() = None;
@@ -161,7 +162,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Handles an exchange of the device: the edits for the previous one stay on disk if it has a serial number.
+    /// Handles an exchange of the device. The edits for the previous device stay on disk if it has a serial number.
     fn replaced_by(&mut self, serial: &str, services: &mut Services) {
         if self.pending().is_dirty() {
             let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());
@@ -175,7 +176,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         self.session_mut().forget_device();
     }
 
-    /// Executes the plan that the user has seen.
+    /// Executes the plan that the user has reviewed.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
         if let Some(agreed) = self.agree(shown) {
             let job = self.commit(agreed);
@@ -195,7 +196,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         })
     }
 
-    /// Starts the job that executes the plan under review; returns `false` if it cannot be started.
+    /// Starts the job that executes the plan under review. Returns `false` if the job cannot be started.
     fn begin_write(&mut self, job: Job<Self>, services: &mut Services) -> bool {
         let Some(review) = self.review_mut() else { return false };
         let ReviewState::Ready(prepared) = &review.state else { return false };
@@ -220,7 +221,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         *self.review_mut() = None;
     }
 
-    /// Handles an executed plan; the device is read again.
+    /// Handles the end of an executed plan. The device is read again.
     fn committed(&mut self, committed: Committed<Self>, services: &mut Services) {
         let (severity, texts) = written_texts::<Self::Device>(&committed);
         let (name, stands) = (self.session().name(), self.review().is_some_and(Review::is_writing));
@@ -231,7 +232,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
             services.notify(severity, texts, Some(&name));
         }
         self.pending_mut().forget_steps();
-        self.reads_again();
+        self.rereads_after_write();
         self.carried_out(&committed, services);
         if let Some(review) = self.review_mut()
             && let ReviewState::Writing(prepared) = &review.state
@@ -241,9 +242,9 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         self.submit(Self::Device::survey(), services);
     }
 
-    /// Handles the early end of planning or writing; returns whether the review reports it. A plan cancelled during
+    /// Handles the early end of planning or writing. Returns whether the review reports it. A plan cancelled during
     /// preparation leaves no review.
-    fn cut_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
+    fn handle_cut_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.review() else { return false };
         let (begun, done) = match (how, review.is_planning(), review.is_writing()) {
             (_, false, false) | (EarlyEnd::Lost, _, false) => return false,
@@ -256,7 +257,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
             (EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error), ..) => {
                 let done = error.done();
                 if done.is_some() {
-                    self.reads_again();
+                    self.rereads_after_write();
                 }
                 (done.is_some(), done.unwrap_or(0))
             }
@@ -267,7 +268,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         true
     }
 
-    /// Discards a plan that was not started.
+    /// Discards a plan that has not been started.
     fn forget_plan(&mut self) {
         if self.review().is_some_and(Review::is_plan) {
             *self.review_mut() = None;

@@ -48,12 +48,12 @@ pub enum Source {
     File {
         path: PathBuf,
         key: String,
-        /// The document without the edits.
+        /// The document without the user's edits.
         document: Box<Document>,
-        /// Source text of the file; comments, order and line endings belong to the user.
+        /// Source text of the file. It is kept because comments, order and line endings belong to the user.
         text: String,
     },
-    /// A new profile that has not been saved.
+    /// A new profile that has not been saved yet.
     New {
         suggested: PathBuf,
     },
@@ -73,17 +73,17 @@ impl Source {
 pub enum Phase {
     Opening,
     Connected,
-    /// The link is open, but the device does not reply: the reason and what to do.
+    /// The link is open, but the device does not reply. Holds the reason and what to do.
     Silent(Text),
-    /// The connection was lost or could not be opened: the reason and what to do.
+    /// The connection was lost or could not be opened. Holds the reason and what to do.
     Lost(Text),
-    /// A profile without a connection.
+    /// A profile that is open without a connection.
     Offline,
 }
 
 pub(crate) struct Opening {
     pub(crate) attempt: Option<u32>,
-    /// Receiver that disconnects when opening has ended.
+    /// Receiver that disconnects when the attempt to open the link has ended.
     pub(crate) over: crossbeam_channel::Receiver<()>,
     pub(crate) is_sole_master: bool,
 }
@@ -95,7 +95,7 @@ pub struct Session<D: Kind> {
     pub review: Option<D::Review>,
 }
 
-/// Gives access to the session's state as if it were a part of the session.
+/// Dereferences to the session's state.
 impl<D: Kind> Deref for Session<D> {
     type Target = SessionState;
 
@@ -111,7 +111,7 @@ impl<D: Kind> DerefMut for Session<D> {
 }
 
 impl<D: Kind> Session<D> {
-    /// Creates a session for a link that is being opened; `kinds` determines which parameters are secret.
+    /// Creates a session for a link that is being opened. `kinds` determines which parameters are secret.
     pub fn at_link(id: SessionId, url: LinkUrl, kinds: Kinds) -> Self {
         let mut own = Session::new(id, Source::Link(url), Phase::Opening);
         own.kinds = kinds;
@@ -122,7 +122,7 @@ impl<D: Kind> Session<D> {
         Session::new(id, file.source(document), Phase::Offline)
     }
 
-    /// Creates a session whose content is in no file yet.
+    /// Creates a session whose content has not been saved to a file yet.
     pub(crate) fn of_nothing(id: SessionId, suggested: PathBuf) -> Self {
         Session::new(id, Source::New { suggested }, Phase::Offline)
     }
@@ -161,12 +161,13 @@ impl<D: Kind> Session<D> {
         self.phase == Phase::Opening || self.is_busy() || self.is_polling()
     }
 
-    /// Returns whether the device is connected and idle, so that a job may start.
+    /// Returns whether the device is connected and idle, in which case a job may be started.
     pub fn is_ready(&self) -> bool {
         self.phase == Phase::Connected && self.line.is_some() && !self.is_busy()
     }
 
-    /// Returns whether the device can be read again; also true for a device that did not reply, and for a profile.
+    /// Returns whether the device can be read again. This is also true for a device that did not reply, and for a
+    /// profile.
     pub fn is_readable(&self) -> bool {
         self.is_savable() || (matches!(self.phase, Phase::Silent(_)) && self.line.is_some() && !self.is_busy())
     }
@@ -175,7 +176,7 @@ impl<D: Kind> Session<D> {
         self.is_ready() || self.phase == Phase::Offline
     }
 
-    pub fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
+    pub fn adopt_line(&mut self, opened: Opened<D>, services: &mut Services) {
         let is_sole_master = self.opening.take().is_some_and(|opening| opening.is_sole_master);
         self.trace.begin(opened.began.clone());
         self.line = Some(LiveSession::new(opened));
@@ -185,7 +186,8 @@ impl<D: Kind> Session<D> {
         self.just_connected = true;
     }
 
-    /// Sets the polling interval, or stops polling. Returns whether polling starts with this call, or `None` without a
+    /// Sets the polling interval, or stops polling. Returns whether polling starts with this call, or `None` if there
+    /// is no
     /// line.
     pub(crate) fn poll(&mut self, interval: Option<Duration>) -> Option<bool> {
         let line = self.line.as_mut()?;
@@ -194,8 +196,9 @@ impl<D: Kind> Session<D> {
         Some(begins)
     }
 
-    /// Records that polling has stopped, why, and whether the device does not reply at all. Polling that was requested
-    /// again since continues.
+    /// Records that polling has stopped, the reason, and whether the device does not reply at all. Polling that has
+    /// been requested
+    /// again in the meantime continues.
     pub(in crate::app) fn polling_failed(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
         if self.is_polling() {
             return;
@@ -209,7 +212,7 @@ impl<D: Kind> Session<D> {
         self.report(Severity::Error, texts, stands_there, services);
     }
 
-    /// Starts a job; reports the reason and returns `false` if it cannot be started.
+    /// Starts a job. If the job cannot be started, reports the reason and returns `false`.
     pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
         let (name, what, writes) = (self.name(), D::job_text(&job), D::writes(&job));
         let Some(line) = &mut self.line else {
@@ -230,7 +233,7 @@ impl<D: Kind> Session<D> {
         false
     }
 
-    /// Returns why no plan can be made now, or `None` if one can.
+    /// Returns the reason why no plan can be made now, or `None` if one can be made.
     pub(crate) fn why_not_ready(&self) -> Option<Text> {
         match &self.phase {
             _ if self.is_ready() => None,
@@ -240,7 +243,7 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    /// Stops the running job, and cancels a link that is being opened.
+    /// Stops the running job or cancels the opening of a link.
     pub(crate) fn stop(&mut self, services: &mut Services) {
         self.live_due = false;
         if self.phase == Phase::Opening {
@@ -257,7 +260,8 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    /// Releases the thread; the running job is recorded as `end`. A cancelled write ends on its own and reports the
+    /// Releases the thread and records the end of the running job as `end`. A cancelled write ends on its own and
+    /// reports its own
     /// result.
     pub(crate) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.save_to = None;

@@ -26,7 +26,8 @@ impl SessionState {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
 
-    /// Handles values read for a file; `edits` are not written to the file, and `remarks` name other missing values.
+    /// Handles values read in order to save them to a file. `edits` is the number of edits that are not saved, and
+    /// `remarks` name other missing values.
     pub fn write_read(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
         let Some(path) = self.save_to.take() else { return };
         let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));
@@ -34,12 +35,12 @@ impl SessionState {
         self.write_document(path, document_of(body), remarks, services);
     }
 
-    /// Adopts a profile that was read again from its file, or saved to another one.
+    /// Adopts a profile that was read again from its file or saved to another file.
     pub fn take_document(&mut self, file: ProfileFile, document: Document) {
         self.source = file.source(document);
     }
 
-    /// Reads the profile again in a task; returns `false` if the session is not a profile.
+    /// Starts a task that reads the profile again. Returns `false` if the session is not a profile.
     pub(crate) fn read_file_again(&self, services: &mut Services) -> bool {
         let Source::File { path, .. } = &self.source else { return false };
         services.opening_files.push(path.clone());
@@ -48,7 +49,7 @@ impl SessionState {
         true
     }
 
-    /// Saves a profile on a thread; `remarks` name the values missing from it.
+    /// Saves a profile on a thread. `remarks` name the values missing from it.
     pub(crate) fn write_document(
         &mut self,
         path: PathBuf,
@@ -70,7 +71,7 @@ impl SessionState {
         services.tasks.run("save", move || saving.run(kinds));
     }
 
-    /// Lists backups and writes of a device, as a task.
+    /// Starts a task that lists the backups and writes of a device.
     pub(in crate::app) fn list_backups(&self, of: DeviceKey, services: &Services) {
         let (store, id) = (services.world.store.clone(), self.id);
         services.tasks.run("backups", move || {
@@ -101,11 +102,11 @@ impl SessionState {
 
 pub struct DeviceHistory {
     pub backups: Result<Vec<Backup>, FileError>,
-    /// Writes, newest first, or the reason why the logbook has none.
+    /// Entries about writes, newest first, or the reason why the logbook provides none.
     pub writes: Result<Vec<Entry>, LogbookError>,
     /// Total number of write cycles, or `None` if the logbook has no record.
     pub cycles: Option<u64>,
-    /// Status codes that were read, newest first. An unreadable logbook is reported with the writes.
+    /// Status codes that were read, newest first. An error reading the logbook is reported in `writes`.
     pub statuses: Vec<StatusEntry>,
 }
 

@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 use super::{HasSession, Phase, Source, WithMemory};
 use crate::app::Text;
 use crate::app::action::ReadError;
-use crate::app::documents::{document_of, only_looked_at, read_error};
+use crate::app::documents::{document_of, read_error, read_only_reason};
 use crate::app::services::Services;
 use crate::profile::{Body, Document, ProfileError};
 use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 
-/// A profile made from earlier readings, with remarks; or a message for each missing part.
+/// A profile made from earlier readings with remarks, or a message for each missing part.
 pub type KnownProfile = Result<(Body, Vec<Text>), Vec<Text>>;
 
-/// Returns the remark that a number of edits is not included.
+/// Returns the remark that a number of edits is not included, or `None` if there are none.
 pub fn without_edits(count: usize) -> Option<Text> {
     (count > 0).then(|| Text::new("session.saved_without").with("count", count))
 }
@@ -24,35 +24,35 @@ pub trait Saved: WithMemory {
     /// Creates the job that reads everything that can be restored.
     fn read_all() -> Job<Self>;
 
-    /// Returns the edited profile, if the session is one.
+    /// Returns the edited profile if the session is a profile.
     fn wanted_body(&self) -> Option<Body>;
 
-    /// Returns the profile of earlier readings with remarks, or `None` if nothing was read.
+    /// Returns a profile made from earlier readings, with remarks. Returns `None` if nothing was read.
     ///
     /// # Errors
     /// Returns a message for each part of a profile that was not read.
     fn known_body(&self) -> Option<KnownProfile>;
 
-    /// Returns whether earlier readings are saved, because the device no longer replies.
+    /// Returns whether earlier readings are saved because the device no longer replies.
     fn saves_what_was_read(&self) -> bool {
         matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.known_body().is_some()
     }
 
-    /// Requests the plan of restoring a profile for review.
+    /// Requests a plan for restoring a profile, to be reviewed by the user.
     ///
     /// # Errors
-    /// The profile belongs to another kind of device.
+    /// Returns an error if the profile belongs to a different kind of device.
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
 
-    /// Returns remarks about the edited profile when it is saved.
+    /// Returns the remarks to show when the edited profile is saved.
     fn remarks(&self) -> Vec<Text> {
         Vec::new()
     }
 
-    /// Saves a profile. A connected device is read again; for one that no longer replies, earlier readings are saved.
+    /// Saves a profile. A connected device is read again; if it no longer replies, earlier readings are saved.
     /// An open profile is saved as edited.
     fn save(&mut self, path: PathBuf, services: &mut Services) {
-        if let Some(refusal) = only_looked_at(&self.session().source) {
+        if let Some(refusal) = read_only_reason(&self.session().source) {
             self.session().refuse(refusal, services);
         } else if let Source::File { document, .. } = &self.session().source {
             let mut document = (**document).clone();
@@ -106,7 +106,7 @@ pub trait Saved: WithMemory {
 /// Maximum number of remarks of one kind that are listed.
 const SAID: usize = 3;
 
-/// Lists the first of several items, followed by the number of the others.
+/// Lists the first few of several items, followed by the number of remaining items.
 pub(crate) fn some<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
     let more = things.len().saturating_sub(SAID);
     let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));

@@ -26,7 +26,7 @@ impl ProfileFile {
     }
 }
 
-/// Expected state of a file before it is overwritten.
+/// Expected state of a file, checked before the file is overwritten.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guard {
     /// Key of the file, which does not depend on the path leading to it.
@@ -41,9 +41,9 @@ pub struct Saving {
     pub path: PathBuf,
     pub document: Box<Document>,
     pub remarks: Vec<Text>,
-    /// The open file; any other is replaced unconditionally.
+    /// The open file and its expected state. Any other file is replaced unconditionally.
     pub opened: Option<Guard>,
-    /// The user knows that comments will be lost.
+    /// Whether the user has agreed that comments will be lost.
     pub may_lose: bool,
     /// Whether the edits were merged with those of others and are no longer edits.
     pub is_merged: bool,

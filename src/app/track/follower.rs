@@ -28,7 +28,7 @@ impl Follower {
 
     /// Returns whether the next position is joined to the last one: it arrives soon enough, and across samples without
     /// a position the shaft cannot have completed the range unnoticed at its last speed.
-    pub(super) fn joins(&self, time: Time, apart: i64) -> bool {
+    pub(super) fn continues_track(&self, time: Time, apart: i64) -> bool {
         let Some((before, _)) = self.last else { return true };
         if time.nanoseconds_since(before) > apart {
             return false;
@@ -37,7 +37,7 @@ impl Follower {
         self.pace.is_some_and(|pace| pace * time.seconds_since(before) < range as f64 / 4.0)
     }
 
-    pub(super) fn miss(&mut self) {
+    pub(super) fn note_missing_sample(&mut self) {
         self.has_missed = true;
     }
 

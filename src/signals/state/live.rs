@@ -14,7 +14,7 @@ use crate::analysis::Time;
 use crate::analysis::quality::Family;
 use crate::analysis::wiring::Wire;
 use crate::app::services::Services;
-use crate::app::shutdown::same_wire;
+use crate::app::shutdown::shares_wire;
 use crate::app::{Severity, Text, explain};
 use crate::buses::bridge::procedures::Streaming;
 use crate::link::LinkUrl;
@@ -236,7 +236,7 @@ impl Source {
 
     /// Releases the adapter if an encoder search needs its connection.
     pub(crate) fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
-        let holds = |live: &Live| matches!(&live.feed, Feed::Adapter { url: own, .. } if same_wire(own, url));
+        let holds = |live: &Live| matches!(&live.feed, Feed::Adapter { url: own, .. } if shares_wire(own, url));
         if self.live.as_ref().is_some_and(holds) {
             self.stop(services);
             self.refuse(TEXTS.text("adapter.let_go"));

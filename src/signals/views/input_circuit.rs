@@ -32,7 +32,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         },
         |ui, _| {
             if let Ok(circuit) = &circuit {
-                here(ui, theme, circuit);
+                operating_point_ui(ui, theme, circuit);
                 theme.gap(ui);
                 table(ui, theme, circuit);
             }
@@ -66,7 +66,7 @@ fn notes(ui: &mut Ui, theme: &Theme) {
     });
 }
 
-fn here(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
+fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
     let Point { frequency_hz, response, shaft_deg, .. } = circuit.here;
     let limit_khz = BANDWIDTH_HZ / 1e3;
     card(ui, theme, TEXTS.text("input.here"), |ui| {

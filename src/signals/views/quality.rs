@@ -14,7 +14,7 @@ use crate::analysis::quality::Family;
 use crate::analysis::signal_analysis::Analysis;
 use crate::app::{Action, Text, explain};
 use crate::signals::state::{Measurement, Results, Signals, SignalsAction as Signals_, forms, quantities};
-use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, problem, settled_entry, split};
+use crate::ui::controls::{card, card_with, choice, committed_entry, entry, name, paragraph, problem, split};
 use crate::ui::widgets::{Figure, Lissajous, lissajous, phosphor, series};
 use crate::ui::{Theme, icons};
 
@@ -246,7 +246,7 @@ pub(super) fn periods_ui(
     let word = say(theme, "quality.periods_per_turn");
     entry(ui, theme, &word, |ui| {
         let shown = signals.periods().map(|periods| periods.to_string()).unwrap_or_default();
-        settled_entry(ui, draft, &shown, 72.0, &word, |text| {
+        committed_entry(ui, draft, &shown, 72.0, &word, |text| {
             actions.push(Action::tool(Signals_::SetPeriods(forms::periods(text)?)));
             Ok(())
         });

@@ -119,7 +119,7 @@ fn present(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiSta
             title(ui, theme, signals);
             source_menu(ui, theme, view, actions);
             source_buttons(ui, theme, signals, view, actions);
-            keep_ui(ui, theme, signals, actions);
+            save_capture_ui(ui, theme, signals, actions);
             if signals.table().is_some() {
                 toggle(ui, icons::TABLE, &say(theme, "signals.table"), &mut view.table.is_open);
             }
@@ -224,7 +224,7 @@ fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
 }
 
 /// Draws the button that keeps the capture for comparison, and the kept capture.
-fn keep_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
+fn save_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let word = say(theme, "compare.keep");
     let same =
         signals.comparison().zip(signals.measurement()).is_some_and(|(a, b)| std::sync::Arc::ptr_eq(a, b.results()));

@@ -7,7 +7,7 @@ use crate::analysis::capture::{Delimiter, TimeUnit};
 use crate::app::Action;
 use crate::signals::state::{Column, SignalsAction as Signals, TEXTS, Table, forms};
 use crate::signals::views::say;
-use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
+use crate::ui::controls::{button, card_with, choice, committed_entry, entry, paragraph, problem, two_columns};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -139,7 +139,7 @@ fn volts(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut TableUiState, act
     let shown = volts.map(|volts| theme.plain(volts)).unwrap_or_default();
     let word = say(theme, "columns.volts");
     entry(ui, theme, &word, |ui| {
-        settled_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {
+        committed_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {
             act(Signals::SetVolts(forms::volts_per_unit(text)?));
             Ok(())
         });

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Returns settings without noise.
-fn quiet() -> Settings {
+fn silence_duration() -> Settings {
     Settings { noise_v: 0.0, ..Settings::default() }
 }
 
@@ -27,7 +27,7 @@ fn samples_match_section_7() {
         offset_cosine_v: 0.02,
         gain_ratio: 1.05,
         phase_error_deg: 3.0,
-        ..quiet()
+        ..silence_duration()
     });
     let wires = source.samples(0, 361).unwrap();
     let cases = [
@@ -71,7 +71,7 @@ fn any_range_of_samples_is_reproducible_after_days() {
 #[test]
 fn settings_change_at_a_sample_and_the_angle_is_continuous() {
     // 60 rev/min at 1000 samples per second: 0.36° per sample.
-    let slow = Settings { rate_hz: 1_000.0, ..quiet() };
+    let slow = Settings { rate_hz: 1_000.0, ..silence_duration() };
     let mut source = source(slow.clone());
     let fast = Settings { speed_rpm: -600.0, rate_hz: 10_000.0, offset_cosine_v: 0.1, ..slow };
     source.change(500, fast.clone().checked().unwrap());
@@ -93,9 +93,9 @@ fn settings_change_at_a_sample_and_the_angle_is_continuous() {
 
 #[test]
 fn old_changes_are_discarded_and_not_invented() {
-    let mut source = source(quiet());
+    let mut source = source(silence_duration());
     for at in 1..=200 {
-        source.change(at * 10, quiet().checked().unwrap());
+        source.change(at * 10, silence_duration().checked().unwrap());
     }
     assert_eq!(source.samples(100, 10), None);
     assert_eq!(source.time(0), None);
@@ -136,7 +136,7 @@ fn an_open_wire_reads_as_the_receiver_terminates_it() {
             open_wire: Some(open),
             terminated,
             references,
-            ..quiet()
+            ..silence_duration()
         };
         let wires = source(settings).samples(10, 1).unwrap();
         (wires.sine_v()[0], wires.sin_v[0], wires.refsin_v[0])
@@ -169,7 +169,7 @@ fn harmonic_modulation_and_eccentricity_are_simulated() {
         third_harmonic_percent: 4.0,
         modulation_percent: 10.0,
         eccentricity_arcsec: 100.0,
-        ..quiet()
+        ..silence_duration()
     };
     let wires = source(settings).samples(300, 1).unwrap();
     near(wires.sine_v()[0], -0.448_673_821, 1e-9);
@@ -178,7 +178,7 @@ fn harmonic_modulation_and_eccentricity_are_simulated() {
 
 #[test]
 fn hum_is_in_phase_in_both_channels_and_interference_is_not() {
-    let settings = Settings { speed_rpm: 0.0, amplitude_v: 0.0, ..quiet() };
+    let settings = Settings { speed_rpm: 0.0, amplitude_v: 0.0, ..silence_duration() };
     // A quarter period of 50 Hz is 5 ms, of 8 kHz 31.25 µs: three samples of 10 µs are 0.24 of a period.
     let hum = source(Settings { hum_v: 0.1, ..settings.clone() }).samples(500, 1).unwrap();
     near(hum.sine_v()[0], 0.1, 1e-12);

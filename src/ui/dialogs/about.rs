@@ -8,7 +8,7 @@ use crate::ui::{Theme, icons};
 const FONT_LICENCES: &str = include_str!("../../../assets/fonts/LICENCES.txt");
 const CRATES: &str = include_str!("../../../assets/crates.txt");
 
-/// Draws the dialog. Returns `true` when it is closed.
+/// Draws the dialog. Returns `true` when the dialog is closed.
 pub(in crate::ui) fn about_ui(ctx: &egui::Context, theme: &Theme) -> bool {
     let mut done = false;
     modal(ctx, theme, "about", 560.0, |ui| {

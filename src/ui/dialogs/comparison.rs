@@ -9,7 +9,7 @@ use crate::ui::{Theme, icons};
 
 /// Maximum height of the list in points, so that a long list leaves the buttons visible.
 const LIST: f32 = 340.0;
-/// Maximum number of characters of a value on one line; the tooltip shows the rest.
+/// Maximum number of characters shown of a value, which is drawn on one line. The tooltip shows the rest.
 const SHOWN: usize = 40;
 
 pub(in crate::ui) fn comparison_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {

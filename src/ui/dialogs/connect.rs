@@ -25,7 +25,7 @@ pub(in crate::ui) struct ConnectView {
     more: bool,
 }
 
-/// Number of previously used links offered.
+/// Maximum number of previously used links offered.
 const LINKS: usize = 5;
 const WIDTH: f32 = 600.0;
 /// Height of the two lines reserved for the reason why the dialog cannot continue.
@@ -50,7 +50,7 @@ pub(in crate::ui) fn connect_ui(
         ui.add_space(theme.space.inside);
         // Constant height: nothing moves under the pointer.
         ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
-            used_before(ui, theme, studio.settings.links(dialog.device), actions);
+            recent_links_ui(ui, theme, studio.settings.links(dialog.device), actions);
             if let Some(own) = tabs.device(dialog.device) {
                 let form = view.forms.entry(dialog.device).or_insert_with(|| own.connect_form());
                 form.form_ui(ui, theme, dialog, &mut view.more, actions);
@@ -85,7 +85,7 @@ fn devices(ui: &mut Ui, theme: &Theme, tabs: TabViews, device: Tab, actions: &mu
     }
 }
 
-fn used_before(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut Vec<Action>) {
+fn recent_links_ui(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut Vec<Action>) {
     if links.is_empty() {
         return;
     }
@@ -102,7 +102,7 @@ fn used_before(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut Vec<A
     ui.add_space(theme.space.between);
 }
 
-/// Draws the link as used on the command line. The link and the form update each other.
+/// Draws the entry for the link as used on the command line. The link and the form update each other.
 fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
     let hint = Text::new("connect.link_hint").with("link", dialog.example());
     let (word, hint) = (theme.say("connect.link"), theme.words(&hint));

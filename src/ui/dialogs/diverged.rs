@@ -10,10 +10,10 @@ use crate::ui::{Theme, icons};
 
 /// Maximum height of the list in points, so that a long list leaves the buttons visible.
 const LIST: f32 = 320.0;
-/// Maximum number of displayed characters of a value, since a memory has thousands.
+/// Maximum number of displayed characters of a value, since a memory may contain thousands.
 const SHOWN: usize = 60;
 
-/// Draws the dialog if there is something to decide.
+/// Draws the dialog if there is a conflict to resolve.
 pub(in crate::ui) fn diverged_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     // A resulting question is shown before it.
     let Some(diverged) = studio.diverged.as_ref().filter(|_| studio.question.is_none()) else { return };
@@ -63,7 +63,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, at: usize, row: &Row, actions: &mut Vec<Ac
     ui.add_space(theme.space.between);
 }
 
-/// Shortens a value to its beginning on one line.
+/// Returns the beginning of a value, on one line.
 fn shortened(value: &str) -> String {
     let words: Vec<&str> = value.split_whitespace().collect();
     let line = words.join(" ");

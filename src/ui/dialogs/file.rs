@@ -12,15 +12,17 @@ use crate::ui::{Theme, icons};
 pub(in crate::ui) struct FileView {
     question: FileQuestion,
     path: String,
-    /// Folder from which a relative path starts.
+    /// Folder to which relative paths refer.
     working: Option<PathBuf>,
     fresh: bool,
 }
 
-/// Time below which a dialog without an answer is taken never to have opened, since no user closes one so fast.
+/// Time below which a dialog closed without an answer is assumed never to have opened, since no user closes a dialog so
+/// fast.
 const TOO_FAST: Duration = Duration::from_millis(250);
 
-/// Asks for a file. The answer arrives as an action; if the system has no file dialogs, [`file_ui`] asks instead.
+/// Asks the user for a file. The answer arrives as an action. If the system has no file dialogs, [`file_ui`] is used
+/// instead.
 pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox) {
     let filter = theme.words(&kind(&question));
     if !has_dialogs() {
@@ -60,7 +62,7 @@ pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox
     }
 }
 
-/// Returns whether the system has file dialogs; on Linux, they come from a portal on the session bus.
+/// Returns whether the system has file dialogs. On Linux, a portal on the session bus provides them.
 fn has_dialogs() -> bool {
     !cfg!(target_os = "linux") || std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some()
 }
@@ -93,7 +95,7 @@ fn title(question: &FileQuestion) -> Text {
 }
 
 impl FileView {
-    /// Creates the state for typing a path, starting at the user's home unless the question gives a folder.
+    /// Creates the state for typing a path. The path starts at the user's home unless the question specifies a folder.
     pub(in crate::ui) fn new(question: FileQuestion, folders: &Folders) -> Self {
         let home = folders.home().unwrap_or(Path::new(""));
         let path = home.join(question.suggested().unwrap_or(Path::new("")));
@@ -102,7 +104,7 @@ impl FileView {
     }
 }
 
-/// Draws the dialog in which a path is typed. Returns `true` when it is closed.
+/// Draws the dialog in which the user types a path. Returns `true` when the dialog is closed.
 pub(in crate::ui) fn file_ui(
     ctx: &egui::Context,
     theme: &Theme,

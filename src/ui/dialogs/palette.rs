@@ -12,7 +12,7 @@ const WIDTH: f32 = 560.0;
 const ROW: f32 = 28.0;
 const ROWS: usize = 11;
 
-/// The text being typed, and the row that Enter selects.
+/// The text typed into the palette, and the row that Enter selects.
 #[derive(Default)]
 pub(in crate::ui) struct PaletteUiState {
     typed: String,
@@ -37,7 +37,7 @@ pub(in crate::ui) fn palette_ui(
         if entry.changed() {
             state.selected = 0;
         }
-        let mut found = matching(&state.typed, commands);
+        let mut found = matching_commands(&state.typed, commands);
         state.selected = state.selected.saturating_add_signed(step).min(found.len().saturating_sub(1));
         ui.add_space(theme.space.between);
         let clicked = ui
@@ -52,8 +52,8 @@ pub(in crate::ui) fn palette_ui(
     })
 }
 
-/// Returns the commands that match the typed text, best match first; unavailable commands come last.
-fn matching(typed: &str, commands: Vec<Command>) -> Vec<Command> {
+/// Returns the commands that match the typed text, best match first. Unavailable commands come last.
+fn matching_commands(typed: &str, commands: Vec<Command>) -> Vec<Command> {
     let fitting = commands.into_iter().filter_map(|command| {
         let fit = fit(typed, &command.name)
             .or_else(|| Some(10 + fit(typed, &format!("{} {}", command.about, command.name))?))?;

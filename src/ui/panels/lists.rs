@@ -8,7 +8,7 @@ use crate::ui::controls::{empty, severity};
 use crate::ui::{Theme, icons};
 
 const ROW: f32 = 22.0;
-/// Maximum number of notices drawn; the log file contains all of them.
+/// Maximum number of notices drawn. The log file contains all of them.
 const SHOWN: usize = 200;
 const TIME: &str = "%H:%M:%S";
 

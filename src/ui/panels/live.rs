@@ -10,22 +10,22 @@ use crate::ui::controls::{choice, empty, enabled_button, icon_button, label_widt
 use crate::ui::page::apart;
 use crate::ui::{Theme, Views, icons, plot};
 
-/// Polling intervals in microseconds; the first polls back to back.
+/// Polling intervals in microseconds. With the first one, polls follow each other without a pause.
 const RATES: [(u64, &str); 4] =
     [(0, "live.fastest"), (50_000, "live.every_50"), (200_000, "live.every_200"), (1_000_000, "live.every_1000")];
 /// Sample intervals of a streaming adapter, in microseconds.
 const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5k"), (1_000, "live.stream_1k")];
-/// Polling interval in microseconds if no readable rate is chosen.
+/// Polling interval in microseconds used if the chosen rate is not offered.
 const USUAL: u64 = 50_000;
 
-/// Panel height in points below which the numbers beside the position share one line.
+/// Panel height in points below which the numbers beside the position are drawn on one line.
 pub(crate) const LOW: f32 = 460.0;
 
-/// Least width of the choice of the rate, and width of the panel from which the first button has a word.
+/// Minimum width of the rate selector, and the panel width from which the first button has a label.
 const RATE: f32 = 64.0;
 const ONE_ROW: f32 = 280.0;
 
-/// Time in seconds after which an unchanged position is marked.
+/// Time in seconds after which an unchanged position is marked as such.
 const NOTICED: f32 = 0.4;
 
 pub(in crate::ui) fn live_ui(
@@ -98,7 +98,7 @@ pub(crate) fn mark(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
     ui.add(egui::Label::new(RichText::new(theme.say(word)).color(ink)).truncate());
 }
 
-/// Draws the position as the device sent it, smaller if it would not fit on one line.
+/// Draws the position as sent by the device, in a smaller font if it would not fit on one line.
 pub(crate) fn raw_row(ui: &mut Ui, theme: &Theme, value: String) {
     let value = theme.mono(value);
     let room = ui.available_width() - label_width(ui) - ui.spacing().item_spacing.x;

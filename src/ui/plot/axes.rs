@@ -22,7 +22,7 @@ pub(super) fn decimals(step: f64) -> usize {
 }
 
 pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
-    /// Upper limit, more than any picture can show; a step of zero would otherwise loop forever.
+    /// Maximum number of ticks, more than any picture can show. Without this limit, a step of zero would loop forever.
     const MOST: i64 = 200;
     let (first, last) = ((low / step).ceil(), (high / step).floor());
     let count = if (last - first).is_finite() { ((last - first) as i64 + 1).clamp(0, MOST) } else { 0 };
@@ -30,13 +30,14 @@ pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64>
     (0..count).map(move |at| (first + at as f64) * step + 0.0)
 }
 
-/// Returns a value as an axis label for the given step.
+/// Formats a value as an axis label for the given step.
 pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
     let decimals = decimals(step);
     if value.abs() >= 1e9 { format!("{value:.2e}") } else { decimal(value, decimals, language) }
 }
 
-/// Returns a range, at least `least` long, that contains `low` to `high` and ends at round steps, so that it does not
+/// Returns a range that contains `low` to `high` and is at least `least` long. It ends at round steps, so that it does
+/// not
 /// change with every sample.
 pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     let (low, high) = if high - low < least {
@@ -58,7 +59,7 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
 #[derive(Debug, PartialEq)]
 pub(super) struct TimeTicks {
     pub(super) ticks: Vec<(Time, String)>,
-    /// Reference point of the labels, or `None` if they count from the beginning.
+    /// Reference time of the labels, or `None` if they count from the beginning.
     pub(super) base: Option<String>,
 }
 
@@ -87,7 +88,7 @@ pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) 
     TimeTicks { ticks, base: coarse.map(|base| clock(base, 1, language)) }
 }
 
-/// Returns ticks at sample numbers instead of times.
+/// Returns ticks that are labelled with sample numbers instead of times.
 pub(super) fn sample_ticks(from: Time, to: Time, most: usize, language: Language) -> TimeTicks {
     let number = |time: Time| time.nanoseconds() as f64 / SAMPLE as f64;
     let step = step(number(to) - number(from), most as f64).max(1.0);
@@ -95,7 +96,7 @@ pub(super) fn sample_ticks(from: Time, to: Time, most: usize, language: Language
     TimeTicks { ticks: ticks(number(from), number(to), step).map(tick).collect(), base: None }
 }
 
-/// Returns a second, minute or hour before `from`.
+/// Returns the base time at or before `from`, a multiple of 0.1 s for steps below 1 ms and of 10 s otherwise.
 fn coarse_base(from: Time, step: i64) -> i64 {
     let grain = if step < SECOND / 1000 { SECOND / 10 } else { SECOND * 10 };
     from.nanoseconds().div_euclid(grain).saturating_mul(grain)
@@ -122,7 +123,7 @@ fn time_step(span: i64, most: usize) -> i64 {
     found.unwrap_or(2400 * HOUR * SECOND)
 }
 
-/// Returns a time as an axis label for the given step: in a unit below one second, otherwise as a clock.
+/// Formats a time as an axis label for the given step. Steps below one second use a unit; others use clock notation.
 fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
     if nanoseconds == 0 {
         return "0".to_owned();
@@ -158,7 +159,7 @@ fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
     format!("{} {unit}", decimal(nanoseconds as f64 / per, decimals, language))
 }
 
-/// Returns whole seconds as a clock, with tenths for a finer step.
+/// Formats a time in whole seconds in clock notation, with tenths for a finer step.
 fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     let sign = if nanoseconds < 0 { "-" } else { "" };
     let tenths = nanoseconds.unsigned_abs() / 100_000_000;
@@ -173,7 +174,7 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     }
 }
 
-/// Returns a point in time with the precision of a picture that spans `span` nanoseconds.
+/// Formats a point in time with the precision of a picture that spans `span` nanoseconds.
 pub(super) fn instant(time: Time, span: i64, language: Language) -> String {
     let nanoseconds = time.nanoseconds();
     let digits = [(SECOND, 3), (SECOND / 1_000, 6), (0, 9)].into_iter().find(|(least, _)| span >= *least);
@@ -192,7 +193,7 @@ pub(super) fn sample_number(time: Time) -> String {
     time.nanoseconds().div_euclid(SAMPLE).to_string()
 }
 
-/// Returns a formatted duration with about four digits.
+/// Formats a duration with about four digits.
 pub(super) fn duration(nanoseconds: i64, language: Language) -> String {
     let sign = if nanoseconds < 0 { "-" } else { "" };
     let length = nanoseconds.unsigned_abs() as f64;
@@ -206,7 +207,7 @@ pub(super) fn duration(nanoseconds: i64, language: Language) -> String {
     format!("{sign}{} {unit}", decimal(length / per, 3, language))
 }
 
-/// Returns a duration with three digits, for tight spaces.
+/// Formats a duration with three digits, for narrow spaces.
 pub(super) fn about(nanoseconds: i64, language: Language) -> String {
     let length = nanoseconds.unsigned_abs() as f64;
     if length >= 60e9 {

@@ -9,7 +9,7 @@ use super::{Context, axes};
 use crate::app::recorder::{Cursor, Series, TriggerState};
 use crate::ui::Theme;
 
-/// Lane height in points below which names do not fit.
+/// Lane height in points below which the names of the lines are omitted.
 const LOW: f32 = 40.0;
 
 pub(super) fn colour(theme: &Theme, line: &Series) -> Color32 {
@@ -81,7 +81,7 @@ const EDGE: f32 = 2.0;
 const HALF: f32 = 5.5;
 
 /// Returns the labelled ticks with the heights of their labels. A label normally sits beside its tick line, since the
-/// space between two lanes holds half a label; a low lane with fewer than two such ticks labels its outermost ticks on
+/// space between two lanes holds half a label. A low lane with fewer than two such ticks labels its outermost ticks on
 /// the inside.
 fn labelled(ticks: &[(f64, f32)], top: f32, bottom: f32) -> Vec<(f64, f32)> {
     let inside: Vec<(f64, f32)> =
@@ -169,7 +169,7 @@ fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &Fon
     }
 }
 
-/// Draws a dot at the raw sample nearest to a time.
+/// Draws a dot at the raw sample nearest to the given time.
 fn dot(
     painter: &Painter,
     context: &Context<'_>,

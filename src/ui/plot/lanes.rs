@@ -17,10 +17,10 @@ const LEAST: f32 = 44.0;
 const MOST: f32 = 110.0;
 /// Height of the time labels at the bottom, in points.
 const FOOT: f32 = 18.0;
-/// Minimum distance between two ticks in points: normally, and in a low lane.
+/// Minimum distance between two ticks in points, normally and in a low lane.
 const APART: f32 = 28.0;
 const CLOSE: f32 = 13.0;
-/// Width of a character of an axis label in points: the font is monospaced.
+/// Width in points of a character of an axis label, whose font is monospaced.
 const LETTER: f32 = 6.7;
 
 pub(super) struct Lane {
@@ -43,7 +43,7 @@ pub(super) struct Layout {
     pub(super) chart: Rect,
 }
 
-/// Reduced samples, cached between pictures.
+/// Reduced samples, cached between redraws.
 #[derive(Default)]
 pub(super) struct Reduced {
     pictures: Vec<(LineId, Picture)>,
@@ -51,7 +51,7 @@ pub(super) struct Reduced {
     gutter: f32,
 }
 
-/// Inputs of a picture, which is redrawn only if they change.
+/// Inputs of a picture. The picture is redrawn only if they change.
 #[derive(Clone, PartialEq)]
 struct PictureInputs {
     samples: Option<Stamp>,
@@ -64,7 +64,7 @@ impl Reduced {
         self.pictures.iter().find(|(own, _)| *own == line).map(|(_, picture)| picture)
     }
 
-    /// Updates the pictures of the displayed lines if anything has changed.
+    /// Updates the pictures of the displayed lines if any input has changed.
     fn update(&mut self, recorder: &Recorder, grid: &Grid) {
         let shown = |id: &LineId| recorder.visible_series().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));
@@ -161,14 +161,15 @@ fn lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced: &Reduce
     groups.iter().enumerate().map(lane).collect()
 }
 
-/// Returns the step between two ticks of a lane; ticks are closer in a low lane, so that at least two are visible.
+/// Returns the step between two ticks of a lane. Ticks are closer in a low lane, so that at least two are visible.
 fn value_step((low, high): (f64, f64), height: f32) -> f64 {
     let of_distance = |distance: f32| axes::step(high - low, f64::from((height / distance).max(2.0)));
     let step = of_distance(APART);
     if axes::ticks(low, high, step).count() < 2 { of_distance(CLOSE) } else { step }
 }
 
-/// Returns the value range of a lane, either chosen by the user or fitted, or `None` if the lane has no values.
+/// Returns the value range of a lane, either chosen by the user or fitted to the values. Returns `None` if the lane has
+/// no values.
 fn range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> Option<(f64, f64)> {
     if let Some(range) = lines.iter().find_map(|line| line.range) {
         return Some(range);
@@ -187,7 +188,7 @@ mod tests {
     use crate::app::Text;
     use crate::app::recorder::{RecorderAction, Scale};
 
-    /// Returns 1000 samples, a microsecond apart, of one value.
+    /// Returns a recorder with 1000 samples of the same value, one microsecond apart.
     fn recorder(value: f64) -> Recorder {
         let mut recorder = Recorder::new(1_000_000);
         let group = recorder.add_group(&[Kind::Real], 10_000, None);

@@ -28,7 +28,7 @@ pub struct PlotUiState {
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
     shot: snapshot::Screenshot,
-    /// Whether the plot fills the page, or `None` if it cannot.
+    /// Whether the plot fills the page, or `None` if it cannot be enlarged.
     large: Option<bool>,
 }
 
@@ -42,7 +42,7 @@ impl PlotUiState {
         self.large == Some(true)
     }
 
-    /// Moves the plot back into its panel; returns false if the plot was already there.
+    /// Moves the plot back into its panel. Returns false if the plot was already there.
     pub(in crate::ui) fn restore_size(&mut self) -> bool {
         let was = self.is_large();
         self.large = self.large.map(|_| false);
@@ -50,7 +50,7 @@ impl PlotUiState {
     }
 }
 
-/// Recorder of the plot, with the list that collects its actions.
+/// Recorder of a plot, with the list that collects the user's actions.
 pub(super) struct Context<'a> {
     theme: &'a Theme,
     recorder: &'a Recorder,
@@ -64,7 +64,7 @@ impl Context<'_> {
     }
 }
 
-/// Draws a recorder with its toolbar in the available space. `invitation` explains how to fill the recorder.
+/// Draws a recorder with its toolbar in the available space. `invitation` explains how to record samples.
 pub fn plot_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -101,7 +101,7 @@ pub fn plot_ui(
     view.shot.take(ui, picture, context.actions);
 }
 
-/// Draws the chart; returns the time under the pointer.
+/// Draws the chart and returns the time under the pointer.
 fn chart_ui(
     ui: &mut Ui,
     context: &mut Context<'_>,

@@ -7,9 +7,9 @@ use super::lanes::Layout;
 use crate::analysis::Time;
 use crate::app::recorder::{Cursor, RecorderAction};
 
-/// Distance in points within which the pointer hits a cursor.
+/// Distance in points within which the pointer grabs a cursor.
 const NEAR: f32 = 6.0;
-/// Box size in points below which a drag counts as a click.
+/// Size in points of a dragged box below which the drag counts as a click.
 const CLICK: f32 = 5.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub(super) enum Drag {
         from: Pos2,
         to: Pos2,
     },
-    /// The picture itself, with the time that was under the pointer.
+    /// The picture itself, with the time that was under the pointer when the drag began.
     Picture {
         under: Time,
         window: (Time, Time),
@@ -94,7 +94,7 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
     }
 }
 
-/// Zooms into the chosen box: a wide box selects a time span, a tall box a value range, and a box that is both selects
+/// Zooms into the chosen box. A wide box selects a time span, a tall box a value range, and a box that is both selects
 /// both.
 fn zoom_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     let chosen = chosen.intersect(layout.chart);
@@ -161,7 +161,7 @@ fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout
     }
 }
 
-/// Shifts the visible time span by a share of its length.
+/// Shifts the visible time span by the given share of its length.
 fn shift(context: &mut Context<'_>, share: f64) {
     let (from, to) = context.recorder.window();
     let by = (context.recorder.span() as f64 * share) as i64;

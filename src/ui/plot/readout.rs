@@ -136,7 +136,7 @@ fn swatch(ui: &mut Ui, theme: &Theme, line: &Series) {
     ui.painter().rect_filled(rect.shrink(1.0), 2.0, chart::colour(theme, line));
 }
 
-/// Returns the raw sample under the pointer, or the newest.
+/// Formats the raw sample under the pointer, or the newest sample if the pointer is elsewhere.
 fn now(context: &Context<'_>, line: &Series, hovered: Option<Time>) -> String {
     let sample = hovered.map_or_else(|| newest(context, line), |time| context.recorder.at(line, time));
     sample.map_or_else(|| "–".to_owned(), |sample| value(context.theme, line, &sample))
@@ -164,7 +164,7 @@ fn figures(theme: &Theme, line: &Series, measured: &Measured) -> Vec<(String, St
     figures
 }
 
-/// Draws why there are no samples, and the number of invalid samples.
+/// Draws the reason why there are no samples, and the number of invalid samples.
 fn remarks(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measured>) {
     let caption = |words: String, colour: crate::app::Rgb| RichText::new(words).size(theme.sizes.caption).color(colour);
     if let Some(remark) = &line.remark {

@@ -11,17 +11,18 @@ use crate::app::{Action, Picture};
 pub(super) enum Screenshot {
     #[default]
     None,
-    /// The picture is requested as soon as the plot is visible; holds the number of frames waited.
+    /// A picture has been requested, to be taken as soon as the plot is visible. Holds the number of frames waited so
+    /// far.
     Wanted(usize),
-    /// The window's pixels have been requested; holds the plot's position in the previous frame.
+    /// The window's pixels have been requested. Holds the plot's position in the previous frame.
     Asked(Arc<OnceLock<Arc<ColorImage>>>, Rect),
 }
 
-/// Maximum number of frames for the plot to scroll into view.
+/// Maximum number of frames to wait for the plot to scroll into view.
 const FRAMES: usize = 60;
 
 impl Screenshot {
-    /// Requests a picture, though not of the current frame, in which the menu is still open.
+    /// Requests a picture of a later frame, because the menu is still open in the current one.
     pub(super) fn request(&mut self, ctx: &Context) {
         *self = Screenshot::Wanted(0);
         ctx.request_repaint();
@@ -32,8 +33,8 @@ impl Screenshot {
         !matches!(self, Screenshot::None)
     }
 
-    /// Handles the plot drawn at `plot`: requests the window's pixels once the whole plot is visible, and cuts out the
-    /// plot when the pixels have arrived.
+    /// Handles the plot drawn at `plot`. Requests the window's pixels once the whole plot is visible, and crops the
+    /// picture to the plot when the pixels have arrived.
     pub(super) fn take(&mut self, ui: &Ui, plot: Rect, actions: &mut Vec<Action>) {
         match self {
             Screenshot::None => {}
@@ -118,7 +119,8 @@ mod tests {
         );
     }
 
-    /// Draws a frame with a plot at this place in an area of this size; returns the requests made in it.
+    /// Draws a frame with a plot at the given position in an area of the given size. Returns the requests made in the
+    /// frame.
     fn frame(ctx: &Context, shot: &mut Screenshot, area: f32, plot: Rect) -> Vec<Action> {
         let mut actions = Vec::new();
         let screen = Rect::from_min_size(pos2(0.0, 0.0), egui::vec2(area, area));
@@ -131,8 +133,8 @@ mod tests {
         actions
     }
 
-    /// Issue 22.14: the picture is of the plot as it was in the frame of the pixels, without the menu; nothing around it,
-    /// and all of it.
+    /// Issue 22.14: the picture shows the whole plot as it was in the frame of the pixels, without the menu and without
+    /// its surroundings.
     #[test]
     fn the_snapshot_shows_exactly_the_plot_of_its_frame() {
         let ctx = Context::default();
@@ -157,7 +159,7 @@ mod tests {
         assert!(!shot.is_wanted());
     }
 
-    /// Issue 22.14: a plot that is partly invisible gives no picture, which is reported.
+    /// Issue 22.14: no picture is taken of a plot that is partly hidden, and this is reported.
     #[test]
     fn a_partly_hidden_plot_yields_no_snapshot() {
         let ctx = Context::default();

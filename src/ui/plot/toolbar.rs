@@ -69,7 +69,7 @@ fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &st
     response.on_hover_text(&word).on_disabled_hover_text(&word).clicked()
 }
 
-/// Draws the span selector, which shows a preset or the result of zooming.
+/// Draws the time span selector, which shows a preset or the span that results from zooming.
 fn span(ui: &mut Ui, context: &mut Context<'_>) {
     const SECOND: i64 = 1_000_000_000;
     if context.recorder.counts() {
@@ -158,7 +158,7 @@ fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Scre
     context.actions.extend(chosen);
 }
 
-/// Draws the operation in progress: a waiting trigger, or a table being written.
+/// Draws the state of the operation in progress: a trigger waiting, or a table being written.
 fn state(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     if let Some((_, state)) = recorder.trigger() {

@@ -8,7 +8,7 @@ use crate::analysis::Time;
 use crate::analysis::history::{Flags, Picture};
 
 const WIDTH: f32 = 1.5;
-/// Maximum number of points for which a line is drawn smoothly.
+/// Maximum number of points up to which a line is drawn smoothly.
 const SMOOTH: usize = 1500;
 /// Minimum sample spacing in points at which each sample gets a dot.
 const DOTS: f32 = 8.0;
@@ -28,8 +28,8 @@ impl TimeAxis {
         self.left + (time.nanoseconds_since(self.from) as f64 * self.scale) as f32
     }
 
-    /// Returns the left edge of the pixel column for a time. Samples may lie anywhere within a column; the column does
-    /// not move with them.
+    /// Returns the left edge of the pixel column for a time. Columns have fixed positions, wherever the samples
+    /// lie within them.
     fn column(&self, time: Time) -> f32 {
         self.left + ((self.x(time) - self.left) / self.pixel).floor() * self.pixel
     }
@@ -43,7 +43,7 @@ impl TimeAxis {
 pub(super) struct ValueAxis {
     pub(super) low: f64,
     pub(super) bottom: f32,
-    /// Points per unit, never zero.
+    /// Points per value unit, never zero.
     pub(super) scale: f64,
 }
 
@@ -68,7 +68,7 @@ impl ValueAxis {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pen {
     pub(super) colour: Color32,
-    /// Factor from the samples' own unit to the displayed unit.
+    /// Factor from the unit of the samples to the displayed unit.
     pub(super) factor: f64,
     pub(super) marks: bool,
     /// Colours of invalid samples and of samples with a warning.
@@ -94,7 +94,8 @@ pub(super) fn shapes(
     }
 }
 
-/// Draws one vertical bar per pixel column, from the minimum to the maximum, extended to the end of the previous
+/// Draws one vertical bar per pixel column, from the minimum to the maximum of its samples, extended to join the end of
+/// the previous
 /// column.
 fn dense(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen: &Pen, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
@@ -215,7 +216,7 @@ fn clip(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
     (enters <= leaves).then(|| (from + along * enters, from + along * leaves))
 }
 
-/// Draws ticks at the bottom of the lane for invalid samples and warnings, at any zoom.
+/// Draws ticks at the bottom of the lane for invalid samples and warnings, regardless of the zoom.
 fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &Pen, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     for pixel in &picture.pixels {
@@ -253,7 +254,7 @@ mod tests {
         assert_eq!(clip(pos2(50.0, -50.0), pos2(50.0, 25.0), LANE), Some((pos2(50.0, 0.0), pos2(50.0, 25.0))));
     }
 
-    /// Draws 100 columns of a nanosecond each: `count` samples evenly over them, some of them marked.
+    /// Draws `count` samples spread evenly over 100 columns of one nanosecond each, some of them flagged.
     fn drawn(count: i64, value: impl Fn(i64) -> f64, flags: impl Fn(i64) -> Flags) -> Vec<Shape> {
         let mut history = History::new(&[Kind::Real], 1_000_000);
         let times: Vec<Time> = (0..count).map(|at| Time::from_nanoseconds(at * 100_000 / count)).collect();

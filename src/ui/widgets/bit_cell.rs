@@ -11,7 +11,7 @@ pub(crate) struct BitCell<'a> {
     pub(crate) bit: Option<bool>,
     /// Text shown in place of an unknown bit.
     pub(crate) blank: &'a str,
-    /// Whether the bit reports an error and is filled with its colour.
+    /// Whether the bit reports an error and is filled with the error colour.
     pub(crate) alarm: bool,
 }
 

@@ -16,22 +16,22 @@ use crate::ui::widgets::series;
 
 #[derive(Clone, Debug, Default)]
 pub struct Chart<'a> {
-    /// Series, the main one first.
+    /// Series to draw, the main one first.
     pub traces: &'a [Trace],
     pub label: &'a str,
     pub value: &'a str,
     pub height: f32,
     pub x_unit: &'a str,
     pub y_unit: &'a str,
-    /// Limits of the horizontal axis, or `None` to fit them.
+    /// Limits of the horizontal axis, or `None` to fit the limits to the data.
     pub x_range: Option<(f64, f64)>,
-    /// Tick spacing of the horizontal axis, or `None` to fit it.
+    /// Tick spacing of the horizontal axis, or `None` for automatic spacing.
     pub x_step: Option<f64>,
-    /// Lowest value always included in the vertical axis.
+    /// Lowest value that the vertical axis always includes.
     pub y_floor: Option<f64>,
-    /// Labels at points, such as peaks.
+    /// Labels at individual points, such as peaks.
     pub marks: &'a [(f64, f64, String)],
-    /// Whether to draw bars instead of lines; bar positions are whole numbers.
+    /// Whether to draw bars instead of lines. The positions of bars are whole numbers.
     pub bars: bool,
 }
 
@@ -107,7 +107,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
     });
 }
 
-/// Draws a coloured line beside each series name.
+/// Draws the series names, each beside a line in the colour of the series.
 fn legend(ui: &mut Ui, theme: &Theme, traces: &[Trace]) {
     if traces.len() < 2 {
         return;
@@ -153,7 +153,7 @@ fn bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
     }
 }
 
-/// Returns the side of a point where its label fits.
+/// Returns the side of a point on which its label fits.
 fn label_side(traces: &[Trace], x: f64) -> Align2 {
     let ends = traces.iter().flat_map(|trace| trace.points.first().into_iter().chain(trace.points.last()));
     let (least, most) = ends.fold((x, x), |(least, most), (end, _)| (least.min(*end), most.max(*end)));
@@ -164,7 +164,7 @@ fn label_side(traces: &[Trace], x: f64) -> Align2 {
     }
 }
 
-/// Returns an axis that labels every tick down to the given spacing in points.
+/// Returns an axis that labels all ticks at least the given number of points apart.
 fn axis(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'static> {
     hints.formatter(move |mark, _| tick(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }
@@ -185,7 +185,7 @@ fn steps((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
     (0..MOST).map(value).take_while(|value| *value <= most).map(|value| GridMark { value, step_size: step }).collect()
 }
 
-/// Returns a tick label with as many decimals as the step needs.
+/// Formats a tick label with as many decimals as the step needs.
 fn tick(theme: &Theme, mark: GridMark) -> String {
     let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 9.0) as usize;
     theme.number(mark.value, decimals)

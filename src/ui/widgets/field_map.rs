@@ -28,9 +28,9 @@ pub struct MapField {
     /// Number of blocks in the field; an empty field is drawn as one block.
     pub blocks: usize,
     pub label: String,
-    /// Caption below the number; of its parts, separated by ` · `, as many are shown as fit.
+    /// Caption below the number, in parts separated by ` · `. As many parts are shown as fit.
     pub caption: String,
-    /// Colour index, one of eight.
+    /// Colour index, one of eight colours.
     pub colour: usize,
     pub locked: bool,
     /// Whether the field's access code is unknown.
@@ -50,7 +50,7 @@ pub struct FieldMap<'a> {
     pub free_tooltip: &'a str,
     pub selected: Option<u8>,
     pub block_bytes: usize,
-    /// Sizes in blocks that the last field may be dragged to, or `None` to hide the handle.
+    /// Sizes in blocks to which the last field may be dragged, or `None` to hide the handle.
     pub resize: Option<RangeInclusive<usize>>,
 }
 
@@ -58,13 +58,13 @@ pub struct FieldMap<'a> {
 pub enum MapEvent {
     Select(u8),
     SelectFree,
-    /// Resizes the last field to a size that differs from the current one.
+    /// The user resized the last field to a size that differs from the current one.
     ResizeLast {
         blocks: usize,
     },
 }
 
-/// Draws the map and returns the user's action. Each `Ui` holds one map; another needs its own id (`push_id`).
+/// Draws the map and returns the user's action. Only one map per `Ui` is possible without a separate id (`push_id`).
 pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEvent> {
     let sizes: Vec<usize> = map.fields.iter().map(|field| field.blocks.max(1)).collect();
     let taken: usize = sizes.iter().sum();
@@ -100,7 +100,7 @@ pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEv
     handle(ui, theme, &strip, base, map, taken.saturating_sub(last), last).or(event)
 }
 
-/// Handles arrow keys between the parts before they are announced, so that the focus moves in memory order rather than
+/// Handles arrow keys before the parts of the map are announced, so that the focus moves in memory order rather than
 /// to the nearest widget.
 fn walk(ui: &Ui, ids: &[Id], has_free: bool) {
     let ids = if has_free { ids } else { ids.split_last().map_or(ids, |(_, fields)| fields) };

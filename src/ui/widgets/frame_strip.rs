@@ -28,9 +28,9 @@ pub struct StripField {
     pub value: String,
     /// Number of bits, at least 1.
     pub bits: usize,
-    /// Colour index, one of eight, or `None` if the field only encloses other fields.
+    /// Colour index, one of eight colours, or `None` if the field only encloses other fields.
     pub colour: Option<usize>,
-    /// Verdict reported by the field: a fault, a warning, or that all is well; `None` if it reports nothing.
+    /// Verdict that the field reports (a fault, a warning or no problem), or `None` if it reports nothing.
     pub lit: Option<Verdict>,
     pub tooltip: String,
 }
@@ -40,11 +40,11 @@ pub struct FrameStrip<'a> {
     pub label: &'a str,
     /// Fields in transmission order.
     pub fields: &'a [StripField],
-    /// Bits in transmission order; missing or `None` bits are unknown.
+    /// Bits in transmission order. Missing or `None` bits are unknown.
     pub bits: &'a [Option<bool>],
 }
 
-/// Height of a cell, of the bar below it, and of the two text lines.
+/// Heights of a cell, of the bar below it, and of the two text lines.
 const CELL: f32 = 24.0;
 const BAR: f32 = 2.0;
 const NAME: f32 = 15.0;
@@ -104,7 +104,7 @@ impl StripField {
     }
 }
 
-/// Text lines below a field: its name and its value.
+/// The text lines below a field, which show its name and its value.
 struct Words {
     name: Arc<Galley>,
     value: Arc<Galley>,
@@ -135,7 +135,7 @@ impl Words {
     }
 }
 
-/// Draws the bits of a piece and the bar below that joins them.
+/// Draws the bits of a piece and the bar below them that joins them.
 fn cells(
     painter: &Painter,
     theme: &Theme,

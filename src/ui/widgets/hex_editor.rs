@@ -33,12 +33,12 @@ pub use view::HexView;
 
 #[derive(Clone, Copy, Debug)]
 pub struct HexModel<'a> {
-    /// Bytes read from the device; bytes beyond the end count as changed.
+    /// Bytes read from the device. Displayed bytes beyond the end count as changed.
     pub device: &'a [u8],
-    /// Displayed bytes, including the edits.
+    /// Displayed bytes, including the user's edits.
     pub wanted: &'a [u8],
     pub marks: &'a [HexMark<'a>],
-    /// Reason why the bytes cannot be edited, or `None` if they can.
+    /// Reason why the bytes cannot be edited, or `None` if they are editable.
     pub read_only: Option<&'a Text>,
     /// Maximum number of lines shown at once.
     pub lines: usize,
@@ -53,15 +53,15 @@ pub struct HexMark<'a> {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HexEdit {
-    /// Writes bytes from an address on; the range always fits.
+    /// Writes bytes starting at an address. The range always fits.
     Put {
         address: usize,
-        /// New bytes, at least one.
+        /// New bytes, of which there is at least one.
         bytes: Vec<u8>,
     },
     Undo,
     Redo,
-    /// Restores the device's bytes; at least one byte differs from them.
+    /// Restores the device's bytes. At least one byte differs from them.
     Revert {
         range: Range<usize>,
     },
@@ -86,13 +86,14 @@ impl<'a> HexModel<'a> {
     }
 }
 
-/// Height of a line, of the area around the lines, and of the typed view below the editor.
+/// Heights of a line, of the area around the lines, and of the typed view below the editor.
 const LINE: f32 = 20.0;
 const AROUND: f32 = 60.0;
 const TYPED: f32 = 240.0;
 
-/// Returns the number of lines that an editor of the given height shows. Beside the typed view it fills the height;
-/// above the typed view it leaves room for the view but shows at least sixteen lines.
+/// Returns the number of lines that an editor shows in the given height. Beside the typed view, the editor fills the
+/// height;
+/// above the typed view, it leaves room for the view but shows at least sixteen lines.
 pub fn hex_lines(height: f32, beside: bool) -> usize {
     if beside {
         ((height - AROUND) / LINE).clamp(4.0, 64.0) as usize
@@ -101,7 +102,7 @@ pub fn hex_lines(height: f32, beside: bool) -> usize {
     }
 }
 
-/// Draws the editor and returns the user's actions in order; the caller applies them to the bytes.
+/// Draws the editor and returns the user's actions in order. The caller applies them to the bytes.
 pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let id = ui.make_persistent_id(("hex_editor", label));
     view.fit(model.wanted.len());
@@ -222,7 +223,7 @@ fn tell(ui: &Ui, response: &Response, label: &str, model: &HexModel<'_>, view: &
     });
 }
 
-/// Draws the cursor location, or why an action was refused.
+/// Draws the cursor location, or the reason why an action was refused.
 fn status(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
     ui.horizontal(|ui| {
         ui.set_min_height(grid.row);
@@ -251,7 +252,7 @@ fn status(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &
     });
 }
 
-/// Returns a caption with its addresses in the monospaced font, since the text font would turn the `0x` into a
+/// Returns a caption with its addresses in the monospaced font, since the text font would display the `x` in `0x` as a
 /// multiplication sign.
 fn sentence(theme: &Theme, words: &str, colour: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();

@@ -27,10 +27,10 @@ pub struct HoldButton<'a> {
     pub enabled: bool,
 }
 
-/// Context of the hold buttons, set by the window before they are drawn.
+/// Context of the hold buttons, which the window sets before they are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::ui) struct HoldSurroundings {
-    /// Whether something covers the window, so that no hold button can be pressed.
+    /// Whether the window is covered, so that no hold button can be pressed.
     pub(in crate::ui) covered: bool,
     pub(in crate::ui) moving: bool,
 }
@@ -38,15 +38,15 @@ pub(in crate::ui) struct HoldSurroundings {
 #[derive(Clone, Copy, Default)]
 struct HoldMemory {
     state: HoldState,
-    /// Pass in which the button was last drawn.
+    /// Number of the pass in which the button was last drawn.
     pass: u64,
     modifiers: Modifiers,
 }
 
-/// State of the previous frame's hold buttons, as seen by the window.
+/// State of the hold buttons in the previous frame, as seen by the window.
 #[derive(Clone, Copy, Default)]
 struct DrawnButtons {
-    /// Button with the keyboard focus, and the pass in which the button had it.
+    /// Button with the keyboard focus, and the last pass in which it had the focus.
     keyboard: Option<(Id, u64)>,
     pointer: Option<u64>,
 }
@@ -57,7 +57,7 @@ pub(in crate::ui) fn surround_hold_buttons(ctx: &Context, surroundings: HoldSurr
     ctx.data_mut(|data| data.insert_temp(Id::unique("around hold buttons"), surroundings));
 }
 
-/// Returns whether a hold button had the keyboard focus in the previous frame and still has it, in which case keys
+/// Returns whether a hold button had the keyboard focus in the previous frame and still has it. In this case, keys
 /// belong to the button.
 pub(in crate::ui) fn has_hold_button_keyboard(ctx: &Context) -> bool {
     let drawn = drawn(ctx);
@@ -108,7 +108,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
             {
                 continue;
             }
-            if let Some(what) = translated(event, place, pressed_here) {
+            if let Some(what) = translate_event(event, place, pressed_here) {
                 state.take(now, what);
             }
         }
@@ -139,8 +139,9 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     event
 }
 
-/// Translates an event for the button at `place`. `pressed_here`: the pointer press in progress began on the button.
-fn translated(event: &Event, place: Rect, pressed_here: bool) -> Option<HoldInput> {
+/// Translates an event for the button at `place`. `pressed_here` states whether the pointer press in progress began on
+/// the button.
+fn translate_event(event: &Event, place: Rect, pressed_here: bool) -> Option<HoldInput> {
     Some(match event {
         Event::WindowFocused(has) => HoldInput::WindowFocus(*has),
         Event::Key { key, pressed: false, .. } => HoldInput::Up(press_key(*key)?),

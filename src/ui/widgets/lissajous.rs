@@ -21,9 +21,9 @@ use crate::ui::widgets::series;
 #[derive(Clone, Debug, Default)]
 pub struct Lissajous<'a> {
     pub figures: &'a [Figure],
-    /// Minimum and maximum good length of the amplitude vector, in volts.
+    /// Limits of the good range for the length of the amplitude vector, in volts.
     pub ok_v: (f64, f64),
-    /// Lengths of the amplitude vector, in volts, outside which it is a fault.
+    /// Limits for the length of the amplitude vector, in volts, outside which the signal is faulty.
     pub fault_v: (f64, f64),
     pub label: &'a str,
     pub value: &'a str,
@@ -31,9 +31,9 @@ pub struct Lissajous<'a> {
 
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
-    /// Samples as a picture in the series colour, with the square that the picture covers.
+    /// Picture of the samples in the series colour, with the square that the picture covers.
     pub picture: Option<(TextureId, Square)>,
-    /// Fitted closed curve as (cosine, sine) points in volts.
+    /// Fitted closed curve as (cosine, sine) points, in volts.
     pub curve: Vec<(f64, f64)>,
     /// Colour index of the series.
     pub colour: usize,
@@ -41,10 +41,10 @@ pub struct Figure {
 }
 
 const CIRCLE: usize = 120;
-/// Label steps of an axis in volts; the finest step with few enough labels is used.
+/// Label steps of an axis in volts. The finest step with few enough labels is used.
 const STEPS: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
-/// Square on the screen, with the voltage at its edge.
+/// The square on the screen in which the figure is drawn, with the voltage at its edge.
 #[derive(Clone, Copy)]
 struct PlotArea {
     rect: Rect,
@@ -95,7 +95,8 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
     }
 }
 
-/// Returns a single-colour picture of a density, brighter for more samples; even a single sample stays visible.
+/// Returns a single-colour picture of a sample density. More samples are brighter, and even a single sample stays
+/// visible.
 pub fn phosphor(density: &Density, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a share of full brightness.
     const LEAST: f32 = 0.4;
@@ -111,7 +112,8 @@ pub fn phosphor(density: &Density, colour: Color32) -> ColorImage {
     ColorImage::new([side, side], pixels)
 }
 
-/// Returns the voltage from the centre to the edge, which covers all samples and curves and at least the good ring.
+/// Returns the voltage from the centre to the edge. The range covers all samples and curves, and at least the good
+/// ring.
 fn range(figure: &Lissajous<'_>) -> f64 {
     let curves = figure.figures.iter().flat_map(|own| &own.curve).map(|(x, y)| x.abs().max(y.abs()));
     let pictures = figure.figures.iter().filter_map(|own| Some(own.picture?.1.half_v));

@@ -35,7 +35,7 @@ pub use step_ring::{StepRing, step_ring};
 pub use steps::{Gauge, StepRow, StepState, Steps, StepsEvent, steps};
 pub use typed_view::typed_view;
 
-/// Draws the focus ring: two points wide in the accent colour, one point outside the widget.
+/// Draws the focus ring, which is two points wide in the accent colour and one point outside the widget.
 pub(crate) fn focus_ring(painter: &Painter, theme: &Theme, rect: Rect, corners: impl Into<CornerRadius>) {
     let corners = corners.into() + CornerRadius::same(1);
     painter.rect_stroke(rect.expand(1.0), corners, Stroke::new(2.0, theme.palette.accent), StrokeKind::Outside);
@@ -51,7 +51,7 @@ pub(crate) fn hatch(painter: &Painter, theme: &Theme, rect: Rect, colour: Color3
     }
 }
 
-/// Returns the colour of a series; colours repeat after the eighth.
+/// Returns the colour of a series. Colours repeat after the eighth series.
 pub(crate) fn series(theme: &Theme, number: usize) -> Color32 {
     let colours = &theme.palette.series;
     colours.iter().cycle().nth(number % colours.len()).copied().map_or(theme.palette.muted.into(), Color32::from)

@@ -44,7 +44,7 @@ pub struct RegisterLocation {
 pub struct RegisterTable<'a> {
     pub label: &'a str,
     pub groups: &'a [RegisterGroup],
-    /// Function that returns a register of a group, called only for visible or unfolded registers.
+    /// Function that returns a register of a group. It is called only for visible or unfolded registers.
     pub row: &'a dyn Fn(RegisterLocation) -> RegisterRow,
     pub kind: RegisterKind,
 }
@@ -52,9 +52,9 @@ pub struct RegisterTable<'a> {
 /// Value type of a table, which determines the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
-    /// Byte values, shown in hexadecimal digits and as numbers.
+    /// Byte values, shown both in hexadecimal digits and as numbers.
     Bytes {
-        /// Number of bytes in the widest register, all of which must be visible.
+        /// Number of bytes in the widest register. All of them must be visible.
         widest: usize,
     },
     Numbers,
@@ -69,36 +69,37 @@ pub struct RegisterGroup {
 
 #[derive(Clone, Debug, Default)]
 pub struct RegisterRow {
-    /// Address such as `0x04:0x1F`, or a number.
+    /// Register address such as `0x04:0x1F`, or a number.
     pub address: String,
     pub name: String,
-    /// Value in the form in which it is entered: bytes in hexadecimal digits, or a number; empty if not read.
+    /// Value in the form in which it is entered, either bytes in hexadecimal digits or a number. Empty if the register
+    /// has not been read.
     pub value: String,
     pub decimal: String,
     pub meaning: String,
     /// Access: `R`, `W` or `RW`.
     pub access: String,
-    /// Factory setting in the same form as the value; empty if unknown.
+    /// Factory setting in the same form as the value, or empty if unknown.
     pub default: String,
     pub range: String,
     pub differs: bool,
     pub changed: bool,
-    /// Previous value; empty if unknown.
+    /// Previous value, or empty if unknown.
     pub before: String,
-    /// Whether the value was edited but not yet written.
+    /// Whether the value has been edited but not yet written.
     pub edited: bool,
-    /// Cost of writing the register, in words, if any.
+    /// Description of the cost of writing the register, if any.
     pub cost: Option<String>,
-    /// Details of non-volatile storage, if the register keeps its value without supply.
+    /// Details of non-volatile storage, if the register keeps its value without supply voltage.
     pub kept: Option<String>,
-    /// Reason why the value cannot be edited, or `None` if it can.
+    /// Reason why the value cannot be edited, or `None` if it is editable.
     pub read_only: Option<String>,
     pub fields: Vec<RegisterBits>,
 }
 
 #[derive(Clone, Debug, Default)]
 pub struct RegisterBits {
-    /// Bit range such as `b3…b0`.
+    /// Bit range of the field, such as `b3…b0`.
     pub bits: String,
     pub name: String,
     pub value: String,
@@ -120,9 +121,9 @@ pub struct RegisterOutput {
 }
 
 const LINE: f32 = 16.0;
-/// Margin between the edge of the table and its lines.
+/// Margin in points between the edge of the table and its lines.
 const MARGIN: i8 = 4;
-/// Space for the longest number in characters; −2³¹ takes eleven.
+/// Number of characters reserved for the longest number. −2³¹ takes eleven.
 const NUMBER: usize = 12;
 
 /// Returns the width of a value, including the gap to the next column.
@@ -151,7 +152,7 @@ impl RegisterRow {
 }
 
 /// Draws the table at the given height and returns the user's actions. `take` receives the text entered for a register
-/// and returns why it is refused.
+/// and returns the reason if it is refused.
 pub fn register_table(
     ui: &mut Ui,
     theme: &Theme,
@@ -176,7 +177,7 @@ pub fn register_table(
             // The lines are beside their scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
             let columns = Columns::new(table.kind, width, value_width(theme, table.kind));
-            output.hides_columns = columns.hides(table.kind);
+            output.hides_columns = columns.is_hidden_kind(table.kind);
             paint::header(ui, theme, table.kind, &columns);
             let room = (height - 2.0 * f32::from(MARGIN) - paint::HEADER).max(LINE * 3.0);
             body(ui, theme, id, &columns, table, &lines, room, view, take, &mut output)
@@ -315,7 +316,7 @@ fn row(
             .zip(marks)
             .is_some_and(|(pos, marks)| pos.x - rect.left() < marks.min + paint::CARET && !row.fields.is_empty());
         if on_caret {
-            view.unfold(place, !open);
+            view.set_expanded(place, !open);
         }
         view.selected = Some(Selected::Row(place));
         view.refused = None;
@@ -343,7 +344,7 @@ fn value_info(role: Role, label: &str, value: &str) -> WidgetInfo {
     info
 }
 
-/// Describes the table to screen readers.
+/// Sets the accessible description of the table for screen readers.
 fn tell(response: &Response, theme: &Theme, table: &RegisterTable<'_>, view: &RegisterView) {
     let value = match view.selected {
         Some(Selected::Row(place)) => {

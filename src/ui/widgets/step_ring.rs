@@ -16,11 +16,11 @@ use crate::ui::widgets::series;
 
 #[derive(Clone, Copy, Debug)]
 pub struct StepRing<'a> {
-    /// Step of the absolute position, 0 to 31.
+    /// Number of the step at the absolute position, 0 to 31.
     pub step: u64,
     /// Analogue position in periods, 0 to 1.
     pub phase: f64,
-    /// Offset from the analogue to the absolute position in periods, or `None` if its direction is ambiguous.
+    /// Offset in periods from the analogue to the absolute position, or `None` if its direction is ambiguous.
     pub apart: Option<f64>,
     pub colour: Color32,
     pub label: &'a str,
@@ -28,12 +28,12 @@ pub struct StepRing<'a> {
 }
 
 const STEPS: u8 = 32;
-/// Ring width, as a share of the radius.
+/// Width of the ring, as a share of the radius.
 const WIDTH: f32 = 0.14;
-/// Share of a step left free at each end of its segment.
+/// Share of a step left empty at each end of its segment.
 const GAP: f64 = 0.08;
 
-/// Circle around a centre point.
+/// A circle, given by its centre point and radius.
 #[derive(Clone, Copy)]
 struct Dial {
     middle: Pos2,

@@ -25,10 +25,10 @@ pub struct StepRow {
     pub title: String,
     pub state: StepState,
     pub word: String,
-    /// Current task, result, or reason for failure; may be empty.
+    /// Current task, result, or reason for failure. May be empty.
     pub note: String,
     pub gauges: Vec<Gauge>,
-    /// Completed share, 0 to 1, or `None` if the step is not running or its share is unknown.
+    /// Completed share, from 0 to 1, or `None` if the step is not running or the share is unknown.
     pub progress: Option<f32>,
 }
 
@@ -48,12 +48,12 @@ pub struct Gauge {
     pub name: String,
     /// Current value, or `None` if none is available.
     pub value: Option<f64>,
-    /// Value with its unit, ready for display.
+    /// Value with its unit, formatted for display.
     pub shown: String,
     pub allowed: RangeInclusive<f64>,
     /// Best range, or `None` if all allowed values are equally good.
     pub best: Option<RangeInclusive<f64>>,
-    /// Allowed range as a label: `498…502 rpm`.
+    /// Label for the allowed range, such as `498…502 rpm`.
     pub limits: String,
     pub scale: RangeInclusive<f64>,
 }
@@ -61,9 +61,9 @@ pub struct Gauge {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Steps<'a> {
     pub steps: &'a [StepRow],
-    /// Label of the waiting step's start button, and why the button is disabled, if so.
+    /// Label of the waiting step's start button, with the reason if the button is disabled.
     pub start: Option<(&'a str, Result<(), &'a str>)>,
-    /// Label of the button that skips the waiting step, if it can be skipped.
+    /// Label of the button that skips the waiting step, or `None` if the step cannot be skipped.
     pub skip: Option<&'a str>,
 }
 
@@ -183,8 +183,8 @@ fn content(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> Opt
     buttons(ui, theme, model)
 }
 
-/// Draws the buttons. Start sits at the end of the text, with Skip and the obstacle beside it, so that Start stays in
-/// position while a motor is brought up to speed.
+/// Draws the buttons. Start is at the end of the text, followed by Skip and the obstacle, so that Start does not
+/// move while a motor is brought up to speed.
 fn buttons(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     if model.start.is_none() && model.skip.is_none() {

@@ -28,7 +28,7 @@ pub(crate) fn window<State>(
         .with_size(Vec2::new(900.0, 500.0))
         .with_context_setup(|ctx| {
             install_fonts(ctx);
-            theme().dress(ctx);
+            theme().apply_to(ctx);
         })
         // A double click is two within a third of a second.
         .with_step_dt(0.02)

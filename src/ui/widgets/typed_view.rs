@@ -13,7 +13,7 @@ use super::focus_ring;
 use crate::bits::{self, TypedKind, TypedRow};
 use crate::ui::{Theme, icons};
 
-/// Time in seconds for which a copied value stays marked.
+/// Time in seconds for which a value stays marked after being copied.
 const COPIED: f64 = 1.2;
 
 struct Columns {

@@ -139,7 +139,7 @@ fn device() -> DeviceKey {
     DeviceKey { kind, device_type: one.clone(), serial_number: one, is_virtual: true }
 }
 
-fn agreed(seen: Option<u64>, ops: &[u64], force_wear: bool) -> ApprovedPlan<Prepared> {
+fn confirm_plan(seen: Option<u64>, ops: &[u64], force_wear: bool) -> ApprovedPlan<Prepared> {
     let plan = Plan { base: (), ops: ops.iter().copied().map(Op).collect() };
     let consent = Consent::to(plan.id());
     ApprovedPlan { prepared: Prepared { seen, plan }, consent, force_wear }
@@ -166,7 +166,7 @@ fn every_write_takes_all_steps_in_order() {
     for (label, seen, refuses, ends_early, steps, spent) in cases {
         let root = tempfile::tempdir().unwrap();
         let mut spy = Spy::new(&Store::at(root.path()), refuses, ends_early);
-        let ended = write(&mut spy, &agreed(Some(seen), &[1, 2], false));
+        let ended = write(&mut spy, &confirm_plan(Some(seen), &[1, 2], false));
         assert_eq!(spy.steps, steps, "{label}");
         assert_eq!(cycles_seen(&spy.store, &device()), Some(spent), "{label}");
         match ended {
@@ -186,10 +186,10 @@ fn every_write_takes_all_steps_in_order() {
 fn nothing_is_written_without_operations_or_with_another_plans_consent() {
     let root = tempfile::tempdir().unwrap();
     let mut spy = Spy::new(&Store::at(root.path()), false, false);
-    let done = write(&mut spy, &agreed(Some(0), &[], false)).ok().unwrap();
+    let done = write(&mut spy, &confirm_plan(Some(0), &[], false)).ok().unwrap();
     assert_eq!((done.written, done.backup), (Written::default(), None));
-    let consent = agreed(Some(0), &[2], false).consent;
-    let ended = write(&mut spy, &ApprovedPlan { consent, ..agreed(Some(0), &[1], false) });
+    let consent = confirm_plan(Some(0), &[2], false).consent;
+    let ended = write(&mut spy, &ApprovedPlan { consent, ..confirm_plan(Some(0), &[1], false) });
     assert!(matches!(ended, Err(JobError::NotBegun(NotBegun::OtherPlan))) && spy.steps.is_empty());
 }
 
@@ -224,12 +224,12 @@ fn an_unusable_logbook_prevents_a_write() {
     // Not read; or read before and not to be written now.
     for seen in [seen, Some(0)] {
         let mut plain = Plain(0);
-        let ended = write(&mut plain, agreed(seen, &[2], false));
+        let ended = write(&mut plain, confirm_plan(seen, &[2], false));
         let refused = matches!(ended, Err(JobError::NotBegun(NotBegun::WearUnknown { cost: 2 })));
         assert!(refused && plain.0 == 0, "{seen:?}");
-        let Ok(done) = write(&mut plain, agreed(seen, &[2], true)) else { panic!("{seen:?}") };
+        let Ok(done) = write(&mut plain, confirm_plan(seen, &[2], true)) else { panic!("{seen:?}") };
         assert!(done.logbook_warning.is_some() && plain.0 == 1, "{seen:?}");
         // An operation without cost causes no wear.
-        assert!(write(&mut plain, agreed(seen, &[0], false)).is_ok() && plain.0 == 2, "{seen:?}");
+        assert!(write(&mut plain, confirm_plan(seen, &[0], false)).is_ok() && plain.0 == 2, "{seen:?}");
     }
 }

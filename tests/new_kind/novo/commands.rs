@@ -3,8 +3,8 @@
 use encoder_studio::app::Given;
 use encoder_studio::cli::{
     Command, Common, DeviceCommands, Done, Failure, Output, Position, ProfileCommands, Restore, Result, Runs, Save,
-    Simulate, Simulated, UnrestoredItems, agreed, check_wear, plan, readings, restore_options, save_profile, settings,
-    to_restore, write_restore,
+    Simulate, Simulated, UnrestoredItems, check_wear, confirm_plan, plan, readings, restore_options, save_profile,
+    settings, to_restore, write_restore,
 };
 use encoder_studio::profile::{Body, Operation};
 use encoder_studio::result_of;
@@ -64,7 +64,7 @@ impl ProfileCommands for NovoCommands {
         let left = UnrestoredItems { unchanged, missing: Vec::new(), redo: Vec::new() };
         write_restore(output, restore, &shown, &left, || {
             check_wear::<Novo>(&restore.consent, &prepared)?;
-            let agreed = agreed(output, &restore.consent, prepared, &[&shown.text])?;
+            let agreed = confirm_plan(output, &restore.consent, prepared, &[&shown.text])?;
             let written = result_of!(runner.run(Job::Commit(Box::new(agreed)))?, Came::Committed(written) => *written);
             Ok(plan::WriteSummary::of(output, written))
         })

@@ -134,7 +134,7 @@ impl SessionEvents for Encoder {
         self.forget_plan();
     }
     fn ended_early(&mut self, how: EarlyEnd<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
-        self.cut_write(how, texts)
+        self.handle_cut_write(how, texts)
     }
 }
 
@@ -146,7 +146,7 @@ impl DeviceModel for Encoder {
     fn connect(&mut self, opened: Opened<Novo>, services: &mut Services) {
         self.let_go(JobEnd::Cancelled, services);
         self.track.begin(&opened.began);
-        self.session.take_line(opened, services);
+        self.session.adopt_line(opened, services);
         self.submit(Job::Survey, services);
     }
     fn act(&mut self, Action::Set(item, value): Action, _: &mut ActContext<'_>) {

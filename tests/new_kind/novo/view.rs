@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 use encoder_studio::app::connect::Connect as Dialog;
 use encoder_studio::app::{Action as StudioAction, AnyDevice, PendingEdits, Rgb, Studio, Text, explain};
-use encoder_studio::ui::controls::{card, entry, settled_entry, text_entry};
+use encoder_studio::ui::controls::{card, committed_entry, entry, text_entry};
 use encoder_studio::ui::{PageInfo, TabPage, Theme, TypedConnectForm, TypedDeviceView, backups, edit_bar, icons, page};
 
 use super::device_type::NovoForm;
@@ -55,7 +55,7 @@ impl TypedDeviceView for NovoView {
                     for (item, (name, typed)) in ITEMS.into_iter().zip(typed).enumerate() {
                         let shown = encoder.wanted().map_or(String::new(), |values| values[item].to_string());
                         entry(ui, theme, name, |ui| {
-                            settled_entry(ui, typed, &shown, 96.0, name, |text| {
+                            committed_entry(ui, typed, &shown, 96.0, name, |text| {
                                 let value = text.parse().map_err(|_| explain::plain(text))?;
                                 actions.push(StudioAction::device(device.id(), Action::Set(item, value)));
                                 Ok(())

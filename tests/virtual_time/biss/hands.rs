@@ -66,7 +66,7 @@ impl Hands {
         let rpm = match demand.task {
             Task::Turn(run) => {
                 let (calibration, wiegand) = self.rpm;
-                let speed = if run.calibrates() { calibration } else { wiegand };
+                let speed = if run.is_calibration() { calibration } else { wiegand };
                 if run.is_clockwise() { speed } else { -speed }
             }
             Task::Stand | Task::StandAtPlace => 0.0,

@@ -174,7 +174,7 @@ pub(crate) fn carry_out(script: Script, ops: Vec<Op>) -> (Result<Written, Box<In
     let (mut station, sent) = (station(""), script.sent.clone());
     let mut steps = Vec::new();
     let ended: Result<Committed, JobError> = {
-        let master = Master::over(script, &mut station).telling(|step| steps.push(step));
+        let master = Master::over(script, &mut station).with_reporter(|step| steps.push(step));
         let mut write = EncoderWrite { master, identity: &commit.prepared.identity };
         // Without the words that read again.
         let begins = &mut |at: Progress<&Op>| {

@@ -17,7 +17,7 @@ fn status(byte: u8) -> DataFieldStatus {
 /// Returns an encoder with four fields, one of them guarded by its own code and write protected.
 fn scene() -> Desk {
     let mut desk = Desk::new("codes=2:66&position=4096");
-    desk.know_code(2, 0x66);
+    desk.remember_code(2, 0x66);
     for (number, byte, count) in [(1, 0xE8, 16), (2, 0xC9, 32), (3, 0xC8, 16)] {
         desk.change(Change::CreateField { number, status: status(byte) }).unwrap();
         let bytes = bytes(number, count);
@@ -46,7 +46,7 @@ fn recorded(name: &str, change: Change) {
 fn recorded_on(name: &str, original: Desk, change: Change) {
     compare(&format!("hiperface/{name}"), None, &mut || {
         let mut desk = original.copied();
-        desk.know_code(2, 0x66);
+        desk.remember_code(2, 0x66);
         let prepared = desk.prepare(change.clone()).unwrap();
         let (lines, cancel) = listen(&mut desk.session);
         let tap = desk.tap.clone();

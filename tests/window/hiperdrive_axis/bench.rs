@@ -65,7 +65,7 @@ pub(super) fn until_ready(desk: &mut Desk) {
     });
 }
 
-pub(super) fn begun(link: &str) -> Desk {
+pub(super) fn new_form(link: &str) -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
     desk.open(link);
@@ -184,7 +184,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         assert_eq!((own.step(), own.is_writing()), (step, false), "{hindrance:?} of {number}");
         // The last step writes nothing that is saved.
         assert_eq!(own.is_saved(), step == AxisStep::PowerCycle, "{hindrance:?} of {number}");
-        assert_eq!(own.fallen(), None, "{hindrance:?} of {number}");
+        assert_eq!(own.invalidated_text(), None, "{hindrance:?} of {number}");
         if hindrance == WriteFault::CutOff && matches!(step, AxisStep::Reference | AxisStep::Upper) {
             control(desk);
         }

@@ -8,7 +8,7 @@ use encoder_studio::sim::Faults;
 use super::*;
 
 /// Returns a drive whose position was set to 128 steps and that is now 0.15 turns from there.
-fn elsewhere() -> Desk {
+fn other_mode_text() -> Desk {
     let mut desk = referenced("sim:?requested=0&timeout=250", 1, false);
     jog(&mut desk, Direction::Clockwise, 60);
     desk.settle();
@@ -26,11 +26,11 @@ fn set_by_another(desk: &Desk) {
 /// invalid.
 #[test]
 fn a_reference_changed_by_another_master_is_detected() {
-    let mut desk = elsewhere();
-    assert_eq!(axis(&desk).fallen(), None);
+    let mut desk = other_mode_text();
+    assert_eq!(axis(&desk).invalidated_text(), None);
     set_by_another(&desk);
     desk.until("it is noticed", |studio| {
-        studio.hiperdrive().unwrap().axis().unwrap().fallen() == Some(AxisStep::Reference)
+        studio.hiperdrive().unwrap().axis().unwrap().invalidated_text() == Some(AxisStep::Reference)
     });
     assert_eq!(number(&desk, 198), 128, "the parameter says nothing of it");
     assert_eq!(axis(&desk).may_move(&seen(&desk)).unwrap_err().id(), "hd_axis.fallen");
@@ -39,7 +39,7 @@ fn a_reference_changed_by_another_master_is_detected() {
 /// Issue 21.6 (c): while the connection is lost it may have been moved as well: that is reported, without a conclusion.
 #[test]
 fn a_position_change_while_disconnected_is_reported() {
-    let mut desk = elsewhere();
+    let mut desk = other_mode_text();
     let target = unit(&desk).target.clone().unwrap();
     target.set_faults(&"silent-after:0".parse().unwrap());
     desk.until("it is silent", |studio| {
@@ -56,7 +56,7 @@ fn a_position_change_while_disconnected_is_reported() {
         let own = studio.hiperdrive().unwrap();
         words::unexplained(own.axis().unwrap(), &own.seen(own.drive())).is_some()
     });
-    assert_eq!(axis(&desk).fallen(), None);
+    assert_eq!(axis(&desk).invalidated_text(), None);
     let told = words::unexplained(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
     assert!(
         told.starts_with("The position changed by -0.")

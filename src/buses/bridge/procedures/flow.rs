@@ -71,7 +71,7 @@ impl Streamed {
         }
     }
 
-    const fn brings(self, data: &Data) -> bool {
+    const fn contains_samples(self, data: &Data) -> bool {
         matches!(
             (self, data),
             (Streamed::Ssi { .. }, Data::Ssi(_))
@@ -185,7 +185,7 @@ impl Flow {
     /// Returns the samples of a packet, if the packet belongs to this stream.
     fn take(&mut self, packet: &Packet, now: Moment) -> Result<Option<Portion>, AdapterError> {
         let data = match Message::parse(packet) {
-            Ok(Message::Data(data)) if self.streamed.brings(&data) => data,
+            Ok(Message::Data(data)) if self.streamed.contains_samples(&data) => data,
             // A late reply, or the end of an earlier stream.
             Ok(_) => return Ok(None),
             Err(cause) => return Err(AdapterError::Data { cause }),

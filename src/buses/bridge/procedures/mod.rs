@@ -136,12 +136,12 @@ impl AdapterState {
     }
 
     /// Returns whether the encoder was supplied before the session, or `None` if unknown.
-    pub(crate) const fn found_supplied(&self) -> Option<bool> {
+    pub(crate) const fn was_supplied_at_start(&self) -> Option<bool> {
         self.power.found
     }
 
     /// Sets whether the encoder had power before the session.
-    pub(crate) const fn find_supplied(&mut self, is_supplied: bool) {
+    pub(crate) const fn set_supplied_at_start(&mut self, is_supplied: bool) {
         self.power.found = Some(is_supplied);
     }
 

@@ -176,7 +176,7 @@ impl Adapter {
     }
 
     fn send(&mut self, at: Moment, packet: &Packet) {
-        let bytes = noisy(&self.faults, &mut self.rng, &packet.emit());
+        let bytes = add_noise(&self.faults, &mut self.rng, &packet.emit());
         self.to_host.insert(at, bytes);
     }
 
@@ -358,7 +358,7 @@ impl Adapter {
             return Err(OUT_OF_RANGE);
         }
         let now = self.now;
-        let device = self.bus.answering(now).filter(|_| slave == 0).ok_or(SILENT)?;
+        let device = self.bus.answering_device(now).filter(|_| slave == 0).ok_or(SILENT)?;
         if let Some(value) = value {
             let accepted = device.write_register(now, address, value);
             if !device.has_power() {
@@ -390,7 +390,7 @@ fn microseconds(at: Moment) -> u64 {
     u64::try_from(at.since_start().as_micros()).unwrap_or(u64::MAX)
 }
 
-fn noisy(faults: &Faults, rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {
+fn add_noise(faults: &Faults, rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {
     let passages = bytes.iter().map(|byte| faults.passage(rng, *byte));
     passages
         .flat_map(|passage| passage.inserted.into_iter().chain(passage.carried.map(|carried| carried.byte)))
@@ -400,7 +400,7 @@ fn noisy(faults: &Faults, rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {
 impl ByteDevice for Adapter {
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
         self.advance(now);
-        let received = noisy(&self.faults, &mut self.rng, bytes);
+        let received = add_noise(&self.faults, &mut self.rng, bytes);
         self.receiver.push(&received);
         while let Some(packet) = self.receiver.next_packet() {
             self.take(&packet);

@@ -96,5 +96,5 @@ pub trait AttachableKind: Sync {
 
     /// Creates the device from its settings, or returns `None` if they request none.⎏⎏# Errors⎏Names the key and the
     /// allowed values.
-    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError>;
+    fn attach_device(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError>;
 }

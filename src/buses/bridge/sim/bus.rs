@@ -62,7 +62,7 @@ impl Bus {
     }
 
     /// Returns the device whose registers can be read at `now`.
-    pub(super) fn answering(&mut self, now: Moment) -> Option<&mut Box<dyn BissDevice>> {
+    pub(super) fn answering_device(&mut self, now: Moment) -> Option<&mut Box<dyn BissDevice>> {
         let is_good = self.line == EncoderWiring::Good;
         self.biss.as_mut().filter(|_| is_good)?.answers(now).then_some(())?;
         self.biss.as_mut()
@@ -75,7 +75,7 @@ impl Bus {
             (EncoderWiring::High, _) => (BissStatus::STUCK_HIGH, ones(bits)),
             (EncoderWiring::Open, _) | (EncoderWiring::Good, None) => (BissStatus::NO_ACKNOWLEDGE, 0),
             (EncoderWiring::Good, Some((frame, own))) => {
-                (BissStatus::OK, self.damaged(clocked(frame, own, bits), bits))
+                (BissStatus::OK, self.damage_frame(clock_out_bits(frame, own, bits), bits))
             }
         }
     }
@@ -88,20 +88,20 @@ impl Bus {
             (EncoderWiring::Low, _, _) => 0,
             (EncoderWiring::Good, Some(place), Some(ssi)) => {
                 let (word, own) = ssi.word(at, place);
-                self.damaged(clocked(word, own, bits), bits)
+                self.damage_frame(clock_out_bits(word, own, bits), bits)
             }
             _ => ones(bits),
         }
     }
 
     /// Inverts one bit in some frames, as configured.
-    fn damaged(&mut self, frame: u64, bits: u8) -> u64 {
+    fn damage_frame(&mut self, frame: u64, bits: u8) -> u64 {
         if bits > 0 && self.rng.f64() < self.noise { frame ^ 1 << self.rng.u8(..bits) } else { frame }
     }
 }
 
 /// Returns `wanted` bits of a frame of `bits` bits in transmission order; the line is low after the end of the frame.
-fn clocked(frame: u64, bits: u8, wanted: u8) -> u64 {
+fn clock_out_bits(frame: u64, bits: u8, wanted: u8) -> u64 {
     let shifted =
         if wanted >= bits { frame.checked_shl((wanted - bits).into()) } else { Some(frame >> (bits - wanted)) };
     shifted.unwrap_or(0)

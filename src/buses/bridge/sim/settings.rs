@@ -43,7 +43,7 @@ impl Adapter {
         let mut attached: Vec<AttachedDevice> = Vec::new();
         for device in devices {
             let own = pairs.iter().filter(|(key, _)| device.keys().contains(&key.as_str())).cloned();
-            attached.extend(device.attached(&own.collect::<Vec<_>>())?);
+            attached.extend(device.attach_device(&own.collect::<Vec<_>>())?);
         }
         Ok(Adapter::new(&config, &shared, &shaft, attached))
     }

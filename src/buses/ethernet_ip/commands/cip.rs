@@ -38,7 +38,7 @@ fn request_lines(request: &Request, device: Device) -> Vec<String> {
             Err(why) => lines.push(format!("{why}: {}", hex(&request.data))),
         },
         (Service::FORWARD_CLOSE, Some(Request::CONNECTION_MANAGER)) => match ForwardClose::parse(&request.data) {
-            Ok(asked) => lines.push(format!("{}; {}", owner(asked.owner), path(&asked.path))),
+            Ok(asked) => lines.push(format!("{}; {}", owner_name(asked.owner), path(&asked.path))),
             Err(why) => lines.push(format!("{why}: {}", hex(&request.data))),
         },
         _ => lines.extend(attribute_lines(request, device)),
@@ -85,15 +85,15 @@ fn reply_lines(reply: &Reply) -> Vec<String> {
                 interval(opened.to_target_interval_us),
                 opened.to_originator_id,
                 interval(opened.to_originator_interval_us),
-                owner(opened.owner)
+                owner_name(opened.owner)
             )
         }),
-        (Service::FORWARD_CLOSE, true) => ForwardClosed::parse(&reply.data).ok().map(|closed| owner(closed.owner)),
+        (Service::FORWARD_CLOSE, true) => ForwardClosed::parse(&reply.data).ok().map(|closed| owner_name(closed.owner)),
         (Service::FORWARD_OPEN | Service::FORWARD_CLOSE, false) => {
             ForwardRefused::parse(&reply.data).ok().map(|refused| {
                 format!(
                     "{}; {} of the path left",
-                    owner(refused.owner),
+                    owner_name(refused.owner),
                     count(refused.remaining_path_words.into(), "word")
                 )
             })
@@ -124,7 +124,7 @@ fn open_lines(asked: &ForwardOpen) -> Vec<String> {
         way("originator", asked.to_originator_id, asked.to_originator_interval_us, asked.to_originator),
         format!(
             "{}; ends after {} without data ({} ms to the target); transport 0x{:02X}, class {}; request within {} ms; {}",
-            owner(asked.owner),
+            owner_name(asked.owner),
             count(usize::try_from(asked.connection_timeout.intervals()).unwrap_or(usize::MAX), "interval"),
             asked.to_target_timeout().as_millis(),
             asked.transport.byte(),
@@ -168,7 +168,7 @@ fn path(path: &Path) -> String {
     words.join(", ")
 }
 
-fn owner(owner: Owner) -> String {
+fn owner_name(owner: Owner) -> String {
     let Owner { connection_serial, vendor, serial_number } = owner;
     format!("connection {connection_serial} of vendor {vendor}, serial number {serial_number}")
 }

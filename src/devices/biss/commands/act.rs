@@ -16,7 +16,7 @@ use crate::cli::args::{Common, Do};
 use crate::cli::consent::{answer, ask, can_ask, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::Output;
-use crate::cli::profiles::{load_to_write, show_done};
+use crate::cli::profiles::{load_to_write, print_done};
 use crate::cli::runner::{failed, unexpected};
 use crate::cli::{Done, Failure, Result, check};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
@@ -38,13 +38,13 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         (BissAction::Check, []) => check_device(common, output),
         (BissAction::LeadBack, []) => lead_back(common, output, act),
         (BissAction::Calibrate, []) => {
-            guided(common, output, act, MountingRun { calibrate: true, ..MountingRun::default() })
+            run_guided(common, output, act, MountingRun { calibrate: true, ..MountingRun::default() })
         }
         (BissAction::WiegandTest, [] | ["save"]) => {
             let run = MountingRun { wiegand: Some(!words.is_empty()), ..MountingRun::default() };
-            guided(common, output, act, run)
+            run_guided(common, output, act, run)
         }
-        (BissAction::Mounting, words) => guided(common, output, act, mounting(output, words)?),
+        (BissAction::Mounting, words) => run_guided(common, output, act, mounting(output, words)?),
         (BissAction::Filter, [name]) => {
             let filter = match *name {
                 "balanced" => Filter::Balanced,
@@ -86,7 +86,7 @@ fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {
     }
 }
 
-fn guided(common: &Common, output: &Output, act: &Do, run: MountingRun) -> Result {
+fn run_guided(common: &Common, output: &Output, act: &Do, run: MountingRun) -> Result {
     require_consent(&act.consent)?;
     let motor = if run.needs_motor() { motor(output, act)? } else { MotorSource::Other };
     if act.consent.yes && run.calibrate {
@@ -124,7 +124,7 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     let (spent, outcomes) = commit(&mut runner, output, prepared, &act.consent, patience)?;
     let name = act.action.clone();
     let text = format!("{changes}{}", results_text(&outcomes));
-    let done = show_done(output, &name, &operations, &spent, &results(&outcomes), &text)?;
+    let done = print_done(output, &name, &operations, &spent, &results(&outcomes), &text)?;
     if outcomes.iter().all(passes) {
         Ok(done)
     } else {

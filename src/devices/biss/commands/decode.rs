@@ -48,7 +48,7 @@ fn captured(words: &[String]) -> Result<Vec<Captured>> {
         (false, word) => word.starts_with(RAW) || (word.len() > 3 && word.ends_with(['h', 'H'])),
     };
     if !words.iter().any(|word| is_bits(word) || is_word(word)) {
-        words.iter().try_for_each(|word| ensure_no_word(word))?;
+        words.iter().try_for_each(|word| ensure_no_argument(word))?;
         return Ok(decode::frames(words)?.into_iter().map(Captured::Bytes).collect());
     }
     let one = |word: &String| match digits(word) {
@@ -56,7 +56,7 @@ fn captured(words: &[String]) -> Result<Vec<Captured>> {
         (_, digits) if is_bits(word) => u64::from_str_radix(digits, 16)
             .map(|raw| Captured::Bits(word.clone(), raw))
             .map_err(|_| Failure::Usage(format!("{word:?} is not a position frame in hexadecimal digits"))),
-        _ => ensure_no_word(word).and_then(|()| decode::bytes(word)).map(Captured::Bytes),
+        _ => ensure_no_argument(word).and_then(|()| decode::bytes(word)).map(Captured::Bytes),
     };
     words.iter().map(one).collect()
 }
@@ -74,7 +74,7 @@ fn position_word(word: &str) -> Result<u64> {
 
 /// Refuses an argument with an odd number of digits: it does not consist of bytes, but may be a position word, which
 /// must be marked.
-fn ensure_no_word(word: &str) -> Result<()> {
+fn ensure_no_argument(word: &str) -> Result<()> {
     let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());
     if !is_number {
         return Ok(());

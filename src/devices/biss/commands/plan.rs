@@ -9,7 +9,7 @@ use super::words;
 use crate::bits::hex_compact;
 use crate::cli::Result;
 use crate::cli::args::Consenting;
-use crate::cli::consent::{agreed, check_wear};
+use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary, warn};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Change, Commit, OperatorPresence, Prepared, WEAR_LIMIT};
@@ -46,7 +46,7 @@ pub(super) fn commit(
         output.remark(&wear.terminal());
     }
     let text = shown(&prepared).text;
-    let agreed = agreed(output, consent, prepared, &[&text])?;
+    let agreed = confirm_plan(output, consent, prepared, &[&text])?;
     let commit = Commit { agreed, attendance: OperatorPresence::Unattended(Unattended { patience }) };
     let committed =
         result_of!(runner.run(BissJob::Commit(Box::new(commit)))?, BissOutput::Committed(committed) => *committed);

@@ -200,7 +200,7 @@ impl<'a> Master<'a> {
         }
         self.ensure_ready()?;
         match self.ask(RequestedItem::Position, |master| master.read_bus_position_once()) {
-            Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.look_at_more_frames(failed),
+            Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.read_more_frames(failed),
             result => result,
         }
     }

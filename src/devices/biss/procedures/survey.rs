@@ -67,7 +67,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     let firmware = master.station().firmware;
     let mut registers = Registers::default();
     registers.read_roles(master, &description, firmware, &STATUS)?;
-    let position = position_if_any(master)?;
+    let position = position_if_available(master)?;
     Ok(status_of(&description, &registers, position))
 }
 
@@ -94,7 +94,7 @@ pub(super) fn read_survey(
 ) -> Result<Survey, Error> {
     let description = identity.description.clone();
     let missing = registers.read_described(master, &description, identity.firmware, progress)?;
-    let position = position_if_any(master)?;
+    let position = position_if_available(master)?;
     let results = |number| wiegand(&description, &registers, number);
     Ok(Survey {
         status: status_of(&description, &registers, position),
@@ -110,7 +110,7 @@ pub(super) fn read_survey(
 }
 
 /// Reads the position, if possible: an encoder without a readable frame is surveyed regardless.
-fn position_if_any(master: &mut Master<'_>) -> Result<Option<PositionReading>, Error> {
+fn position_if_available(master: &mut Master<'_>) -> Result<Option<PositionReading>, Error> {
     match master.position() {
         Ok(reading) => Ok(Some(reading)),
         Err(Error::TooWide { .. } | Error::WrongWidths { .. } | Error::Damaged { .. }) => Ok(None),

@@ -127,7 +127,7 @@ pub fn plan_restore(
 ) -> Result<Restore, PlanError> {
     check_allowed(profile, &device.identity, options)?;
     let same_device = is_same_device(profile, &device.identity);
-    let mounting = if same_device { Mounting::Own } else { Mounting::of_another(options) };
+    let mounting = if same_device { Mounting::Own } else { Mounting::from_other_device(options) };
     let mut planner = Planner::new(profile, device, mounting);
     planner.data()?;
     planner.filter()?;
@@ -214,7 +214,7 @@ enum Mounting {
 }
 
 impl Mounting {
-    fn of_another(options: RestoreOptions) -> Self {
+    fn from_other_device(options: RestoreOptions) -> Self {
         if options.with_mounting { Mounting::Write } else { Mounting::Leave }
     }
 }

@@ -14,7 +14,7 @@ impl AttachableKind for AtAdapter {
         Config::KEYS
     }
 
-    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
+    fn attach_device(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
         Ok(Some(AttachedDevice::Biss(Box::new(Encoder::new(&Config::from_pairs(pairs)?)))))
     }
 }

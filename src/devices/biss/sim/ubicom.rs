@@ -174,7 +174,7 @@ impl VirtualLine for Port {
         [answering, hearing, ending, receiving].into_iter().flatten().min()
     }
 
-    fn happen(&mut self, at: Moment, event: Event) {
+    fn schedule_event(&mut self, at: Moment, event: Event) {
         match event {
             Event::EncoderAnswers => self.answer(at),
             Event::EncoderHears => self.hear(),
@@ -190,7 +190,7 @@ impl VirtualLine for Port {
         self.drive(start, bytes, false)
     }
 
-    fn give_power(&mut self, now: Moment) {
+    fn supply_power(&mut self, now: Moment) {
         self.encoder.connect(now);
     }
 }

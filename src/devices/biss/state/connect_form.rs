@@ -3,7 +3,7 @@
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{Parameters, Typed, without_entry};
-use crate::app::connect::target::{adapter_in_network, checked, entered, host_and_port, parted, to_adapter};
+use crate::app::connect::target::{adapter_in_network, checked, entered, host_and_port, split_target, to_adapter};
 use crate::bits::ByteOrder;
 use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim as bridge;
@@ -102,7 +102,7 @@ impl FormModel for BissForm {
         };
         if let Some(network) = network {
             form.network = true;
-            (form.host, form.tcp_port) = parted(network);
+            (form.host, form.tcp_port) = split_target(network);
         } else if form.kind == BissLinkKind::Replay {
             form.file = target.to_owned();
         } else {
@@ -223,13 +223,13 @@ impl BissForm {
         }
         let (frame, line) = Self::common_entries();
         parameters.typed(&[frame, line].concat(), &self.typed);
-        parameters.rest(&self.rest, |name| self.belongs(name));
+        parameters.rest(&self.rest, |name| self.has_parameter(name));
         parameters
     }
 
     /// Returns whether a parameter belongs to this kind of connection. Parameters of other kinds are dropped; unknown
     /// ones are kept, so that they are refused by name.
-    fn belongs(&self, name: &str) -> bool {
+    fn has_parameter(&self, name: &str) -> bool {
         let kind = if self.is_on_the_bus() { Transport::Adapter } else { Transport::ConfigPin };
         let own = |kind: Transport| kind.parameters().contains(&name);
         let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(at_adapter()).contains(&name));

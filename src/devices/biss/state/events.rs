@@ -128,7 +128,7 @@ impl SessionEvents for Encoder {
                 self.committed(*committed, services);
             }
             BissOutput::LedBack(mode) => {
-                self.led_back();
+                self.note_restored();
                 let text = TEXTS.text("guide.led_back").with_text("mode", explained::mode(mode));
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);
@@ -156,7 +156,7 @@ impl SessionEvents for Encoder {
 
     fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         let moves = matches!(how, EarlyEnd::Failed(JobError::Device(Error::Moving { .. })));
-        let stands_there = self.cut_guide(&how, texts) || self.cut_write(how, texts);
+        let stands_there = self.cut_guide(&how, texts) || self.handle_cut_write(how, texts);
         if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
             return stands_there;
         }

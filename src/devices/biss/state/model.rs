@@ -18,7 +18,7 @@ impl DeviceModel for Encoder {
         self.let_go(JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
-        self.session.take_line(opened, services);
+        self.session.adopt_line(opened, services);
         self.wish_watched();
         self.submit(BissJob::Survey, services);
     }

@@ -42,7 +42,7 @@ impl Encoder {
     }
 
     /// Records that the encoder has returned to operation, so that the user is no longer asked to return it.
-    pub(super) fn led_back(&mut self) {
+    pub(super) fn note_restored(&mut self) {
         if let Some(Guide { end: Some(End::Failed { may_lead_back, .. }), .. }) = &mut self.guide {
             *may_lead_back = false;
         }
@@ -58,7 +58,7 @@ impl Encoder {
             return false;
         }
         if error.is_some_and(JobInterruption::has_begun) {
-            self.reads_again();
+            self.rereads_after_write();
         }
         let Some(guide) = &mut self.guide else { return false };
         let (before, may_lead_back) = match error {
@@ -118,7 +118,7 @@ impl WithMemory for Encoder {
         }
     }
 
-    fn reads_again(&mut self) {
+    fn rereads_after_write(&mut self) {
         let ops: &[Op] = match (&self.guide, self.session.review.as_ref().map(|review| &review.state)) {
             (Some(guide), _) if guide.is_running() => guide.ops(),
             (_, Some(ReviewState::Writing(prepared))) => &prepared.plan.ops,

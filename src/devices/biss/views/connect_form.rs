@@ -11,7 +11,7 @@ use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{
-    echo, field, leave_supply, network, parity, recording, segments, serial, typed, typed_in_a_row, unfolded,
+    echo, expandable_ui, field, leave_supply, network, parity, recording, segments, serial, typed, typed_in_a_row,
 };
 
 pub(crate) struct BissConnectForm;
@@ -62,7 +62,7 @@ impl TypedConnectForm for BissConnectForm {
         if form.is_on_the_bus() {
             typed(ui, theme, say, BissForm::bus_entries(), &mut form.typed);
         }
-        if form.kind != BissLinkKind::Replay && unfolded(ui, theme, more) {
+        if form.kind != BissLinkKind::Replay && expandable_ui(ui, theme, more) {
             if !form.is_on_the_bus() {
                 let (baud, others) = BissForm::pin_entries();
                 for own in baud {

@@ -83,12 +83,12 @@ fn unsaved_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
         paragraph(ui, theme.words(&why));
     });
     if encoder.profile().is_none() {
-        lead_back_ui(ui, theme, encoder, actions);
+        restore_ui(ui, theme, encoder, actions);
     }
     ui.add_space(theme.space.inside);
 }
 
-fn lead_back_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn restore_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = theme.say("lead_back_card.button");
     if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
         actions.push(Action::device(encoder.session.id, Biss::LeadBack));

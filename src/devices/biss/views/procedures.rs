@@ -106,7 +106,7 @@ fn left_state_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Ve
         let mode = explained::mode(status.mode.unwrap_or_default());
         let text = TEXTS.text("lead_back_card.words").with_text("mode", mode);
         paragraph(ui, RichText::new(theme.words(&text)).color(theme.palette.warn));
-        super::lead_back_ui(ui, theme, encoder, actions);
+        super::restore_ui(ui, theme, encoder, actions);
     });
     theme.gap(ui);
 }

@@ -108,7 +108,7 @@ fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     if let Some(fluctuation) = run.fluctuation() {
         let unit = theme.say("unit.revolutions_per_minute");
         let spread = demand.motion.map(|own| own.spread);
-        let accepted = run.accepted_fluctuation(demand.motion.map_or(run.recommended().middle(), |own| own.rpm));
+        let accepted = run.accepted_fluctuation(demand.motion.map_or(run.recommended_range().middle(), |own| own.rpm));
         gauges.push(Gauge {
             name: say(theme, "guide.fluctuation"),
             value: spread,
@@ -119,7 +119,7 @@ fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
             scale: 0.0..=accepted * 2.0,
         });
     }
-    if run.calibrates() {
+    if run.is_calibration() {
         let celsius = demand.celsius.map(f64::from);
         let (coldest, warmest) = (*Demand::CELSIUS.start(), *Demand::CELSIUS.end());
         gauges.push(Gauge {
@@ -137,7 +137,7 @@ fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
 
 fn speed(theme: &Theme, run: Run, demand: &Demand) -> Gauge {
     let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
-    let (allowed, accepted, best) = (run.allowed(), run.allowed().measured(), run.recommended());
+    let (allowed, accepted, best) = (run.allowed(), run.allowed().measured(), run.recommended_range());
     // Standstill is shown as 0 regardless of sign.
     let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
     let is_best = best != allowed;
@@ -187,7 +187,7 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, 
         ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
             if let End::Failed { may_lead_back: true, .. } = end {
-                super::lead_back_ui(ui, theme, encoder, actions);
+                super::restore_ui(ui, theme, encoder, actions);
             }
             if !lines.is_empty() && button(ui, icons::COPY, &say(theme, "guide.copy_report")).clicked() {
                 let head = format!("{}\n{}\n", encoder.session.name(), say(theme, "guide.report"));

@@ -8,7 +8,7 @@ use crate::cli::args::{Common, Do};
 use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
-use crate::cli::profiles::show_done;
+use crate::cli::profiles::print_done;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result, check};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput};
@@ -70,7 +70,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         _ => {}
     }
     let drive_list: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
-    let done = show_done(output, &act.action, &operations, &spent, &[], &format!("{changes}{drive_list}"))?;
+    let done = print_done(output, &act.action, &operations, &spent, &[], &format!("{changes}{drive_list}"))?;
     // The action may have been carried out without the desired effect.
     match action {
         HiperdriveAction::PresenceTest => present(&before, &found)?,

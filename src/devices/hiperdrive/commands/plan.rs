@@ -5,7 +5,7 @@ use serde_json::{Value as Json, json};
 use super::run::Runner;
 use crate::cli::Result;
 use crate::cli::args::Consenting;
-use crate::cli::consent::{agreed, check_wear};
+use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::{Lines, Output};
 use crate::cli::plan::{self, PlanReport, WriteSummary};
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
@@ -55,7 +55,7 @@ pub(super) fn commit(
         ));
     }
     let text = shown(&prepared).text;
-    let agreed = agreed(output, consent, prepared, &[&text])?;
+    let agreed = confirm_plan(output, consent, prepared, &[&text])?;
     let committed = result_of!(runner.run(HiperdriveJob::Commit(Box::new(agreed)))?, HiperdriveOutput::Committed(committed) => *committed);
     Ok(WriteSummary::of(output, committed))
 }

@@ -36,7 +36,7 @@ impl ProfileCommands for HiperdriveCommands {
         for types in &prepared.other_types {
             output.remark(&words::other_type(types).terminal());
         }
-        for words in absent(&prepared) {
+        for words in missing_items(&prepared) {
             output.remark(&words);
         }
         for item in &prepared.mounting_left {
@@ -78,7 +78,7 @@ fn saved(common: &Common) -> Result<HiperdriveProfile> {
 
 /// Lists the profile items that the device lacks. A port without a drive counts as one item, however many parameters it
 /// has.
-fn absent(prepared: &Prepared) -> Vec<String> {
+fn missing_items(prepared: &Prepared) -> Vec<String> {
     let missing = prepared.missing.iter().map(|name| (name, name.parse::<Item>().ok().and_then(|item| item.0.drive())));
     let words = missing.map(|(name, drive)| match drive.filter(|drive| prepared.identity.drive(*drive).is_none()) {
         Some(drive) => format!("no drive is connected to port {}: its parameters are not restored", drive.get()),

@@ -8,7 +8,7 @@ use crate::cli::args::{Common, Write};
 use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
-use crate::cli::profiles::show_done;
+use crate::cli::profiles::print_done;
 use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::jobs::Change;
@@ -37,7 +37,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     if let Some(drive) = drive.filter(|_| operations.is_empty()) {
         output.remark(&TEXTS.text("hd_cli.no_fault").with("drive", drive.get()).terminal());
     }
-    let done = show_done(output, &item.to_string(), &operations, &spent, &[], &changes)?;
+    let done = print_done(output, &item.to_string(), &operations, &spent, &[], &changes)?;
     if let Some(drive) = drive.filter(|_| !operations.is_empty()) {
         check_acknowledged(&mut runner, output, drive)?;
     }

@@ -117,7 +117,7 @@ impl Hiperdrive {
         self.read_rules(context, &identity)?;
         let mut packets = self.control.port.as_mut().ok_or(Error::NoCyclic)?.open()?;
         let opened = self.master(context).forward_open(identity.topology, packets.port())?;
-        packets.aim(opened.port);
+        packets.set_target_port(opened.port);
         let joined = opened.group.map_or(Ok(()), |group| packets.join(group));
         let drives: Vec<DriveNumber> = identity.drives.iter().map(|drive| drive.number).collect();
         let started = joined.and_then(|()| {

@@ -135,7 +135,7 @@ impl Motion {
         self.lock().view.open
     }
 
-    pub fn glance(&self) -> DrivesSnapshot {
+    pub fn take_snapshot(&self) -> DrivesSnapshot {
         let at = self.0.clock.now();
         let cell = self.lock();
         DrivesSnapshot { at, view: cell.view.clone(), limits: cell.limits.clone() }

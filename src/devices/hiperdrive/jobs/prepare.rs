@@ -25,7 +25,7 @@ pub(super) fn prepare(
     let beside = |wanted: &Image| wanted.values.keys().copied().collect::<Vec<_>>();
     let mut state = |master: &mut Master<'_>, numbers: Vec<ParameterNumber>| {
         let (identity, state) = read_state(master, numbers, report)?;
-        are_there(&identity, change)?;
+        ensure_drives_present(&identity, change)?;
         Ok::<_, Error>((identity, state))
     };
     let (identity, image, plan) = match change {
@@ -94,7 +94,7 @@ pub(super) fn prepare(
 }
 
 /// Checks that the drives named by the user exist. A profile may have more.
-fn are_there(identity: &Identity, change: &Change) -> Result<(), Error> {
+fn ensure_drives_present(identity: &Identity, change: &Change) -> Result<(), Error> {
     let named = match change {
         Change::Write(wanted) | Change::Try(wanted) => wanted.drives(),
         Change::SetPosition { drive, .. } | Change::Do(Service::Acknowledge(drive)) => vec![*drive],

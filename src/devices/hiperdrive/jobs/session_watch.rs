@@ -61,7 +61,7 @@ impl SessionWatch {
         self.looked = now;
     }
 
-    pub(super) const fn break_off(&mut self) {
+    pub(super) const fn abort_session(&mut self) {
         self.broken = true;
     }
 
@@ -117,7 +117,7 @@ impl ByteLink for WatchedWire {
                 Ok(None) => return Ok(()),
                 Err(_) => {
                     self.frames = Receiver::default();
-                    self.motion.with_session(SessionWatch::break_off);
+                    self.motion.with_session(SessionWatch::abort_session);
                 }
             }
         }
@@ -160,7 +160,7 @@ mod tests {
         assert!(watch.is_silent(at(231)));
         watch.answer(at(250));
         assert!(!watch.is_silent(at(1000)), "it was answered");
-        watch.break_off();
+        watch.abort_session();
         assert!(watch.is_silent(at(1000)), "with bytes that are no frame");
         watch.answer(at(1001));
         assert!(!watch.is_silent(at(1001)));

@@ -216,7 +216,7 @@ fn messages(master: &mut Master<'_>) -> Result<HiperdriveStepResult, Error> {
         master.read_number(own(9)?)?;
         slowest = slowest.max(master.now().since(begun));
     }
-    let late = master.station().late();
+    let late = master.station().late_reply_count();
     let verdict = if late == 0 { Verdict::Good } else { Verdict::Attention };
     let replies = CheckFinding::Replies { requested: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
     Ok(HiperdriveStepResult::of(CheckStep::Messages, vec![(verdict, replies)]))

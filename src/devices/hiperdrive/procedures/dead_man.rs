@@ -117,7 +117,7 @@ impl DeadMan {
                 self.check_for_end(now, actual, intent, permit);
                 self.advance(now, actual);
                 self.take(now, actual, intent, permit);
-                self.guarded(self.setpoint(actual), actual)
+                self.run_guarded(self.setpoint(actual), actual)
             }
             None => {
                 self.drop_void_state(now, intent);
@@ -284,7 +284,7 @@ impl DeadMan {
     }
 
     /// Applies the last safeguard: replaces any word that could start a motion unless an act with a motion is running.
-    fn guarded(&self, setpoint: Setpoint, actual: Actual) -> Setpoint {
+    fn run_guarded(&self, setpoint: Setpoint, actual: Actual) -> Setpoint {
         let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
         if is_commanded || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }
     }

@@ -189,7 +189,7 @@ fn category(master: &mut Master<'_>) -> Result<String, Error> {
 /// As [`identify`].
 pub fn survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Survey, Error> {
     let identity = identify(master, progress)?;
-    let numbers: Vec<ParameterNumber> = readable(&identity).collect();
+    let numbers: Vec<ParameterNumber> = readable_parameters(&identity).collect();
     let total = numbers.len() as u64;
     let (mut values, mut wrong_lengths) = (BTreeMap::new(), Vec::new());
     for (done, number) in numbers.into_iter().enumerate() {
@@ -207,7 +207,7 @@ pub fn survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result
     Ok(Survey { identity, network, values, wrong_lengths })
 }
 
-fn readable(identity: &Identity) -> impl Iterator<Item = ParameterNumber> {
+fn readable_parameters(identity: &Identity) -> impl Iterator<Item = ParameterNumber> {
     let rows = || PARAMETERS.iter().filter(|row| row.access != Access::Write);
     let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
     let drives = identity

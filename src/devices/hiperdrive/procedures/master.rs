@@ -152,7 +152,7 @@ impl<'a> Master<'a> {
     /// [`Error::OutOfRange`], [`Error::ReadOnly`], [`Error::Motion`], with nothing sent; [`Error::Refuses`],
     /// [`Error::Refused`]; errors of the exchange.
     pub(super) fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
-        let row = settable(number)?;
+        let row = writable_parameter(number)?;
         // The plan has checked the travel.
         row.check(number, wanted, Travel::UNKNOWN)?;
         let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
@@ -394,7 +394,7 @@ fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), ExchangeErr
 }
 
 /// Returns the row of a settable parameter; one that moves a drive is refused.
-fn settable(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
+fn writable_parameter(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     let row = number.row().ok_or(Error::Unknown(number))?;
     match (row.access, row.number) {
         (Access::Read, _) => Err(Error::ReadOnly { number, name: row.name }),

@@ -104,7 +104,7 @@ impl Station {
         self.known.topology
     }
 
-    pub const fn late(&self) -> u64 {
+    pub const fn late_reply_count(&self) -> u64 {
         self.late
     }
 

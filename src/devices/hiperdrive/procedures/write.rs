@@ -53,7 +53,7 @@ impl Write for DeviceWrite<'_, '_> {
         if master.read_number(own(17)?)?.to_string() != identity.serial_number {
             return changed("the device itself".to_owned());
         }
-        for drive in touched(plan, identity) {
+        for drive in affected_drives(plan, identity) {
             if let Some(known) = identity.drive(drive)
                 && drive_text(master, 123, drive)? != known.serial_number
             {
@@ -91,7 +91,7 @@ impl Write for DeviceWrite<'_, '_> {
 }
 
 /// Returns the drives affected by a plan: all if it affects the device as a whole.
-fn touched(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
+fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
     let of_op = |op: &Op| match op {
         Op::Write { number, .. } => number.drive(),
         Op::Service(Service::Acknowledge(drive)) => Some(*drive),

@@ -278,7 +278,7 @@ impl Drive {
         let weak = wants && torque < self.load.percent;
         let wanted = if weak { AxisDemand::Rest } else { self.wanted() };
         let came = self.axis.tick(wanted, &self.load);
-        self.warm(if self.is_standing() { 0 } else { torque }, ticks);
+        self.heat_up(if self.is_standing() { 0 } else { torque }, ticks);
         let stuck = weak || matches!(came, TickOutcome::Held { .. });
         self.stuck_ms = if stuck { self.stuck_ms + 1 } else { 0 };
         match came {
@@ -312,7 +312,7 @@ impl Drive {
         }
     }
 
-    fn warm(&mut self, torque: u8, ticks: u32) {
+    fn heat_up(&mut self, torque: u8, ticks: u32) {
         let ends = self.load.ambient + WARMING * f64::from(torque) / 100.0;
         let left = (-f64::from(ticks) * TICK.as_secs_f64() / WARMING_S).exp();
         let before = self.celsius;

@@ -54,7 +54,7 @@ impl Unit {
                 self.submit(HiperdriveJob::Give, services);
             }
             HiperdriveAction::Drive(motor) => self.drive_by(motor, services),
-            HiperdriveAction::Axis(action) => self.act_axis(action, services),
+            HiperdriveAction::Axis(action) => self.apply_axis_action(action, services),
             HiperdriveAction::Save(path) => self.save(path, services),
         }
     }
@@ -64,7 +64,7 @@ impl Unit {
             Temperature::Device => self.watches_device = on,
             Temperature::Drive(_) => self.watches_drive = on,
         }
-        self.wish_temperatures();
+        self.request_temperatures();
     }
 
     pub fn watched_temperatures(&self) -> Vec<Temperature> {
@@ -73,7 +73,7 @@ impl Unit {
     }
 
     /// Passes the watched temperatures to the recording and to the session.
-    pub(super) fn wish_temperatures(&mut self) {
+    pub(super) fn request_temperatures(&mut self) {
         let wished = self.watched_temperatures();
         self.record.watch_temperatures(&wished);
         if let Some(line) = &self.session.line {
@@ -91,7 +91,7 @@ impl Unit {
             Motor::JogEffort(effort) => return self.moves.set_jog_effort(drive, effort),
             Motor::MoveEffort(effort) => return self.moves.set_move_effort(drive, effort),
             Motor::Expert(expert) => return self.moves.set_expert(drive, expert),
-            Motor::FreeOutward(direction) => return self.free_outward(drive, direction, services),
+            Motor::FreeOutward(direction) => return self.enable_outward(drive, direction, services),
             Motor::ConfirmLimits(drive) => {
                 self.confirm_limits(drive, services);
                 return;
@@ -115,7 +115,7 @@ impl Unit {
             Motor::Pause => MotionRequest::Pause,
             Motor::Resume => MotionRequest::Resume,
         };
-        if let Err(why) = self.may(drive, request) {
+        if let Err(why) = self.check_motion_allowed(drive, request) {
             // The present act continues: nothing else has started.
             return self.report_drive_message(drive, Severity::Warning, vec![why], services);
         }

@@ -262,7 +262,7 @@ impl Axis {
     }
 
     /// Returns an earlier step whose result the drive no longer has: it must be repeated, with all later steps.
-    pub fn fallen(&self) -> Option<AxisStep> {
+    pub fn invalidated_text(&self) -> Option<AxisStep> {
         self.chain.end().filter(|step| *step < self.step)
     }
 
@@ -272,7 +272,7 @@ impl Axis {
             AxisStep::PowerCycle if matches!(self.power, Some(Power::Back { .. })) && !self.survived() => {
                 Reached::Failed
             }
-            _ if self.fallen() == Some(step) => Reached::Failed,
+            _ if self.invalidated_text() == Some(step) => Reached::Failed,
             _ if is_shown => Reached::Now,
             _ if self.chain.is_skipped(step) => Reached::Skipped,
             _ if self.chain.holds(step) => Reached::Done,

@@ -151,7 +151,7 @@ impl HiperdriveForm {
         if self.big_endian {
             parameters.set(BIG_ENDIAN.0, BIG_ENDIAN.1);
         }
-        parameters.rest_of(&self.rest, is_virtual, (LinkParameters::KEYS, Config::KEYS));
+        parameters.set_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, Config::KEYS));
         parameters
     }
 }

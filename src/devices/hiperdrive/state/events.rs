@@ -121,7 +121,7 @@ impl Unit {
     }
 
     /// Ends the notice of a fault once no drive has one; all drives share the notice.
-    fn settle_fault(&self, failed: bool, services: &mut Services) {
+    fn update_fault_notice(&self, failed: bool, services: &mut Services) {
         let fails = |drive: &DriveNumber| self.moves.actual(*drive).is_some_and(|own| has_failed(own.status.state()));
         if !failed && !self.drives().iter().any(fails) {
             services.log.settle("hd_end.fault", Some(&self.session.name()));
@@ -181,14 +181,14 @@ impl SessionEvents for Unit {
             self.notice_fault(drive, before);
             if before.is_some_and(has_failed) && self.state(drive).is_some_and(|state| !has_failed(state)) {
                 let failed = self.drives().into_iter().any(|drive| self.state(drive).is_some_and(has_failed));
-                self.settle_fault(failed, services);
+                self.update_fault_notice(failed, services);
             }
         }
         if let Some((drive, ended)) = self.moves.take_end() {
             self.report_motion_end(drive, ended, services);
         }
         self.poll_line(services);
-        self.follow_axes();
+        self.update_axes();
         self.request_next(services);
     }
 
@@ -219,7 +219,7 @@ impl SessionEvents for Unit {
             }
             HiperdriveOutput::Status(status) => {
                 let failed = status.drives.iter().any(|own| has_failed(own.status.state()));
-                self.settle_fault(failed, services);
+                self.update_fault_notice(failed, services);
                 self.status = Some(*status);
                 if !std::mem::replace(&mut self.has_polled, true) {
                     self.poll();
@@ -281,7 +281,7 @@ impl SessionEvents for Unit {
             EarlyEnd::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
             EarlyEnd::Lost => {}
         }
-        let is_told = self.cut_write(how, texts);
+        let is_told = self.handle_cut_write(how, texts);
         let begun = matches!(self.review().map(|review| &review.state), Some(ReviewState::Failed { begun: true, .. }));
         self.unsaved.ended(begun);
         is_told

@@ -88,7 +88,7 @@ impl Moves {
         self.jogs.clear();
         self.limits_changed.clear();
         self.taken = false;
-        let DrivesSnapshot { at, view, limits } = motion.glance();
+        let DrivesSnapshot { at, view, limits } = motion.take_snapshot();
         (self.looked, self.view, self.limits) = (at, view, limits);
         self.motion = Some(motion);
     }
@@ -124,7 +124,7 @@ impl Moves {
 
     pub(super) fn look(&mut self) {
         let Some(motion) = &self.motion else { return };
-        let DrivesSnapshot { at, view, limits } = motion.glance();
+        let DrivesSnapshot { at, view, limits } = motion.take_snapshot();
         self.taken |= view.open && !self.view.open;
         for (drive, own) in &limits {
             let before = self.limits.get(drive).map(|before| (before.rules(), before.locks()));
@@ -349,7 +349,7 @@ impl Moves {
     }
 
     /// Returns the act and direction of a drive's held jog button.
-    pub fn held(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
+    pub fn held_motion(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
         let act = self.act.filter(|act| act.drive == drive && self.is_held())?;
         match self.phase(drive)? {
             Phase::Moving(MotionKind::Run { direction, .. }) => Some((act.number, direction)),
@@ -380,11 +380,11 @@ impl Moves {
 
     /// Returns whether a drive is moving, or is being led to another state.
     pub fn is_drive_moving(&self, drive: DriveNumber) -> bool {
-        self.drive(drive).is_some_and(moves) || self.mover() == Some(drive)
+        self.drive(drive).is_some_and(moves) || self.moving_drive() == Some(drive)
     }
 
     /// Returns the drive that this window moves, or whose job is paused. Any other request ends that motion.
-    pub fn mover(&self) -> Option<DriveNumber> {
+    pub fn moving_drive(&self) -> Option<DriveNumber> {
         let asked = self.act.filter(|act| act.moves && self.is_under_way()).map(|act| act.drive);
         let has_job =
             |own: &&DriveView| matches!(own.phase, Phase::Starting(_) | Phase::Moving(_) | Phase::Paused { .. });

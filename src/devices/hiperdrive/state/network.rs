@@ -72,8 +72,8 @@ impl Form {
         }
         let [first, second] = &self.name_servers;
         let interface = InterfaceConfiguration {
-            address: needed("hd_net.address", &self.address)?,
-            mask: needed("hd_net.mask", &self.mask)?,
+            address: required_address("hd_net.address", &self.address)?,
+            mask: required_address("hd_net.mask", &self.mask)?,
             gateway: address("hd_net.gateway", &self.gateway)?,
             name_servers: [address("hd_net.name_server", first)?, address("hd_net.name_server", second)?],
             domain: self.domain.trim().to_owned(),
@@ -93,7 +93,7 @@ fn address(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
     }
 }
 
-fn needed(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
+fn required_address(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
     match text.trim() {
         "" => Err(Text::new("entry.missing").with_text("what", TEXTS.text(what))),
         own => address(what, own),

@@ -49,7 +49,7 @@ impl Unit {
     /// Explains why it may not.
     pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
         let outward = self.moves.is_freed(drive, direction);
-        self.may(drive, MotionRequest::Jog { direction, effort: Effort::JOG, outward })
+        self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: Effort::JOG, outward })
     }
 
     /// Returns whether this direction may lead further out from outside the limits, and is not enabled.
@@ -63,7 +63,7 @@ impl Unit {
         self.may_move(drive).is_ok() && self.is_blocked(drive, direction)
     }
 
-    pub(super) fn free_outward(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
+    pub(super) fn enable_outward(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
         if self.can_free(drive, direction) {
             return self.moves.free(drive, direction);
         }

@@ -59,7 +59,7 @@ impl Unit {
         if let Phase::Silent(why) = &self.session.phase {
             return Err(why.clone());
         }
-        if let Some(why) = self.why_unread(drive) {
+        if let Some(why) = self.unread_reason(drive) {
             return Err(why);
         }
         if let Some(lock) = self.moves.locks(drive).first() {
@@ -101,7 +101,7 @@ impl Unit {
         Ok(())
     }
 
-    pub(super) fn may(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
+    pub(super) fn check_motion_allowed(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
         let asks_target = match request {
             MotionRequest::Move { target, .. } => Some(target),
             _ => None,
@@ -121,7 +121,7 @@ impl Unit {
     /// Checks that a request may end the present motion. A stop may, and so may a jog of the same drive. The motion of
     /// another drive must not be ended this way, and a step or move must not be replaced before its end.
     fn may_stop_other_drive(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
-        match self.moves.mover() {
+        match self.moves.moving_drive() {
             Some(mover) if mover != drive && request != MotionRequest::Stop => {
                 Err(TEXTS.text("hd_refused.other_moves").with("drive", mover.get()))
             }
@@ -238,7 +238,7 @@ impl Unit {
     }
 
     /// Explains why control was lost, until it is taken again; `None` if it was never taken, or was given up.
-    pub fn why_lost(&self) -> Option<Text> {
+    pub fn loss_reason(&self) -> Option<Text> {
         let view = self.moves.view();
         view.lost.as_ref().filter(|_| !view.open).map(|lost| words::lost(Some(lost)))
     }

@@ -65,7 +65,7 @@ impl Unit {
             is_virtual: self.target.is_some(),
             controlled: self.moves.is_open(),
             moves: self.is_moving() || self.moves.is_under_way(),
-            held: self.moves.held(drive),
+            held: self.moves.held_motion(drive),
             actual,
             actual_at: self.actual_at(drive),
             position,
@@ -95,13 +95,13 @@ impl Unit {
     }
 
     /// Returns the address of the device, if its link contains a numeric one.
-    pub fn host(&self) -> Option<Ipv4Addr> {
+    pub fn host_address(&self) -> Option<Ipv4Addr> {
         let Source::Link(url) = &self.session.source else { return None };
         let host = url.target.rsplit_once(':').map_or(url.target.as_str(), |(host, _)| host);
         host.parse().ok()
     }
 
-    pub(super) fn act_axis(&mut self, action: AxisAction, services: &mut Services) {
+    pub(super) fn apply_axis_action(&mut self, action: AxisAction, services: &mut Services) {
         let drive = self.drive();
         let seen = self.seen(drive);
         if action == AxisAction::Begin {
@@ -192,7 +192,7 @@ impl Unit {
             DriveRequest::Save => self.plan(Change::Do(Service::Save), services),
             DriveRequest::BelieveRestart => {}
             DriveRequest::Acknowledge => {
-                if let Err(why) = self.may(drive, MotionRequest::Acknowledge) {
+                if let Err(why) = self.check_motion_allowed(drive, MotionRequest::Acknowledge) {
                     return self.report_drive_message(drive, Severity::Warning, vec![why], services);
                 }
                 self.moves.want(drive, MotionRequest::Acknowledge);
@@ -206,12 +206,12 @@ impl Unit {
             DriveRequest::Give => self.act(super::HiperdriveAction::Give, services),
             DriveRequest::Move(target) => {
                 let request = MotionRequest::Move { target: *target, effort: Effort::JOG };
-                if let Err(why) = self.may(drive, request) {
+                if let Err(why) = self.check_motion_allowed(drive, request) {
                     return self.report_drive_message(drive, Severity::Warning, vec![why], services);
                 }
                 let act = self.moves.want(drive, request);
                 if let (Some(act), Button::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {
-                    axis.went(place, *target, act);
+                    axis.note_test_move(place, *target, act);
                 }
                 return;
             }
@@ -237,7 +237,7 @@ impl Unit {
     }
 
     /// Updates all set-ups; called after each update of the drives.
-    pub(super) fn follow_axes(&mut self) {
+    pub(super) fn update_axes(&mut self) {
         if self.axes.is_empty() {
             return;
         }

@@ -91,7 +91,7 @@ impl Unit {
     }
 
     /// Explains why the known parameters of a drive do not suffice to move it, or returns `None` if they do.
-    pub(super) fn why_unread(&self, drive: DriveNumber) -> Option<Text> {
+    pub(super) fn unread_reason(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(words::lock(Lock::Unread))
         } else if self.moves.is_open() && self.marks != SettingsReadState::Read {
@@ -109,12 +109,12 @@ impl Unit {
     /// # Errors
     /// Explains why they cannot.
     pub fn may_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
-        self.confirms(drive).map(|_| ())
+        self.limits_to_confirm_now(drive).map(|_| ())
     }
 
     /// Returns the displayed limits, which would be confirmed.
-    fn confirms(&self, drive: DriveNumber) -> Result<LimitsSeen, Text> {
-        self.why_unread(drive).map_or(Ok(()), Err)?;
+    fn limits_to_confirm_now(&self, drive: DriveNumber) -> Result<LimitsSeen, Text> {
+        self.unread_reason(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::seen);
         seen.ok_or_else(|| words::lock(Lock::Unread))
     }
@@ -122,10 +122,10 @@ impl Unit {
     /// Confirms the displayed limits; returns whether this took effect, and reports if it did not.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
         // As shown, before another update: later changes were not seen.
-        let shown = self.confirms(drive);
+        let shown = self.limits_to_confirm_now(drive);
         self.moves.look();
         self.notice_limits();
-        let counts = self.confirms(drive).and(shown).and_then(|seen| {
+        let counts = self.limits_to_confirm_now(drive).and(shown).and_then(|seen| {
             let counts = self.moves.confirm_limits(drive, seen);
             counts.then_some(()).ok_or_else(|| words::lock(Lock::Unread))
         });

@@ -153,7 +153,7 @@ impl Unit {
             self.records.insert(before, std::mem::replace(&mut self.record, next));
             self.record.gap();
             self.record.track.poll(self.session.line.as_ref().and_then(LiveSession::polling), false);
-            self.wish_temperatures();
+            self.request_temperatures();
         }
     }
 

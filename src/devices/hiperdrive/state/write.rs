@@ -61,7 +61,7 @@ impl WithMemory for Unit {
         }
     }
 
-    fn before_review(&mut self) {
+    fn prepare_review(&mut self) {
         self.moves.let_go();
     }
 

@@ -198,7 +198,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
 /// Draws changing messages: a fault, void results, missing conditions, and findings.
 fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let (axis, seen) = (shown.axis, shown.seen);
-    let fallen = axis.fallen().map(words::fallen);
+    let fallen = axis.invalidated_text().map(words::invalidated_text);
     if let Some(why) = words::fault(seen) {
         line(ui, theme, Severity::Error, &why);
     }

@@ -49,7 +49,7 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, a
 /// no button moves when control is lost.
 fn control(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let palette = theme.palette;
-    let (words, ink) = match (unit.why_lost(), outside::badge(theme, unit)) {
+    let (words, ink) = match (unit.loss_reason(), outside::badge(theme, unit)) {
         (Some(why), _) => (format!("{}  {}", icons::WARNING_CIRCLE, theme.words(&why)), palette.bad),
         (None, Some(badge)) => (badge.text().to_owned(), palette.bad),
         (None, None) if unit.moves.is_open() => (say(theme, "hd_bar.in_control"), palette.good),

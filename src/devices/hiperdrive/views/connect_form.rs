@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::state::{
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{place, recording, segments, typed, unfolded};
+use crate::ui::dialogs::connect::entries::{expandable_ui, place, recording, segments, typed};
 use crate::ui::{Theme, icons};
 
 pub(crate) struct HiperdriveConnectForm;
@@ -51,7 +51,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
             }
             HiperdriveLinkKind::Replay => recording(ui, theme, &mut form.file, actions),
         }
-        if form.kind != HiperdriveLinkKind::Replay && unfolded(ui, theme, more) {
+        if form.kind != HiperdriveLinkKind::Replay && expandable_ui(ui, theme, more) {
             if form.kind == HiperdriveLinkKind::Virtual {
                 interval(ui, theme, form);
             }

@@ -142,7 +142,7 @@ fn change_preview_ui(
     match wanted {
         Err(why) => problem(ui, theme, Some(why)),
         Ok(wanted) => {
-            for (own, text) in network::consequences(unit.address_switch(), now, wanted, unit.host()) {
+            for (own, text) in network::consequences(unit.address_switch(), now, wanted, unit.host_address()) {
                 line(ui, theme, own, &text);
             }
         }

@@ -177,7 +177,7 @@ fn table(
     let mut edits = Vec::new();
     let height = ui.available_height();
     let output = register_table(ui, theme, &table, height, &mut view.table, &mut |place, text| {
-        if let Some(row) = at(place).filter(|row| text != own_text(row)) {
+        if let Some(row) = at(place).filter(|row| text != parameter_text(row)) {
             edits.push(forms::parameter(row, text)?);
         }
         Ok(())
@@ -199,13 +199,13 @@ fn hidden_columns(theme: &Theme, row: &Row) -> String {
     format!("{} {}{columns}", row.number, theme.words(&row.name))
 }
 
-fn own_text(row: &Row) -> String {
+fn parameter_text(row: &Row) -> String {
     row.staged.map_or_else(|| row.shown.clone(), |staged| staged.to_string())
 }
 
 fn row_of(theme: &Theme, row: &Row) -> RegisterRow {
     let words = |text: Option<&Text>| text.map(|text| theme.words(text)).unwrap_or_default();
-    let value = own_text(row);
+    let value = parameter_text(row);
     // A unit that is part of another one is multiplied.
     let unit = match words(row.unit.as_ref()) {
         unit if unit.starts_with('0') => format!("× {unit}"),

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::state::{
 };
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    card, enabled_button, entry, options, paragraph, problem_below, row, settled_entry, text_entry,
+    card, committed_entry, enabled_button, entry, options, paragraph, problem_below, row, text_entry,
 };
 use crate::ui::{Theme, icons};
 
@@ -29,7 +29,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
         let pitch = unit.pitch(drive);
         let shown = pitch.map(|own| theme.plain(own.nanometres as f64 / 1e6)).unwrap_or_default();
         entry(ui, theme, &word, |ui| {
-            settled_entry(ui, &mut view.pitch, &shown, NUMBER, &word, |text| {
+            committed_entry(ui, &mut view.pitch, &shown, NUMBER, &word, |text| {
                 let pitch = if text.trim().is_empty() { None } else { Some(forms::length(text)?) };
                 actions.push(Action::device(id, Hiperdrive::SetPitch(drive, pitch)));
                 Ok(())

@@ -10,7 +10,7 @@ use crate::cli::args::{Common, Restore, Save};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::plan::PlanReport;
-use crate::cli::profiles::{UnrestoredItems, save_profile, say_mounting_left, to_restore, write_restore};
+use crate::cli::profiles::{UnrestoredItems, print_skipped_mounting, save_profile, to_restore, write_restore};
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
@@ -58,7 +58,7 @@ impl ProfileCommands for HiperfaceCommands {
                 "{item} is not restored: it is missing in the profile or the encoder, or cannot be read"
             ));
         }
-        say_mounting_left(output, &prepared.mounting_left);
+        print_skipped_mounting(output, &prepared.mounting_left);
         let redo = prepared.redo().iter().map(ToString::to_string).collect();
         let missing = prepared.missing.iter().map(ToString::to_string).collect();
         let left = UnrestoredItems { unchanged: prepared.unchanged, missing, redo };

@@ -4,7 +4,7 @@ use serde_json::{Value as Json, json};
 
 use crate::bits::{hex_compact, parse_hex};
 use crate::cli::args::{Common, Consenting, Write};
-use crate::cli::consent::{agreed, check_wear, require_consent};
+use crate::cli::consent::{check_wear, confirm_plan, require_consent};
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output, count as plural};
 use crate::cli::plan::{self, WriteSummary};
@@ -114,7 +114,7 @@ pub(super) fn commit(
     }
     check_wear::<Hiperface>(consent, &prepared)?;
     let text = plan_text(&prepared);
-    let agreed = agreed(output, consent, prepared, &[&text])?;
+    let agreed = confirm_plan(output, consent, prepared, &[&text])?;
     let committed = result_of!(runner.run(HiperfaceJob::Commit(Box::new(agreed)))?, HiperfaceOutput::Committed(committed) => committed);
     Ok(WriteSummary::of(output, committed))
 }

@@ -77,7 +77,7 @@ impl Hiperface {
     }
 
     /// Stores the codes of samples, in which a persistent code is repeated.
-    fn keep_sampled_codes(&mut self, context: &mut SessionContext) {
+    fn record_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_read_codes();
         if !codes.is_empty() && self.status.record_new(&codes, context.clock.now()) {
             self.keep_codes(context, &codes);
@@ -136,7 +136,7 @@ impl Device for Hiperface {
         let geometry = self.geometry;
         let met_before = self.station.codes_met.len();
         let sample = read_sample(&mut self.master(context), geometry);
-        self.keep_sampled_codes(context);
+        self.record_sampled_codes(context);
         let sample = sample?;
         // It contains the codes collected.
         self.station.codes_met.truncate(met_before);
@@ -146,7 +146,7 @@ impl Device for Hiperface {
     fn watch(&mut self, context: &mut SessionContext, what: &Watch) -> Result<Watched<Sample>, JobError> {
         let met_before = self.station.codes_met.len();
         let reading = read_watched(&mut self.master(context), *what);
-        self.keep_sampled_codes(context);
+        self.record_sampled_codes(context);
         let reading = reading?;
         // It contains the codes collected.
         self.station.codes_met.truncate(met_before);
@@ -157,7 +157,7 @@ impl Device for Hiperface {
 
     fn take_remark(&mut self) -> Option<DeviceMessage> {
         let codes = Some(self.station.take_codes()).filter(|codes| !codes.is_empty()).map(DeviceMessage::Codes);
-        codes.or_else(|| self.unheard())
+        codes.or_else(|| self.unseen_codes_remark())
     }
 
     fn check(&mut self) -> Result<(), LinkError> {
@@ -166,7 +166,7 @@ impl Device for Hiperface {
 
     /// Reports new errors of the line.
     fn idle(&mut self, _desk: &mut SessionContext) -> Option<DeviceMessage> {
-        if let Some(unheard) = self.unheard() {
+        if let Some(unheard) = self.unseen_codes_remark() {
             return Some(unheard);
         }
         let line = &self.station.line;
@@ -180,7 +180,7 @@ impl Device for Hiperface {
 }
 
 impl Hiperface {
-    fn unheard(&mut self) -> Option<DeviceMessage> {
+    fn unseen_codes_remark(&mut self) -> Option<DeviceMessage> {
         Some(self.station.take_unheard_code_count()).filter(|count| *count > 0).map(DeviceMessage::CodesUnheard)
     }
 

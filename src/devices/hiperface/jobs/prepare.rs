@@ -57,29 +57,31 @@ pub(super) fn prepare(
         Change::Store(edits) => {
             let memory = read_memory(&mut master)?;
             let touched: BTreeSet<u8> = edits.iter().map(|(range, _)| range.field).collect();
-            let fields =
-                touched.into_iter().map(|field| existing(&mut master, memory, field)).collect::<Result<Vec<_>, _>>()?;
+            let fields = touched
+                .into_iter()
+                .map(|field| existing_field(&mut master, memory, field))
+                .collect::<Result<Vec<_>, _>>()?;
             plan_store(memory.fields, &fields, &edits)?
         }
         Change::CreateField { number, status } => plan_create(read_memory(&mut master)?, number, status)?,
         Change::Redefine { number, status } => {
             let memory = read_memory(&mut master)?;
-            let field = existing(&mut master, memory, number)?;
+            let field = existing_field(&mut master, memory, number)?;
             plan_redefine(memory, &field, status)?
         }
         Change::LockField { number, lock } => {
             let memory = read_memory(&mut master)?;
-            let field = existing(&mut master, memory, number)?;
+            let field = existing_field(&mut master, memory, number)?;
             plan_redefine(memory, &field, field.status.with_write_enable(!lock))?
         }
         Change::ResizeField { number, size } => {
             let memory = read_memory(&mut master)?;
-            let field = existing(&mut master, memory, number)?;
+            let field = existing_field(&mut master, memory, number)?;
             plan_redefine(memory, &field, field.status.with_size(size))?
         }
         Change::DeleteField { number } => {
             let memory = read_memory(&mut master)?;
-            let field = existing(&mut master, memory, number)?;
+            let field = existing_field(&mut master, memory, number)?;
             plan_delete(memory, &field)?
         }
         Change::ChangeCode { number, new } => change_code(&mut master, number, new)?,
@@ -176,7 +178,7 @@ fn change_code(
     Ok(HiperfacePlan { base: Base { field_count: memory.fields, fields, scalars: Vec::new() }, ops })
 }
 
-fn existing(master: &mut Master<'_>, memory: FreeMemory, number: u8) -> Result<FieldImage, JobError> {
+fn existing_field(master: &mut Master<'_>, memory: FreeMemory, number: u8) -> Result<FieldImage, JobError> {
     if number >= memory.fields {
         return Err(PlanError::NoSuchField { field: number, count: memory.fields }.into());
     }

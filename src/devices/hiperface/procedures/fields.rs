@@ -17,7 +17,7 @@ const LEAST_TRANSFER: usize = 4;
 /// # Errors
 /// Errors of the exchange, or a refusal because the field does not exist.
 pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataFieldStatus, Error> {
-    match master.ask_confirmed(&Request::FieldStatus { field })? {
+    match master.request_confirmed(&Request::FieldStatus { field })? {
         Reply::FieldStatus(status) => Ok(status),
         other => Err(Error::other_reply(Command::FieldStatus, &other)),
     }

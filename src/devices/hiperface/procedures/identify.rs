@@ -66,7 +66,7 @@ pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity
 pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identity, Error> {
     let label = read_type_label(master)?;
     let serial = read_serial(master)?;
-    let memory = match have(master.ask_confirmed(&Request::FreeMemory))? {
+    let memory = match have(master.request_confirmed(&Request::FreeMemory))? {
         Some(Reply::FreeMemory(memory)) => Some(memory),
         _ => None,
     };
@@ -94,7 +94,7 @@ pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identit
 /// # Errors
 /// Errors of the exchange, or a refusal.
 pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Error> {
-    match master.ask_confirmed(&Request::ReadTypeLabel)? {
+    match master.request_confirmed(&Request::ReadTypeLabel)? {
         Reply::TypeLabel(label) => Ok(label),
         other => Err(Error::other_reply(Command::ReadTypeLabel, &other)),
     }
@@ -105,7 +105,7 @@ pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Erro
 /// # Errors
 /// Errors of the exchange, or a refusal.
 pub(super) fn read_serial(master: &mut Master<'_>) -> Result<SerialLabel, Error> {
-    Ok(match have(master.ask_confirmed(&Request::ReadSerial))? {
+    Ok(match have(master.request_confirmed(&Request::ReadSerial))? {
         Some(Reply::Serial(serial)) => serial,
         _ => {
             SerialLabel { serial_number: String::new(), firmware_version: String::new(), firmware_date: String::new() }
@@ -126,7 +126,7 @@ pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
 /// # Errors
 /// Errors of the exchange, or a refusal.
 pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
-    master.ask_timed(&Request::ReadTypeLabel).map(|timed| timed.sender)
+    master.request_timed(&Request::ReadTypeLabel).map(|timed| timed.sender)
 }
 
 /// Reads the complete data field FFh: 4Ch for its size, then 4Ah with code 0.

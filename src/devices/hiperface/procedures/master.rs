@@ -88,7 +88,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// Every attempt failed, the encoder refused, or the user cancelled.
     pub(super) fn ask(&mut self, request: &Request) -> Result<Reply, Error> {
-        self.ask_timed(request).map(|timed| timed.reply)
+        self.request_timed(request).map(|timed| timed.reply)
     }
 
     /// Runs `work`, which reads values to be stored; every reply must be received twice.
@@ -104,7 +104,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// See [`ask`](Self::ask).
-    pub(super) fn ask_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
+    pub(super) fn request_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
         let mut reply = self.ask(request)?;
         for _ in 0..TRIES {
             if !self.station.reads_twice() {
@@ -120,7 +120,7 @@ impl<'a> Master<'a> {
         Err(Error::Damaged { command: request.command(), tries: TRIES, cause: Damage::Inconsistent })
     }
 
-    pub(super) fn ask_timed(&mut self, request: &Request) -> Result<Timed, Error> {
+    pub(super) fn request_timed(&mut self, request: &Request) -> Result<Timed, Error> {
         let mut tries = 0;
         loop {
             tries += 1;
@@ -164,7 +164,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// Errors of the connection, or [`Error::Cancelled`].
-    pub(super) fn tell_all(&mut self, request: &Request) -> Result<(), Error> {
+    pub(super) fn send_broadcast(&mut self, request: &Request) -> Result<(), Error> {
         self.begin()?;
         let frame = request.emit(self.station.address);
         let sent_at = self.now();
@@ -195,7 +195,7 @@ impl<'a> Master<'a> {
         let longest = self.station.timing().worst_case(request) + self.station.line.margin;
         if self.line.may_ask_again(&mut self.station.line, tries, longest) {
             if matches!(trouble, ExchangeFailure::Silence { .. }) {
-                let quiet = self.quiet();
+                let quiet = self.silence_duration();
                 self.line.hear_late(&mut self.station.line, tries, quiet)?;
             }
             return Ok(());

@@ -27,7 +27,7 @@ pub struct PositionReading {
 /// Errors of the exchange, or a refusal because the encoder has no position.
 pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PositionReading, Error> {
     let met_before = master.station().codes_met.len();
-    let timed = master.ask_timed(&Request::ReadPosition)?;
+    let timed = master.request_timed(&Request::ReadPosition)?;
     let Reply::Position(raw) = timed.reply else {
         return Err(Error::other_reply(Command::ReadPosition, &timed.reply));
     };
@@ -95,7 +95,7 @@ impl WatchedReading {
 pub fn read_watched(master: &mut Master<'_>, what: Watch) -> Result<WatchedReading, Error> {
     let met_before = master.station().codes_met.len();
     let answer = match what {
-        Watch::Analogue(channel) => ask_analogue(master, channel).map(|(at, value)| (at, value.into())),
+        Watch::Analogue(channel) => request_analogue(master, channel).map(|(at, value)| (at, value.into())),
         Watch::Counter => read_counter(master).map(|value| (master.now(), value.into())),
     };
     let (at, value) = match answer {
@@ -135,12 +135,12 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
 /// # Errors
 /// Errors of the exchange, or a refusal because the channel does not exist.
 pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error> {
-    ask_analogue(master, channel).map(|(_, value)| value)
+    request_analogue(master, channel).map(|(_, value)| value)
 }
 
 /// Returns the value of an analogue channel, and when the encoder sampled it.
-fn ask_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
-    let timed = master.ask_timed(&Request::ReadAnalogue { channel })?;
+fn request_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
+    let timed = master.request_timed(&Request::ReadAnalogue { channel })?;
     match timed.reply {
         Reply::Analogue(value) => Ok((timed.at, value)),
         other => Err(Error::other_reply(Command::ReadAnalogue, &other)),
@@ -170,7 +170,7 @@ pub fn read_analogue_limit(master: &mut Master<'_>, channel: u8) -> Result<Optio
 /// # Errors
 /// Errors of the exchange, or a refusal.
 pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
-    match master.ask_confirmed(&Request::ReadCounter)? {
+    match master.request_confirmed(&Request::ReadCounter)? {
         Reply::Counter(value) => Ok(value),
         other => Err(Error::other_reply(Command::ReadCounter, &other)),
     }

@@ -25,7 +25,7 @@ const RESERVE: Duration = Duration::from_millis(100);
 pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     let stored = read_type_label(master)?.settings;
     let format = stored.format().ok_or(Error::ReservedFormat { settings: stored })?;
-    master.tell_all(&Request::Reset)?;
+    master.send_broadcast(&Request::Reset)?;
     let factory = format == CharacterFormat::FACTORY && stored.long_timeout();
     let wait = if factory { INTO_DEFAULT_WINDOW } else { Timing::DEFAULT_WINDOW_END + Timing::SWITCH + RESERVE };
     // The encoder restarts even if the user cancels now; afterwards the session must know its settings.

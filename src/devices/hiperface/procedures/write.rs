@@ -95,11 +95,11 @@ impl Write for EncoderWrite<'_, '_> {
         let ops = &confirmed.plan().ops;
         let (before, after) = ops.split_at(done.ops.min(ops.len()));
         let begun = before.iter().chain(after.first().filter(|_| may_have_been_executed(cause)));
-        let unlocked: Vec<u8> = begun.filter(|op| op.unlocks()).filter_map(Op::field).collect();
+        let unlocked: Vec<u8> = begun.filter(|op| op.is_unlock()).filter_map(Op::field).collect();
         let range = range_of(self.identity.geometry);
         for field in unlocked {
             let Some(lock) = after.iter().find(|op| op.locks(field)) else { continue };
-            let lock_again = |master: &mut Master<'_>| lock_again(master, lock, confirmed, range, done);
+            let lock_again = |master: &mut Master<'_>| restore_lock(master, lock, confirmed, range, done);
             if cause.is_lost() || self.master.shielded(lock_again).is_err() {
                 self.left.unlocked.push(field);
             }
@@ -132,7 +132,7 @@ fn confirm_scalar(master: &mut Master<'_>, scalar: Scalar, geometry: Option<Geom
     if same { Ok(()) } else { Err(Error::Changed { item }) }
 }
 
-fn lock_again(
+fn restore_lock(
     master: &mut Master<'_>,
     lock: &Op,
     confirmed: &Confirmed<'_>,
@@ -342,7 +342,7 @@ pub fn ensure_address_free(master: &mut Master<'_>, address: DeviceAddress) -> R
 }
 
 pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
-    match master.ask_confirmed(&Request::FreeMemory)? {
+    match master.request_confirmed(&Request::FreeMemory)? {
         Reply::FreeMemory(memory) => Ok(memory),
         other => Err(Error::other_reply(Command::FreeMemory, &other)),
     }

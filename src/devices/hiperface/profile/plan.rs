@@ -133,7 +133,7 @@ impl Op {
 
     /// Returns whether the operation makes a protected field writable. The operation that protects the field again must
     /// then be carried out whatever happens in between.
-    pub fn unlocks(&self) -> bool {
+    pub fn is_unlock(&self) -> bool {
         matches!(self, Op::Define { from, to, .. }
             if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))
     }

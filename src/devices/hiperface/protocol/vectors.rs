@@ -87,7 +87,7 @@ fn of_kind(kind: Kind) -> impl Iterator<Item = Line> {
 
 impl Line {
     /// The request above the line and the address it was sent to.
-    fn asked(&self) -> (Request, u8) {
+    fn requested_frame(&self) -> (Request, u8) {
         let bytes = self.request.as_deref().unwrap();
         (Request::parse(&Frame::parse(bytes).unwrap()).unwrap(), bytes[0])
     }
@@ -124,7 +124,7 @@ fn every_frame_in_the_file_has_a_correct_checksum() {
 #[test]
 fn every_request_in_the_file_round_trips() {
     for line in of_kind(Kind::Request) {
-        let (request, address) = line.asked();
+        let (request, address) = line.requested_frame();
         assert_eq!(request.emit(address).bytes(), line.bytes, "line {}", line.number);
     }
 }
@@ -132,7 +132,7 @@ fn every_request_in_the_file_round_trips() {
 #[test]
 fn every_reply_in_the_file_matches_its_request() {
     for line in of_kind(Kind::Reply) {
-        let (request, address) = line.asked();
+        let (request, address) = line.requested_frame();
         let answer = request.parse_reply(address, &line.bytes);
         assert!(matches!(answer, Ok(Answer::Reply { .. })), "line {}: {answer:?}", line.number);
         let length = request.reply_length(&line.bytes).unwrap();
@@ -155,7 +155,7 @@ fn every_error_frame_in_the_file_is_a_refusal_and_a_status_reply() {
 #[test]
 fn frames_that_are_not_replies_are_refused() {
     for line in of_kind(Kind::NotAReply) {
-        let (request, address) = line.asked();
+        let (request, address) = line.requested_frame();
         let answer = request.parse_reply(address, &line.bytes);
         assert!(!matches!(answer, Ok(_) | Err(ReplyError::Frame(_))), "line {}: {answer:?}", line.number);
     }
@@ -165,7 +165,7 @@ fn frames_that_are_not_replies_are_refused() {
 fn truncated_and_damaged_replies_are_refused() {
     for line in lines() {
         let asked = match line.kind {
-            Kind::Reply => vec![line.asked()],
+            Kind::Reply => vec![line.requested_frame()],
             Kind::ErrorFrame => vec![(Request::ReadStatus, 0x40), (Request::ReadPosition, 0x40)],
             _ => continue,
         };

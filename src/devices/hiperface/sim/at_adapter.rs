@@ -22,7 +22,7 @@ impl AttachableKind for AtAdapter {
         Settings::KEYS
     }
 
-    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
+    fn attach_device(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
         let is_there = Settings::read(pairs)?.is_there;
         Ok(is_there.then(|| AttachedDevice::Serial(Box::new(Bus::new(&Config::default())))))
     }

@@ -113,7 +113,7 @@ impl Bus {
 
     fn deliver_to_encoders(&mut self) {
         let Some((_, travelling)) = self.to_encoders.pop() else { return };
-        let collides = self.collides(&travelling);
+        let collides = self.has_collision(&travelling);
         let Character { start, end, byte, flipped } = travelling.character;
         for (index, encoder) in self.encoders.iter_mut().enumerate() {
             // A driver that is on receives only its own bytes.
@@ -132,7 +132,7 @@ impl Bus {
     fn deliver_to_host(&mut self) {
         let Some((_, travelling)) = self.to_host.pop() else { return };
         // The usual driver setting passes on bytes with a wrong parity bit unchanged.
-        let clean = !self.collides(&travelling) && travelling.format == self.wires.host;
+        let clean = !self.has_collision(&travelling) && travelling.format == self.wires.host;
         let byte = if clean { travelling.character.byte } else { garbage(&mut self.wires.rng) };
         self.wires.inbox.push(byte);
     }
@@ -160,7 +160,7 @@ impl Bus {
     }
 
     /// Returns whether another device drives the line during this character.
-    fn collides(&self, CharacterInTransit { talker, character, .. }: &CharacterInTransit) -> bool {
+    fn has_collision(&self, CharacterInTransit { talker, character, .. }: &CharacterInTransit) -> bool {
         let other = |talk: &&LineOccupation| talk.talker != *talker;
         self.talks.iter().filter(other).any(|talk| talk.start < character.end && character.start < talk.end)
     }
@@ -191,7 +191,7 @@ impl VirtualLine for Bus {
         self.encoders.iter().enumerate().filter_map(acting).chain(hearing).chain(receiving).min()
     }
 
-    fn happen(&mut self, at: Moment, event: Event) {
+    fn schedule_event(&mut self, at: Moment, event: Event) {
         match event {
             Event::EncoderActs(index) => self.run_encoder_action(index, at),
             Event::EncodersHear => self.deliver_to_encoders(),
@@ -203,7 +203,7 @@ impl VirtualLine for Bus {
         self.drive(Talker::Host, start, self.wires.host, bytes)
     }
 
-    fn give_power(&mut self, now: Moment) {
+    fn supply_power(&mut self, now: Moment) {
         for encoder in &mut self.encoders {
             encoder.connect(now);
         }

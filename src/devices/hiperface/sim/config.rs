@@ -39,7 +39,7 @@ impl Config {
     /// Names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let config: Config = setting::read(VirtualDevice::Encoder, pairs)?;
-        config.check_together()?;
+        config.check_combination()?;
         Ok(config)
     }
 
@@ -74,7 +74,7 @@ impl Config {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }
 
-    fn check_together(&self) -> Result<(), ConfigError> {
+    fn check_combination(&self) -> Result<(), ConfigError> {
         let range = self.geometry(&EncoderTypes::built_in()).range();
         if let (Some(position), Some(range)) = (self.position, range)
             && u64::from(position) >= range

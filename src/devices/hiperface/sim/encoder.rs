@@ -304,7 +304,7 @@ impl Encoder {
             return;
         }
         self.frames_processed = self.frames_processed.saturating_add(1);
-        let verdict = frame.and_then(|frame| self.understand(&frame));
+        let verdict = frame.and_then(|frame| self.parse_request(&frame));
         if let (Power::Starting { since, keeps_default }, Ok(_)) = (&mut self.power, &verdict)
             && at.since(*since) < Timing::DEFAULT_WINDOW_END
         {
@@ -318,7 +318,7 @@ impl Encoder {
         self.activity = Activity::Executing { until, settings, verdict };
     }
 
-    fn understand(&self, frame: &Frame<'_>) -> Result<Request, StatusCode> {
+    fn parse_request(&self, frame: &Frame<'_>) -> Result<Request, StatusCode> {
         if Command::from_byte(frame.command).is_some_and(|command| !self.electronics.has(command)) {
             return Err(StatusCode::UNKNOWN_COMMAND);
         }

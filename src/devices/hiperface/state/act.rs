@@ -38,7 +38,7 @@ impl Encoder {
             HiperfaceAction::UseCode { number, code } => {
                 if self.try_submit(HiperfaceJob::UseCode { number, code }, services) {
                     self.tried_code = Some(number);
-                    self.know_code(number, code);
+                    self.remember_code(number, code);
                 }
             }
             HiperfaceAction::Put { field, address, bytes } => self.put(field, address, &bytes, services),

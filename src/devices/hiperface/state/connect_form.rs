@@ -5,7 +5,7 @@ use super::search::SearchFinder;
 use crate::app::Text;
 use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{Parameters, Typed, without_entry};
-use crate::app::connect::target::{entered, filled, host_and_port, parted, refused};
+use crate::app::connect::target::{entered, filled, host_and_port, refused, split_target};
 use crate::devices::hiperface::jobs::check;
 use crate::devices::hiperface::procedures::{Echo, LinkParameters, MOST_PERIODS};
 use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
@@ -91,7 +91,7 @@ impl FormModel for LinkForm {
             Scheme::Bridge | Scheme::Modbus | Scheme::Enip => {}
             Scheme::Tcp => {
                 form.kind = LinkKind::Tcp;
-                (form.host, form.tcp_port) = parted(&target);
+                (form.host, form.tcp_port) = split_target(&target);
             }
         }
         form.rest = without_entry(&url.query, |name, value| form.take(name, value));
@@ -190,7 +190,7 @@ impl LinkForm {
             parameters.set("timeout", "11");
         }
         parameters.typed(&Self::of_the_link(), &self.typed);
-        parameters.rest_of(&self.rest, self.kind == LinkKind::Virtual, (LinkParameters::KEYS, Config::KEYS));
+        parameters.set_remaining(&self.rest, self.kind == LinkKind::Virtual, (LinkParameters::KEYS, Config::KEYS));
         Ok(parameters)
     }
 

@@ -136,7 +136,7 @@ impl Encoder {
         if fresh {
             self.log_answer(services);
         }
-        self.tell_of_code(services);
+        self.report_code(services);
         self.list_backups(services);
     }
 
@@ -164,7 +164,7 @@ impl Encoder {
     }
 
     /// Reports whether the access code of the user opens the fields that it protects; never the code itself.
-    fn tell_of_code(&mut self, services: &mut Services) {
+    fn report_code(&mut self, services: &mut Services) {
         let Some(number) = self.tried_code.take() else { return };
         let own = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
         let fields: Vec<&FieldImage> = self.staged.device().iter().filter(own).collect();

@@ -83,7 +83,7 @@ impl Encoder {
         }
     }
 
-    fn announced(&mut self, codes: Vec<StatusCode>, services: &mut Services) {
+    fn note_announced_codes(&mut self, codes: Vec<StatusCode>, services: &mut Services) {
         let texts = codes.iter().map(|code| explained::status(*code)).collect();
         services.notify(Severity::Warning, texts, Some(&self.session.name()));
         self.codes.get_or_insert_default().extend(codes);
@@ -94,7 +94,7 @@ impl Encoder {
     pub(super) fn follow(&mut self, ops: &[Op], services: &mut Services) {
         for op in ops {
             match op {
-                Op::ChangeCode { number, new, .. } => self.know_code(*number, *new),
+                Op::ChangeCode { number, new, .. } => self.remember_code(*number, *new),
                 Op::SetAddress { to, .. } => {
                     if let Source::Link(url) = &mut self.session.source {
                         url.query.set("address", &format!("0x{:02X}", to.byte()));
@@ -133,7 +133,7 @@ impl Encoder {
         }
     }
 
-    pub(super) fn know_code(&mut self, number: CodeNumber, code: AccessCode) {
+    pub(super) fn remember_code(&mut self, number: CodeNumber, code: AccessCode) {
         self.access_codes.retain(|(own, _)| *own != number);
         self.access_codes.push((number, code));
     }
@@ -178,7 +178,7 @@ impl SessionEvents for Encoder {
 
     fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
-            DeviceMessage::Codes(codes) => self.announced(codes, services),
+            DeviceMessage::Codes(codes) => self.note_announced_codes(codes, services),
             DeviceMessage::CodesUnheard(count) => {
                 let text = explained::codes_unheard(count);
                 services.notify(Severity::Warning, vec![text], Some(&self.session.name()));
@@ -255,7 +255,7 @@ impl SessionEvents for Encoder {
             self.asked = None;
             self.cancel_rest_reading();
         }
-        self.cut_write(how, texts);
+        self.handle_cut_write(how, texts);
         // It is reported as well.
         false
     }
@@ -293,7 +293,7 @@ impl SessionEvents for Encoder {
         if gone.is_none() && !silent && !garbled {
             self.session.answers();
         }
-        let is_shown = self.cut_write(EarlyEnd::Failed(error), &texts);
+        let is_shown = self.handle_cut_write(EarlyEnd::Failed(error), &texts);
         match gone {
             Some(why) => {
                 if is_shown {

@@ -47,12 +47,12 @@ impl Meaning {
         // The heading contains the request's facts; of a reply only new facts are added.
         let known = |facts: &FrameFact| asked.is_some() && matches!(facts, FrameFact::Heading { .. });
         let meaning = facts.iter().filter(|facts| !known(facts)).map(words::frame).collect();
-        let fault = answer.filter(reports).map(|_| TraceFault::Reported);
+        let fault = answer.filter(is_report).map(|_| TraceFault::Reported);
         Explained { meaning, fault }
     }
 }
 
-fn reports(answer: &Answer) -> bool {
+fn is_report(answer: &Answer) -> bool {
     match answer {
         Answer::Rejected { .. } => true,
         Answer::Reply { reply: Reply::Status(codes), .. } => codes.iter().any(|code| *code != StatusCode::OK),

@@ -23,7 +23,7 @@ impl DeviceModel for Encoder {
     fn connect(&mut self, opened: Opened<Hiperface>, services: &mut Services) {
         self.let_go(JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
-        self.session.take_line(opened, services);
+        self.session.adopt_line(opened, services);
         self.wish_watched();
         self.codes_due.clear();
         self.tried_code = None;

@@ -73,7 +73,7 @@ impl WithMemory for Encoder {
     fn log_begin(&self, _: &Text, _: &Prepared, _: &mut Services) {}
 
     fn plan_with(&mut self, permit: Permit, services: &mut Services) {
-        if let Some(change) = self.review().and_then(|review| review.toggled(permit)) {
+        if let Some(change) = self.review().and_then(|review| review.with_toggled_permit(permit)) {
             self.plan_again(change, services);
         }
     }

@@ -15,7 +15,7 @@ use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{LinkForm, LinkKind, Search, SearchAction, SearchFinder};
 use crate::ui::controls::{allowed_button, button, choice, entry, fill, paragraph, spinner, text_entry};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{echo, network, parity, recording, segments, serial, typed, unfolded};
+use crate::ui::dialogs::connect::entries::{echo, expandable_ui, network, parity, recording, segments, serial, typed};
 use crate::ui::{Theme, icons};
 
 #[derive(Default)]
@@ -57,7 +57,7 @@ impl TypedConnectForm for HiperfaceConnectForm {
         }
         if form.kind != LinkKind::Replay {
             line(ui, theme, form);
-            more(ui, theme, form, open);
+            more_settings_ui(ui, theme, form, open);
         }
         if form.kind != LinkKind::Replay {
             ui.add_space(theme.space.between);
@@ -90,8 +90,8 @@ fn line(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
     });
 }
 
-fn more(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut bool) {
-    if !unfolded(ui, theme, open) {
+fn more_settings_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut bool) {
+    if !expandable_ui(ui, theme, open) {
         return;
     }
     echo(ui, theme, &mut form.echo);

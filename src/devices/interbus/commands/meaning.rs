@@ -68,7 +68,7 @@ pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<Wo
             .collect()),
         Some(mode) => match Command::in_mode(word, mode) {
             Ok(command) => Ok(vec![meaning(command, vec![mode])]),
-            Err(refused) => Err(format!("not legal in {mode}: {}", elsewhere(refused.command))),
+            Err(refused) => Err(format!("not legal in {mode}: {}", other_mode_text(refused.command))),
         },
     }
 }
@@ -81,7 +81,7 @@ pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
         .map(|refused| WordMeaning {
             direction: "OUT",
             modes: vec![refused.mode],
-            words: format!("not legal, {}", elsewhere(refused.command)),
+            words: format!("not legal, {}", other_mode_text(refused.command)),
             value: command_words(refused.command).1,
             legal: false,
         })
@@ -89,7 +89,7 @@ pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
         .collect()
 }
 
-fn elsewhere(command: Command) -> String {
+fn other_mode_text(command: Command) -> String {
     let modes: Vec<&str> = Mode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).map(Mode::name).collect();
     format!("\"{}\" is for {} mode", command_words(command).0, modes.join(" or "))
 }

@@ -5,7 +5,7 @@ use serde_json::Value as Json;
 use super::run::Runner;
 use crate::cli::Result;
 use crate::cli::args::Consenting;
-use crate::cli::consent::{agreed, check_wear};
+use crate::cli::consent::{check_wear, confirm_plan};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, PlanReport, PlanStep, WriteSummary};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear};
@@ -60,7 +60,7 @@ pub(super) fn commit(
         // Above the maker's limit: asked once more.
         texts.push(wear_text);
     }
-    let agreed = agreed(output, consent, prepared, &texts)?;
+    let agreed = confirm_plan(output, consent, prepared, &texts)?;
     let committed = result_of!(runner.run(InterbusJob::Commit(Box::new(agreed)))?, InterbusOutput::Committed(committed) => *committed);
     Ok(WriteSummary::of(output, committed))
 }

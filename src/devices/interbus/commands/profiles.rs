@@ -10,7 +10,7 @@ use crate::cli::args::{Common, Restore, Save};
 use crate::cli::commands::ProfileCommands;
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{
-    UnrestoredItems, restore_options, save_profile, say_missing, say_mounting_left, to_restore, write_restore,
+    UnrestoredItems, print_missing, print_skipped_mounting, restore_options, save_profile, to_restore, write_restore,
 };
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
@@ -39,8 +39,8 @@ impl ProfileCommands for InterbusCommands {
         if let Some(types) = prepared.other_type {
             output.remark(&words::other_type(types).terminal());
         }
-        say_missing(output, &prepared.missing);
-        say_mounting_left(output, &prepared.mounting_left);
+        print_missing(output, &prepared.missing);
+        print_skipped_mounting(output, &prepared.mounting_left);
         let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
         let left = UnrestoredItems { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
         let plan = shown(&prepared);

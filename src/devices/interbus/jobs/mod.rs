@@ -47,7 +47,7 @@ impl Interbus {
     /// Returns the host side of the process data, which reports each step of the handshake.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext, on_step: impl FnMut(Handshake) + 'a) -> Master<'a> {
         let notes = Notes::of(context.store.clone(), context.is_virtual);
-        Master::new(context.ctx(&mut *self.wire), &mut self.station).telling(on_step).with_journal(notes)
+        Master::new(context.ctx(&mut *self.wire), &mut self.station).with_reporter(on_step).with_journal(notes)
     }
 }
 

@@ -100,7 +100,7 @@ pub fn check(
         return Ok(lines);
     }
     let begun = master.now();
-    match master.guarded(|master| read_survey(master, progress)) {
+    match master.run_guarded(|master| read_survey(master, progress)) {
         Ok(survey) => {
             let requested = survey.read_outs().count() as u64;
             let each_ms = master.now().since(begun).as_millis() as u64 / requested.max(1);

@@ -72,7 +72,7 @@ pub struct Status {
 /// [`Error::Implausible`] if the direction is invalid; errors of the handshake and the exchange. An invalid gear is
 /// reported by [`Identity::gear`].
 pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
-    master.guarded(|master| read_identity(master, &mut Vec::new()))
+    master.run_guarded(|master| read_identity(master, &mut Vec::new()))
 }
 
 /// Reads all that can be read out without selecting a cam program.
@@ -80,7 +80,7 @@ pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
 /// # Errors
 /// As [`identify`].
 pub fn survey(master: &mut Master<'_>, progress: &mut dyn FnMut(u64, u64, ReadOut)) -> Result<Survey, Error> {
-    master.guarded(|master| read_survey(master, progress))
+    master.run_guarded(|master| read_survey(master, progress))
 }
 
 /// Reads the status.
@@ -94,7 +94,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
         Reply::Error(error) => Some(error),
         _ => None,
     };
-    master.guarded(|master| {
+    master.run_guarded(|master| {
         let identity = read_identity(master, &mut Vec::new())?;
         let Measured { minutes, tenths } = read_measured(master)?;
         (reading.mode, reading.gear) = (Some(identity.mode), identity.gear().ok());
@@ -108,7 +108,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
 /// # Errors
 /// [`Error::UnknownReadOut`]; as [`identify`].
 pub fn read_one(master: &mut Master<'_>, read_out: ReadOut) -> Result<Value, Error> {
-    master.guarded(|master| master.read_out(read_out))
+    master.run_guarded(|master| master.read_out(read_out))
 }
 
 /// Reads cam programs and the window shift. Each program is selected for reading, which switches the encoder's outputs.
@@ -120,7 +120,7 @@ pub fn read_programs(
     wanted: &[ProgramNumber],
     progress: &mut dyn FnMut(u64, u64, ProgramNumber),
 ) -> Result<(Vec<(ProgramNumber, Program)>, WindowShift), Error> {
-    master.guarded(|master| programs(master, wanted, progress))
+    master.run_guarded(|master| programs(master, wanted, progress))
 }
 
 /// Switches the encoder to the given mode, in which it stays.
@@ -128,7 +128,7 @@ pub fn read_programs(
 /// # Errors
 /// [`Error::NoMode`], [`Error::NotSelectable`]; errors of the handshake and the exchange.
 pub fn select(master: &mut Master<'_>, mode: StartupMode) -> Result<StartupMode, Error> {
-    master.guarded(|master| {
+    master.run_guarded(|master| {
         master.go(mode)?;
         master.stay();
         Ok(master.mode().unwrap_or(mode))

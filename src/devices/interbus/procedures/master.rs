@@ -14,7 +14,7 @@ use stability::{CycleResult, Held, LEAST_PATIENCE};
 use super::data::ProcessData;
 use super::error::{AwaitedWord, RequestedItem};
 use super::handshake::{Handshake, LeftState, WordReply, is_echo};
-use super::reading::{swapped, unexplained_swapped_word};
+use super::reading::{swap_words, unexplained_swapped_word};
 use super::{Error, Gateway, KnownState, Station, WordReading};
 use crate::devices::interbus::protocol::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
 use crate::link::Ctx;
@@ -88,7 +88,7 @@ impl<'a> Master<'a> {
 
     /// Reports each step of the handshake to `tell`.
     #[must_use]
-    pub fn telling(mut self, tell: impl FnMut(Handshake) + 'a) -> Self {
+    pub fn with_reporter(mut self, tell: impl FnMut(Handshake) + 'a) -> Self {
         self.tell = Some(Box::new(tell));
         self
     }
@@ -196,7 +196,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub(super) fn normal(&mut self) -> Result<(), Error> {
+    pub(super) fn return_to_operation(&mut self) -> Result<(), Error> {
         self.running(Command::Normal, self.patience)
     }
 
@@ -215,7 +215,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// [`Error::TimeOut`] if the position does not reach the preset; otherwise as [`set`](Self::set).
     pub(super) fn fire(&mut self, is_there: impl Fn(u32) -> bool) -> Result<(), Error> {
-        self.normal()?;
+        self.return_to_operation()?;
         self.ensure_legal(Command::Preset)?;
         let (mut sent, mut there) = (Held::new(self.recorded), Held::new(self.recorded));
         let fired =
@@ -224,7 +224,7 @@ impl<'a> Master<'a> {
                 there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
                 (sent.is_settled() && there.is_stable()).then_some(Ok(()))
             });
-        self.shielded(Self::normal).and(fired)
+        self.shielded(Self::return_to_operation).and(fired)
     }
 
     /// Sends `out` in every cycle until `judge` returns a result for the IN word and the time for which it has been
@@ -250,7 +250,7 @@ impl<'a> Master<'a> {
             same.go_on(true, now);
             last = Some(word);
             at_work.go_on(matches!(Reply::parse(word), Reply::Busy { .. }) && !is_echo(command, word), now);
-            self.known.processing = self.known.processing.max(at_work.lasted());
+            self.known.processing = self.known.processing.max(at_work.stable_for());
             if let Some(ended) = judge(CycleResult { now, word, same }) {
                 return ended;
             }
@@ -303,7 +303,7 @@ impl<'a> Master<'a> {
             Err(error) => return error,
             Ok(_) => {}
         }
-        let suspected = if self.is.is_none() { unexplained_swapped_word(input) } else { swapped(input) };
+        let suspected = if self.is.is_none() { unexplained_swapped_word(input) } else { swap_words(input) };
         if let Some(swapped) = suspected {
             return Error::WordOrder { input, swapped };
         }
@@ -314,12 +314,12 @@ impl<'a> Master<'a> {
     }
 
     fn ensure_legal(&self, command: Command) -> Result<(), Error> {
-        Ok(command.ensure_legal(self.taken_in())?)
+        Ok(command.ensure_legal(self.mode_at_start())?)
     }
 
     /// Returns the mode in which the encoder will interpret the next word; any read-out is ended before another word is
     /// sent.
-    fn taken_in(&self) -> Mode {
+    fn mode_at_start(&self) -> Mode {
         match self.is {
             Some(StartupMode::Cams(_)) => Mode::Cam,
             // The manual does not define the effect of other words then.

@@ -22,7 +22,7 @@ pub mod write;
 
 pub use data::ProcessData;
 pub use error::{AwaitedWord, Damage, Error, Exception, Implausible, RequestedItem};
-pub use gateway::{Carried, Fault, Gateway, carried, fault};
+pub use gateway::{Carried, Fault, Gateway, carried_word, fault};
 pub use handshake::{Handshake, LeftState, WordReply};
 pub use identify::{Identity, Status, Survey, identify, read_one, read_programs, read_status, select, survey};
 pub use journal::{Excursion, Journal};

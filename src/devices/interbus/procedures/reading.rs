@@ -98,7 +98,7 @@ impl WordReading {
 
 /// Returns the word with its halves exchanged if only the exchanged word is a valid position, whose bits 30..25 should
 /// be 0.
-pub(super) fn swapped(word: u32) -> Option<u32> {
+pub(super) fn swap_words(word: u32) -> Option<u32> {
     let other = word.rotate_left(16);
     let strays = |word| matches!(Reply::parse(word), Reply::Run { stray, .. } if stray != 0);
     let runs = |word| matches!(Reply::parse(word), Reply::Run { stray: 0, .. });
@@ -109,7 +109,7 @@ pub(super) fn swapped(word: u32) -> Option<u32> {
 /// than positions that have no other explanation. An error word without other bits is just an error.
 pub(super) fn unexplained_swapped_word(word: u32) -> Option<u32> {
     match Reply::parse(word) {
-        Reply::Run { .. } => swapped(word),
+        Reply::Run { .. } => swap_words(word),
         Reply::Error(error) if error.data.get() == 0 => None,
         _ => Some(word.rotate_left(16)).filter(|other| matches!(Reply::parse(*other), Reply::Run { stray: 0, .. })),
     }
@@ -157,12 +157,12 @@ mod tests {
 
     #[test]
     fn swapped_words_are_detected() {
-        assert_eq!(swapped(0x3456_0012), Some(0x0012_3456));
-        assert_eq!(swapped(0x0012_3456), None);
+        assert_eq!(swap_words(0x3456_0012), Some(0x0012_3456));
+        assert_eq!(swap_words(0x0012_3456), None);
         // Stray bits in both orders prove nothing.
-        assert_eq!(swapped(0x3456_3456), None);
+        assert_eq!(swap_words(0x3456_3456), None);
         // 2DC6C0h; and parameters lost, which is not a position.
-        assert_eq!((swapped(0xC6C0_002D), unexplained_swapped_word(0xC6C0_002D)), (None, Some(0x002D_C6C0)));
+        assert_eq!((swap_words(0xC6C0_002D), unexplained_swapped_word(0xC6C0_002D)), (None, Some(0x002D_C6C0)));
         assert_eq!(unexplained_swapped_word(0x8600_0000), None);
     }
 }

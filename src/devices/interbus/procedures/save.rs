@@ -36,7 +36,7 @@ pub fn save(
     with_programs: bool,
     progress: &mut dyn FnMut(u64, u64, SaveStep),
 ) -> Result<InterbusProfile, Error> {
-    master.guarded(|master| {
+    master.run_guarded(|master| {
         let survey =
             read_survey(master, &mut |done, total, read_out| progress(done, total, SaveStep::ReadOut(read_out)))?;
         let wanted: Vec<ProgramNumber> = if with_programs { ProgramNumber::all().collect() } else { Vec::new() };
@@ -63,7 +63,7 @@ pub fn read_state(
     progress: &mut dyn FnMut(u64, u64, ProgramNumber),
 ) -> Result<DeviceState, Error> {
     identity.gear()?;
-    master.guarded(|master| {
+    master.run_guarded(|master| {
         let parameters = read_other_parameters(master, identity)?;
         let image = read_image(master, parameters, programs, progress)?;
         Ok(DeviceState { identity: identity.profile(), image })
@@ -75,7 +75,7 @@ pub fn read_state(
 /// # Errors
 /// Errors of the handshake and the exchange.
 pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error> {
-    master.guarded(|master| {
+    master.run_guarded(|master| {
         if let Some(program) = item.program() {
             master.will_read(1)?;
             master.go(StartupMode::Cams(program))?;

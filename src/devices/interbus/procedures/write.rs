@@ -47,7 +47,7 @@ impl Write for EncoderWrite<'_, '_> {
 
     fn confirm(&mut self, plan: &InterbusPlan) -> Result<(), Error> {
         let Self { master, identity } = self;
-        master.guarded(|master| confirm(master, plan, identity))
+        master.run_guarded(|master| confirm(master, plan, identity))
     }
 
     fn begin(&mut self) -> Result<(), Error> {
@@ -121,7 +121,7 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
             done.write_cycles += 1;
             master.set(Command::Set(Parameter::Default, Value::default()))?;
             master.run()?;
-            master.normal()?;
+            master.return_to_operation()?;
             // The new value has not been read yet.
             refresh_gear(master)?;
         }
@@ -139,7 +139,7 @@ fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut
         master.set(Command::Set(change.parameter, value))?;
     }
     master.run()?;
-    master.normal()?;
+    master.return_to_operation()?;
     for change in changes {
         let item = || change.parameter.name().to_owned();
         let reads = read_back(master, change.parameter)?;
@@ -236,7 +236,7 @@ fn fire(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
 /// [`Error::Moving`]; [`Error::NotRunning`] without a position; errors of the handshake and the exchange.
 fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     master.go(StartupMode::K3)?;
-    master.normal()?;
+    master.return_to_operation()?;
     let gear = master.gear();
     let until = master.now() + WATCHED;
     let mut first = None;

@@ -153,7 +153,7 @@ impl Encoder {
     }
 
     /// Sets the shaft position in steps of the disc, which has 8192 per turn.
-    pub fn put_shaft(&mut self, now: Moment, place: i32) {
+    pub fn set_shaft(&mut self, now: Moment, place: i32) {
         self.settle(now);
         self.shaft.put(now, place);
     }
@@ -233,7 +233,7 @@ impl Encoder {
         self.old = Old { word: self.shown(now), cycles: self.stale, until: now + Self::CYCLE * self.stale };
         match Command::in_mode(word, self.mode()) {
             Ok(command) => self.obey(now, command, before),
-            Err(_) => self.wonder(now, word),
+            Err(_) => self.note_unexpected_word(now, word),
         }
     }
 
@@ -285,7 +285,7 @@ impl Encoder {
 
     /// Handles a word that is meaningless in the current mode. A word that resembles a parameter, an edge, a shift or a
     /// read-out gets the corresponding error.
-    fn wonder(&mut self, now: Moment, word: u32) {
+    fn note_unexpected_word(&mut self, now: Moment, word: u32) {
         let of_cams = matches!(self.mode, StartupMode::Cams(_));
         match (word >> 29, word >> 16) {
             (0b000, _) if Code::of_word(word).get() != 0 => self.set(now, Err(Fault::UnknownCode)),

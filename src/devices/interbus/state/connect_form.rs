@@ -121,7 +121,7 @@ impl InterbusForm {
         if self.low_first {
             parameters.set(LOW_FIRST.0, LOW_FIRST.1);
         }
-        parameters.rest_of(&self.rest, is_virtual, (LinkParameters::KEYS, Config::KEYS));
+        parameters.set_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, Config::KEYS));
         parameters
     }
 }

@@ -77,7 +77,7 @@ impl Encoder {
     }
 
     /// Returns the marks to show on every page, with those of the given program first.
-    pub fn shown_marks(&self, program: Option<ProgramNumber>) -> Vec<Text> {
+    pub fn visible_marks(&self, program: Option<ProgramNumber>) -> Vec<Text> {
         let mut marks: Vec<Mark> = self.marks();
         marks.sort_by_key(|mark| program.is_none() || mark.program() != program);
         some(&cams::words::marks(&marks), Text::clone)
@@ -144,7 +144,7 @@ impl Encoder {
     }
 
     /// Returns whether the user must confirm that the machine stands still before going on.
-    pub fn asks_for_standstill(&self) -> bool {
+    pub fn needs_standstill(&self) -> bool {
         self.session.phase != Phase::Offline && !self.session.is_virtual()
     }
 

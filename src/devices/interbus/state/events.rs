@@ -146,16 +146,16 @@ impl SessionEvents for Encoder {
     }
 
     fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
-        self.cut_write(how, texts)
+        self.handle_cut_write(how, texts)
     }
 
     /// Submits a job. Jobs that replace the position or switch outputs are submitted only if the machine stands still.
     fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
-        if job::disturbs(&job) && !self.is_stopped() {
+        if job::disturbs_polling(&job) && !self.is_stopped() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
             return false;
         }
-        if job::disturbs(&job) && self.session.is_ready() {
+        if job::disturbs_polling(&job) && self.session.is_ready() {
             self.handshake.clear();
         }
         self.session.submit(job, services)

@@ -23,6 +23,6 @@ pub(super) fn words(job: &InterbusJob) -> Text {
 }
 
 /// Returns whether the job removes the position or switches outputs, so that the machine must stand still.
-pub(super) fn disturbs(job: &InterbusJob) -> bool {
+pub(super) fn disturbs_polling(job: &InterbusJob) -> bool {
     !matches!(job, InterbusJob::Hello | InterbusJob::Position)
 }

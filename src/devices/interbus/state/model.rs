@@ -18,7 +18,7 @@ impl DeviceModel for Encoder {
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
         self.trace = Meaning::new(self.order());
-        self.session.take_line(opened, services);
+        self.session.adopt_line(opened, services);
         self.submit(InterbusJob::Hello, services);
     }
 
@@ -68,7 +68,7 @@ impl DeviceModel for Encoder {
 
     fn ask_where_to_save(&mut self, services: &mut Services) {
         // Before asking for a file name: reading for a file selects cam programs. Data already read need no reading.
-        if self.asks_for_standstill() && !self.is_stopped() && !self.saves_what_was_read() {
+        if self.needs_standstill() && !self.is_stopped() && !self.saves_what_was_read() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
         } else {
             self.session.ask_where_to_save(services);

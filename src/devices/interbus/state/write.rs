@@ -62,7 +62,7 @@ impl WithMemory for Encoder {
         InterbusJob::Commit(Box::new(agreed))
     }
 
-    fn reads_again(&mut self) {
+    fn rereads_after_write(&mut self) {
         let programs = self.review().and_then(Review::writing).and_then(|own| changed_by(&own.plan));
         self.read_after = programs.unwrap_or_else(|| self.known_programs());
     }

@@ -42,7 +42,7 @@ pub(super) fn page_ui(
     let program = view.shown();
     view.program = Some(program);
     bar::bar_ui(ui, theme, encoder, program, view, actions);
-    import::pasted(ui, encoder, program, actions);
+    import::pasted_table(ui, encoder, program, actions);
     if let Some(table) = &encoder.import {
         ui.add_space(theme.space.between);
         import::card_ui(ui, theme, encoder, table, actions);

@@ -9,7 +9,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, paragraph};
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{place, recording, segments, typed, unfolded};
+use crate::ui::dialogs::connect::entries::{expandable_ui, place, recording, segments, typed};
 
 pub(crate) struct InterbusConnectForm;
 
@@ -52,7 +52,7 @@ impl TypedConnectForm for InterbusConnectForm {
                 order(ui, theme, form);
             }
         }
-        if form.kind != InterbusLinkKind::Replay && unfolded(ui, theme, more) {
+        if form.kind != InterbusLinkKind::Replay && expandable_ui(ui, theme, more) {
             if form.kind == InterbusLinkKind::Virtual {
                 registers(ui, theme, form);
             }

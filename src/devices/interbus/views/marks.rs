@@ -10,7 +10,7 @@ use crate::ui::{Theme, icons, page};
 
 /// Draws the marks, with those of the shown program first, and the reason why the last edit was refused.
 pub(super) fn marks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, shown: Option<ProgramNumber>) {
-    let marks = encoder.shown_marks(shown);
+    let marks = encoder.visible_marks(shown);
     if marks.is_empty() && encoder.refusal.is_none() {
         return;
     }

@@ -14,8 +14,8 @@ use crate::devices::interbus::protocol::Parameter;
 use crate::devices::interbus::state::staged::Edit;
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, cams, explain, forms, word_meaning, words};
 use crate::ui::controls::{
-    card, choice, empty, enabled_button, entry, paragraph, problem, problem_below, problem_beside, row, settled_entry,
-    two_columns,
+    card, choice, committed_entry, empty, enabled_button, entry, paragraph, problem, problem_below, problem_beside,
+    row, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -90,7 +90,7 @@ fn table(
                     }
                 } else {
                     let draft = view.drafts.entry(parameter.name()).or_default();
-                    settled_entry(ui, draft, &now.to_string(), NUMBER, &word, |text| {
+                    committed_entry(ui, draft, &now.to_string(), NUMBER, &word, |text| {
                         let edit = forms::parameter(parameter, text, new)?;
                         actions.push(Action::device(id, Interbus::Edit(Box::new(edit))));
                         Ok(())

@@ -10,7 +10,7 @@ use crate::ui::{Theme, icons};
 
 /// Draws the standstill confirmation and the actions that it permits.
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
-    if !encoder.asks_for_standstill() {
+    if !encoder.needs_standstill() {
         return;
     }
     let id = encoder.session.id;

@@ -76,7 +76,7 @@ fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
         (Some(key), None) => {
             output.remark(&format!("{spec} names the unknown family {key:?}, so its times are not known."));
         }
-        (_, Some(family)) => beside_family(output, family, &profile),
+        (_, Some(family)) => show_differences_from_family(output, family, &profile),
         (None, None) => {}
     }
     let times = family.map(|family| family.times);
@@ -87,7 +87,7 @@ fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
 }
 
 /// Prints how a hand-written frame differs from its family.
-fn beside_family(output: &Output, family: &Family, profile: &SsiProfile) {
+fn show_differences_from_family(output: &Output, family: &Family, profile: &SsiProfile) {
     let settings = family.settings_of(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {
         Some(resolved) => print_advice(output, &resolved),

@@ -87,7 +87,7 @@ impl Session<Ssi> {
         Session::with(Ssi { wire, station, motor, streamed_us: None }, clock, store, is_virtual)
     }
 
-    pub fn ask_like(&mut self, asking: Asking) {
+    pub fn request_settings(&mut self, asking: Asking) {
         self.device.station.asking = asking;
     }
 

@@ -19,7 +19,7 @@ mod verdict;
 use std::collections::HashSet;
 
 use frame_set::FrameSet;
-use members::{Member, members};
+use members::{Member, group_members};
 use motion::Motion;
 use probe::Probe;
 use reading::{Read, readings};
@@ -190,7 +190,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         let near = groups.first().is_none_or(|best| read.bits < best.bits + NEAR_BITS || known == Some(0));
         let best = known.and_then(|known| groups.get(known)).map_or(&read, |group| &group.read);
         let probe = Probe::new(&seen, &words, repeat, best);
-        let mut members = members(&probe, &read, &words, repeat, near.then_some(families));
+        let mut members = group_members(&probe, &read, &words, repeat, near.then_some(families));
         match known.and_then(|known| groups.get_mut(known)) {
             Some(group) => {
                 let worse = (read.bits - group.read.bits).max(0.0) / WEIGHT_BITS;

@@ -44,7 +44,7 @@ impl AttachableKind for AtAdapter {
         Settings::KEYS
     }
 
-    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
+    fn attach_device(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
         let Settings { encoder, troubles } = Settings::read(pairs)?;
         let own = encoder.or_else(|| self.encoder.clone()).or_else(|| Encoder::named(DELIVERED));
         let Some(encoder) = own else { return Ok(None) };

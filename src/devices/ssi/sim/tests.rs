@@ -17,7 +17,7 @@ fn on_a_dial(query: &str) -> Host {
 }
 
 fn read(query: &str) -> Result<(), ConfigError> {
-    AtAdapter::DELIVERED.attached(&pairs(query)).map(|_| ())
+    AtAdapter::DELIVERED.attach_device(&pairs(query)).map(|_| ())
 }
 
 /// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of those within a turn.
@@ -68,7 +68,7 @@ fn invalid_values_are_reported() {
 proptest! {
     #[test]
     fn no_value_panics(key in 0..2_usize, value in ".*") {
-        let _ = AtAdapter::DELIVERED.attached(&[(AtAdapter::DELIVERED.keys()[key].to_owned(), value)]);
+        let _ = AtAdapter::DELIVERED.attach_device(&[(AtAdapter::DELIVERED.keys()[key].to_owned(), value)]);
     }
 }
 

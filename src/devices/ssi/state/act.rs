@@ -38,7 +38,7 @@ impl Encoder {
             },
             SsiAction::Move(handle, to) => {
                 let layout = self.designer.layout();
-                let moved = strip::moved(layout, handle, to, self.designer.errors_follow());
+                let moved = strip::moved(layout, handle, to, self.designer.error_bits_follow());
                 self.edit(Edit::Frame(Box::new(moved.descriptor().clone())));
             }
             SsiAction::AddErrorBit => {

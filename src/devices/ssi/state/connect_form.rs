@@ -3,7 +3,7 @@
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
 use crate::app::connect::parameters::{Parameters, Typed, without_entry};
-use crate::app::connect::target::{adapter_in_network, checked, entered, parted, to_adapter};
+use crate::app::connect::target::{adapter_in_network, checked, entered, split_target, to_adapter};
 use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim as bridge;
 use crate::devices::ssi::jobs::check;
@@ -59,7 +59,7 @@ impl FormModel for SsiForm {
         };
         if let Some(network) = adapter_in_network(target).filter(|_| url.scheme == Scheme::Bridge) {
             form.network = true;
-            (form.host, form.tcp_port) = parted(network);
+            (form.host, form.tcp_port) = split_target(network);
         } else if form.kind == SsiLinkKind::Replay {
             form.file = target.to_owned();
         } else {
@@ -124,7 +124,7 @@ impl SsiForm {
         if self.leave_supply {
             parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
         }
-        parameters.rest_of(&self.rest, is_virtual, (LinkParameters::KEYS, &bridge::keys(at_adapter())));
+        parameters.set_remaining(&self.rest, is_virtual, (LinkParameters::KEYS, &bridge::keys(at_adapter())));
         parameters
     }
 }

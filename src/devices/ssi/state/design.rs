@@ -118,7 +118,7 @@ impl Designer {
     }
 
     /// Returns the frame that the virtual encoder at the given link sends.
-    pub(super) fn sent_by(&self, url: &LinkUrl) -> Descriptor {
+    pub(super) fn descriptor_sent_by(&self, url: &LinkUrl) -> Descriptor {
         parse_profile(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
     }
 
@@ -148,7 +148,7 @@ impl Designer {
 
     /// Returns whether error and parity bits move with the end of the position, as determined by the family settings or
     /// else by the frame.
-    pub fn errors_follow(&self) -> bool {
+    pub fn error_bits_follow(&self) -> bool {
         let settings = self.family().zip(self.now.settings.as_ref());
         match settings.and_then(|(family, settings)| settings.resolve(family).ok()) {
             Some(resolved) => resolved.errors == ErrorPlace::Following,

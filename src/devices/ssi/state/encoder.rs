@@ -137,7 +137,8 @@ impl Encoder {
     pub fn link_to_send(&self) -> Option<LinkUrl> {
         let Source::Link(url) = &self.session.source else { return None };
         let (family, settings) = (self.designer.family()?, self.design().settings.as_ref()?);
-        let differs = self.session.is_virtual() && self.designer.sent_by(url) != self.design().profile.descriptor;
+        let differs =
+            self.session.is_virtual() && self.designer.descriptor_sent_by(url) != self.design().profile.descriptor;
         differs.then(|| {
             let mut url = url.clone();
             url.query.set("ssi", &settings.emit(&family.key));

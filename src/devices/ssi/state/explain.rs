@@ -124,12 +124,12 @@ pub fn frame(layout: &Layout) -> Text {
         .with_text("code", code(descriptor.code))
         .with("lead", descriptor.lead)
         .with("errors", errors);
-    unusual(layout)
+    unusual_step_cost(layout)
         .into_iter()
         .fold(line, |line, more| TEXTS.text("ssi.frame_and").with_text("line", line).with_text("more", more))
 }
 
-fn unusual(layout: &Layout) -> Vec<Text> {
+fn unusual_step_cost(layout: &Layout) -> Vec<Text> {
     let descriptor = layout.descriptor();
     let between = (descriptor.between > 0).then(|| TEXTS.text("ssi.frame_between").with("zeros", descriptor.between));
     let over = (descriptor.coded != Coded::Position).then(|| TEXTS.text("ssi.frame_over"));

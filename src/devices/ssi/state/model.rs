@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::design::Edit;
 use super::{Done, Encoder, SearchState, SsiAction, TEXTS};
 use crate::app::action::Opened;
-use crate::app::documents::{document_of, only_looked_at};
+use crate::app::documents::{document_of, read_only_reason};
 use crate::app::services::{Environment, JobEnd, Services};
 use crate::app::session::{Drafted, SessionEvents, Source};
 use crate::app::{
@@ -22,7 +22,7 @@ impl DeviceModel for Encoder {
 
     fn prepare(&self, _world: &Environment) -> Prepare<Ssi> {
         let asking = self.asking();
-        Box::new(move |session| session.ask_like(asking))
+        Box::new(move |session| session.request_settings(asking))
     }
 
     fn connect(&mut self, opened: Opened<Ssi>, services: &mut Services) {
@@ -30,7 +30,7 @@ impl DeviceModel for Encoder {
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
         self.requested = None;
-        self.session.take_line(opened, services);
+        self.session.adopt_line(opened, services);
         if !self.session.drafting.is_loaded() {
             self.load_draft(services);
         }
@@ -67,7 +67,7 @@ impl DeviceModel for Encoder {
     }
 
     fn save(&mut self, path: PathBuf, services: &mut Services) {
-        if let Some(refusal) = only_looked_at(&self.session.source) {
+        if let Some(refusal) = read_only_reason(&self.session.source) {
             return self.session.refuse(refusal, services);
         }
         let body = Body::new(self.wanted_profile());

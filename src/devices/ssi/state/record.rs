@@ -152,7 +152,7 @@ impl Record {
             return;
         }
         let before = std::mem::replace(&mut self.layout, layout.clone());
-        if nameless(&before) == nameless(layout) {
+        if without_names(&before) == without_names(layout) {
             self.tally.rename();
             if let Some(last) = self.last.as_mut() {
                 last.decoded = (last.clocks == layout.clocks()).then(|| Decoded::of(layout, last.word));
@@ -243,7 +243,7 @@ impl Recording for Record {
 }
 
 /// Returns the part of the layout that determines positions and verdicts.
-fn nameless(layout: &Layout) -> Descriptor {
+fn without_names(layout: &Layout) -> Descriptor {
     let mut descriptor = layout.descriptor().clone();
     descriptor.errors.iter_mut().for_each(|bit| bit.name.clear());
     descriptor.patterns.iter_mut().for_each(|pattern| pattern.name.clear());

@@ -104,7 +104,7 @@ fn of_bursts(bursts: Bursts) -> Frames {
     Frames { origin: Origin::Live, clocks, frames, left_out, are_numbers: false }
 }
 
-fn numbered(line: usize, why: Text) -> Text {
+fn numbered_text(line: usize, why: Text) -> Text {
     TEXTS.text("ssi_find.line").with("line", line).with_text("why", why)
 }
 
@@ -123,11 +123,12 @@ fn table(text: &str, clocks: u8) -> Option<Result<Frames, Text>> {
             return Err(text.with("columns", cells.len()).with("expected", expected));
         }
         let raw = cells.get(1).copied().unwrap_or_default();
-        let frame: u64 = raw.parse().map_err(|_| numbered(number, TEXTS.text("ssi_capture.raw").with("text", raw)))?;
+        let frame: u64 =
+            raw.parse().map_err(|_| numbered_text(number, TEXTS.text("ssi_capture.raw").with("text", raw)))?;
         let bits = u64::BITS - frame.leading_zeros();
         if bits > u32::from(clocks) {
             let error = FrameTextError::Bits { text: raw.to_owned(), bits, clocks, is_number: true };
-            return Err(numbered(number, words::frame_text(&error)));
+            return Err(numbered_text(number, words::frame_text(&error)));
         }
         Ok(frame)
     };
@@ -165,7 +166,7 @@ fn parse_frames(text: &str, clocks: u8) -> Result<Frames, Text> {
         };
         match parse_frame(columns.get(place).copied().unwrap_or_default(), width) {
             Ok(frame) => frames.push(frame),
-            Err(error) => return Err(numbered(number, words::frame_text(&error))),
+            Err(error) => return Err(numbered_text(number, words::frame_text(&error))),
         }
     }
     match own.map(|(_, clocks)| clocks) {

@@ -10,7 +10,7 @@ use crate::parameter::Entry;
 use crate::ui::Theme;
 use crate::ui::controls::paragraph;
 use crate::ui::dialogs::connect::TypedConnectForm;
-use crate::ui::dialogs::connect::entries::{leave_supply, network, recording, segments, serial, typed, unfolded};
+use crate::ui::dialogs::connect::entries::{expandable_ui, leave_supply, network, recording, segments, serial, typed};
 
 pub(crate) struct SsiConnectForm;
 
@@ -48,7 +48,7 @@ impl TypedConnectForm for SsiConnectForm {
             }
             SsiLinkKind::Replay => recording(ui, theme, &mut form.file, actions),
         }
-        if form.kind != SsiLinkKind::Replay && unfolded(ui, theme, more) {
+        if form.kind != SsiLinkKind::Replay && expandable_ui(ui, theme, more) {
             let (supply, rest) = SsiForm::of_the_link();
             let none = say(theme, "connect.voltage_none");
             typed(ui, theme, say, supply.into_iter().map(|own| Entry { hint: none.clone(), ..own }), &mut form.typed);

@@ -10,7 +10,8 @@ use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{
-    card, card_with, enabled_button, entry, icon_button, paragraph, primary, problem_below, row, settled_entry, spinner,
+    card, card_with, committed_entry, enabled_button, entry, icon_button, paragraph, primary, problem_below, row,
+    spinner,
 };
 use crate::ui::{Theme, icons};
 
@@ -69,7 +70,7 @@ fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
         ui.add_space(theme.space.inside);
         let word = say(theme, "ssi_find.clocks");
         entry(ui, theme, &word, |ui| {
-            settled_entry(ui, &mut view.clocks, &encoder.clocks().to_string(), 56.0, &word, |text| {
+            committed_entry(ui, &mut view.clocks, &encoder.clocks().to_string(), 56.0, &word, |text| {
                 ask(Ssi::SetClocks(Some(read_clocks(text)?)));
                 Ok(())
             });

@@ -10,7 +10,7 @@ use crate::app::{Action, Text};
 use crate::devices::ssi::state::timing::{frequency, read_frequency};
 use crate::devices::ssi::state::{Encoder, Entry, Field, Input, Row, SsiAction as Ssi, whole};
 use crate::ui::Theme;
-use crate::ui::controls::{choice, entry, label_width, problem_beside, settled_entry};
+use crate::ui::controls::{choice, committed_entry, entry, label_width, problem_beside};
 
 #[derive(Default)]
 pub(super) struct LayoutFormUiState {
@@ -59,7 +59,7 @@ pub(super) fn rows_ui(
             Entry::Number { value, unit } => {
                 let draft = view.drafts.entry(row.field).or_default();
                 entry(ui, theme, &word, |ui| {
-                    let response = settled_entry(ui, draft, &value.to_string(), NUMBER, &word, |text| {
+                    let response = committed_entry(ui, draft, &value.to_string(), NUMBER, &word, |text| {
                         put(Input::Number(whole(text)?));
                         Ok(())
                     });
@@ -83,7 +83,7 @@ pub(super) fn rows_ui(
                 let draft = view.drafts.entry(row.field).or_default();
                 let shown = theme.words(&frequency((*hertz).into()));
                 entry(ui, theme, &word, |ui| {
-                    let response = settled_entry(ui, draft, &shown, NUMBER, &word, |text| {
+                    let response = committed_entry(ui, draft, &shown, NUMBER, &word, |text| {
                         put(Input::Number(read_frequency(text)?.into()));
                         Ok(())
                     });
@@ -94,7 +94,7 @@ pub(super) fn rows_ui(
             Entry::Words(words) => {
                 let draft = view.drafts.entry(row.field).or_default();
                 entry(ui, theme, &word, |ui| {
-                    let response = settled_entry(ui, draft, words, NAME, &word, |text| {
+                    let response = committed_entry(ui, draft, words, NAME, &word, |text| {
                         put(Input::Words(text.to_owned()));
                         Ok(())
                     });

@@ -13,8 +13,8 @@ use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, 
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::controls::{
-    button, card_with, choice, enabled_button, folding_card, icon_button, name, paragraph, primary, problem_below,
-    settled_entry, two_columns,
+    button, card_with, choice, committed_entry, enabled_button, folding_card, icon_button, name, paragraph, primary,
+    problem_below, two_columns,
 };
 use crate::ui::{Theme, icons};
 
@@ -125,7 +125,7 @@ fn family(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState
         let word = say(theme, "ssi_layout.name");
         let profile = &designer.design().profile;
         ui.label(theme.label(&word));
-        settled_entry(ui, &mut view.named, &profile.name, 160.0, &word, |text| {
+        committed_entry(ui, &mut view.named, &profile.name, 160.0, &word, |text| {
             actions.push(edit(Edit::Name(text.trim().to_owned())));
             Ok(())
         });
@@ -183,7 +183,7 @@ fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiSta
         selected,
         toggles: true,
         movable: true,
-        following: encoder.designer.errors_follow(),
+        following: encoder.designer.error_bits_follow(),
     };
     match bit_strip(ui, theme, &model) {
         Some(StripEvent::Moved(handle, to)) => actions.push(Action::device(id, Ssi::Move(handle, to))),
@@ -256,7 +256,7 @@ fn buttons_ui(
             if primary(ui, theme, true, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
                 actions.push(Action::Save(device.id()));
             }
-            take_for(ui, theme, studio, device, actions);
+            adopt_for_device(ui, theme, studio, device, actions);
             if is_dirty {
                 let words = RichText::new(say(theme, "ssi_layout.unsaved")).color(theme.palette.staged);
                 ui.add(egui::Label::new(words).truncate());
@@ -266,7 +266,7 @@ fn buttons_ui(
 }
 
 /// Draws the choice of the layout for a connected encoder.
-fn take_for(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+fn adopt_for_device(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && other.is_connected() && other.id() != device.id();
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();
     if targets.is_empty() {

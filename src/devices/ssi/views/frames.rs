@@ -41,7 +41,7 @@ pub(super) fn card_ui(
         area.auto_shrink([false, true]).show_rows(ui, height, frames.len(), |ui, rows| {
             for (index, frame) in frames.iter().enumerate().skip(rows.start).take(rows.len()) {
                 let decoded = Decoded::of(layout, *frame);
-                let (words, colour) = told(theme, index + 1, &decoded, digits);
+                let (words, colour) = decoded_summary(theme, index + 1, &decoded, digits);
                 let text = RichText::new(words).monospace().color(colour);
                 if ui.add(egui::Button::new(text).frame(false)).clicked() {
                     let bits = format!("0x{frame:X}");
@@ -52,7 +52,7 @@ pub(super) fn card_ui(
     });
 }
 
-fn told(theme: &Theme, number: usize, decoded: &Decoded, digits: usize) -> (String, Rgb) {
+fn decoded_summary(theme: &Theme, number: usize, decoded: &Decoded, digits: usize) -> (String, Rgb) {
     let frame = format!("0x{:0digits$X}", decoded.frame);
     let (position, turns, steps) = match decoded.place {
         Some((position, Location::Shaft { turns, steps, .. })) => {

@@ -8,7 +8,7 @@ use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, Try, whole};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{
-    card_with, entry, icon_button, mono_entry, name, paragraph, problem_below, problem_beside, row, settled_entry,
+    card_with, committed_entry, entry, icon_button, mono_entry, name, paragraph, problem_below, problem_beside, row,
 };
 use crate::ui::{Theme, icons};
 
@@ -76,7 +76,7 @@ fn numbers(
     paragraph(ui, theme.caption(theme.words(&most)));
     let word = say(theme, "ssi_trial.position");
     entry(ui, theme, &word, |ui| {
-        settled_entry(ui, &mut view.position, &position, NUMBER, &word, |text| {
+        committed_entry(ui, &mut view.position, &position, NUMBER, &word, |text| {
             put(Try::Position(whole(text)?));
             Ok(())
         });
@@ -86,14 +86,14 @@ fn numbers(
         Some((_, Location::Shaft { turns, steps, degrees })) => {
             let (own_turns, own_steps) = (theme.say("live.turns"), theme.say("live.step"));
             entry(ui, theme, &own_turns, |ui| {
-                settled_entry(ui, &mut view.turns, &turns.to_string(), NUMBER, &own_turns, |text| {
+                committed_entry(ui, &mut view.turns, &turns.to_string(), NUMBER, &own_turns, |text| {
                     put(Try::Place(whole(text)?, steps));
                     Ok(())
                 });
                 refused(ui, theme, view.turns.as_ref());
             });
             entry(ui, theme, &own_steps, |ui| {
-                settled_entry(ui, &mut view.steps, &steps.to_string(), NUMBER, &own_steps, |text| {
+                committed_entry(ui, &mut view.steps, &steps.to_string(), NUMBER, &own_steps, |text| {
                     put(Try::Place(turns, whole(text)?));
                     Ok(())
                 });

@@ -80,8 +80,8 @@ pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
     choice(ui, &theme.say("settings_card.parity"), own, parities);
 }
 
-/// Draws the heading of the rarely needed entries; returns whether they are expanded.
-pub(crate) fn unfolded(ui: &mut Ui, theme: &Theme, open: &mut bool) -> bool {
+/// Draws the heading of the rarely needed entries. Returns whether the entries are expanded.
+pub(crate) fn expandable_ui(ui: &mut Ui, theme: &Theme, open: &mut bool) -> bool {
     disclosure(ui, RichText::new(theme.say("connect.more")), open);
     *open
 }
@@ -95,10 +95,10 @@ pub(crate) fn echo(ui: &mut Ui, theme: &Theme, echo: &mut Echo) {
     });
 }
 
-/// A function that returns a device's messages in the window's language.
+/// A function that returns a device message in the window's language.
 type Say = fn(&Theme, &'static str) -> String;
 
-/// Draws the entries of parameters; `say` returns the device's labels.
+/// Draws the parameter entries. `say` returns the device's labels.
 pub(crate) fn typed(ui: &mut Ui, theme: &Theme, say: Say, entries: impl IntoIterator<Item = Entry>, typed: &mut Typed) {
     for own in entries {
         let word = say(theme, own.label);
@@ -106,7 +106,7 @@ pub(crate) fn typed(ui: &mut Ui, theme: &Theme, say: Say, entries: impl IntoIter
     }
 }
 
-/// Draws the entries of parameters side by side, each followed by its label.
+/// Draws the parameter entries side by side, each followed by its label.
 pub(crate) fn typed_in_a_row(
     ui: &mut Ui,
     theme: &Theme,

@@ -13,7 +13,7 @@ pub trait TypedConnectForm: 'static {
     /// UI selections that are not part of the link.
     type Memory: Default;
 
-    /// Draws the form. `more` is whether the rarely needed entries are expanded, which is shared by all kinds.
+    /// Draws the form. `more` states whether the rarely needed entries are expanded, a setting shared by all kinds.
     fn form_ui(
         ui: &mut Ui,
         theme: &Theme,
@@ -24,13 +24,13 @@ pub trait TypedConnectForm: 'static {
     );
 }
 
-/// The connection form of a kind of device, as used by the dialog, with its selections.
+/// The connection form of a kind of device with its selections, as used by the dialog.
 pub trait ConnectForm {
-    /// Draws the form. `more` is whether the rarely needed entries are expanded, which is shared by all kinds.
+    /// Draws the form. `more` states whether the rarely needed entries are expanded, a setting shared by all kinds.
     fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>);
 }
 
-pub(in crate::ui) fn begun<F: TypedConnectForm>() -> Box<dyn ConnectForm> {
+pub(in crate::ui) fn new_form<F: TypedConnectForm>() -> Box<dyn ConnectForm> {
     Box::new(FormAdapter::<F>(F::Memory::default()))
 }
 

@@ -14,7 +14,8 @@ pub(super) struct State {
     pub(super) hovered: bool,
 }
 
-/// Returns the shape of a run, inset by half a gap and rounded at the ends of the field, but square where the field
+/// Returns the outline of a run, inset by half a gap. Corners are rounded at the ends of the field and square where the
+/// field
 /// continues on another line.
 fn shape(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
     let Some(run) = runs.get(number) else { return (Rect::NOTHING, CornerRadius::ZERO) };
@@ -62,7 +63,8 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
     }
 }
 
-/// Draws the number and icons above and the caption below, as far as they fit. In a narrow field the icons replace the
+/// Draws the number and icons at the top of a field and the caption below, as far as they fit. In a narrow field, the
+/// icons replace the
 /// caption.
 fn inscribe(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let palette = theme.palette;
@@ -102,7 +104,7 @@ fn inscribe(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     }
 }
 
-/// Returns as much of a caption as fits; parts separated by ` · ` are dropped from the end.
+/// Returns as much of a caption as fits. Parts separated by ` · ` are dropped from the end.
 fn fitting(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync::Arc<egui::Galley>> {
     let mut rest = caption;
     while !rest.is_empty() {
@@ -116,7 +118,7 @@ fn fitting(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync
     None
 }
 
-/// Draws the free space as an outline for each block.
+/// Draws the free space as one outline per block.
 pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: &State) {
     let painter = ui.painter();
     let edge = match state.hovered {

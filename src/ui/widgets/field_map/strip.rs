@@ -4,7 +4,7 @@ use egui::{Pos2, Rect, Vec2};
 
 use crate::ui::Theme;
 
-/// Layout of the blocks, left to right and line by line.
+/// Layout of the blocks, from left to right and line by line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strip {
     /// Upper left corner of the map.
@@ -20,8 +20,9 @@ impl Strip {
     /// Possible block widths in grid steps, largest first.
     const STEPS: [f32; 6] = [12.0, 10.0, 8.0, 6.0, 5.0, 4.0];
 
-    /// Creates a strip with the largest blocks for which `count` fit on two lines, or with the smallest blocks if none
-    /// do.
+    /// Creates a strip with the largest block size at which `count` blocks fit on two lines, or with the smallest block
+    /// size if none
+    /// fits.
     pub(super) fn new(theme: &Theme, room: f32, count: usize) -> Self {
         let (margin, gap) = (theme.space.inside, theme.space.between);
         let columns_of = |width: f32| ((room / width).floor() as usize).max(1);
@@ -68,7 +69,7 @@ impl Strip {
     }
 }
 
-/// Returns the index of a field's widest run, the first if several are equally wide.
+/// Returns the index of a field's widest run, or of the first one if several are equally wide.
 pub(super) fn widest(runs: &[Rect]) -> usize {
     let widths = runs.iter().enumerate().rev();
     widths.max_by(|(_, a), (_, b)| a.width().total_cmp(&b.width())).map_or(0, |(number, _)| number)

@@ -23,16 +23,16 @@ pub(super) struct StripPlacement {
     pub(super) pieces: Vec<Placed>,
     pub(super) lines: usize,
     pub(super) width: f32,
-    /// Width of a cell, including the gap after it.
+    /// Width in points of a cell, including the gap after it.
     pub(super) cell: f32,
 }
 
 const CELLS: [f32; 10] = [20.0, 19.0, 18.0, 17.0, 16.0, 15.0, 14.0, 13.0, 12.0, 11.0];
-/// Gap after every four bits.
+/// Gap in points after every four bits.
 const GROUP: f32 = 3.0;
 
 impl Placed {
-    /// Returns the left edge of bit `at` of the piece; groups of four are counted from the end of the field.
+    /// Returns the left edge of bit `at` of the piece. Groups of four bits are counted from the end of the field.
     pub(super) fn offset(&self, at: usize, field_bits: usize, cell: f32) -> f32 {
         at as f32 * cell + groups(self.first, self.first + at, field_bits) as f32 * GROUP
     }
@@ -77,7 +77,7 @@ fn with_cell(wants: &[SpaceNeeded], width: f32, gap: f32, cell: f32) -> StripPla
     placing
 }
 
-/// Returns the width of a run of bits of a field, starting at `first`.
+/// Returns the width of `bits` bits of a field, starting at `first`.
 fn cells(first: usize, bits: usize, field_bits: usize, cell: f32) -> f32 {
     bits as f32 * cell + groups(first, (first + bits).saturating_sub(1), field_bits) as f32 * GROUP
 }
@@ -88,7 +88,7 @@ mod tests {
 
     const GAP: f32 = 8.0;
 
-    /// Returns the kit encoder's frame with its acknowledge, start and control bit.
+    /// Returns the frame of the kit encoder, with its acknowledge, start and control bits.
     fn kit() -> Vec<SpaceNeeded> {
         let want = |(bits, words)| SpaceNeeded { bits, words };
         [(3, 26.0), (1, 27.0), (1, 26.0), (16, 32.0), (17, 48.0), (1, 30.0), (1, 40.0), (6, 24.0)]

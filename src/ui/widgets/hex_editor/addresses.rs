@@ -2,20 +2,20 @@
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HexAddresses {
-    /// Address counted from the first byte: `0x1F`.
+    /// Address counted from the first byte, such as `0x1F`.
     #[default]
     Counted,
-    /// Address given as bank and offset: `0x24:0x1F`.
+    /// Address given as bank and offset, such as `0x24:0x1F`.
     Banked {
-        /// Bank that starts with the first byte.
+        /// Number of the bank that starts with the first byte.
         first: usize,
         size: usize,
     },
 }
 
 impl HexAddresses {
-    /// Returns an address in a range of `len` bytes in upper-case hexadecimal, with as many digits as the last address
-    /// needs, at least two.
+    /// Formats an address in a range of `len` bytes in upper-case hexadecimal, with as many digits as the last address
+    /// needs, but at least two.
     pub(super) fn text(self, at: usize, len: usize) -> String {
         match self.parts(at) {
             (None, at) => format!("0x{at:0digits$X}", digits = digits(len)),

@@ -15,7 +15,7 @@ pub(super) struct Grid {
     pub(super) glyph: f32,
     pub(super) row: f32,
     pub(super) width: f32,
-    /// Extra space after eight bytes and beside the separator.
+    /// Extra space after every eight bytes and beside the separator.
     pub(super) gap: f32,
     pub(super) text_left: f32,
     hex_left: f32,
@@ -72,7 +72,7 @@ impl Grid {
         (at < self.len && self.cell(origin, column, at).contains(pos)).then_some((column, at))
     }
 
-    /// Returns the byte nearest to the pointer, in the column under the pointer or in a given column.
+    /// Returns the byte nearest to the pointer, either in the column under the pointer or in the given column.
     pub(super) fn nearest(&self, origin: Pos2, pos: Pos2, column: Column, free: bool) -> (Column, usize) {
         let right = pos.x >= origin.x + self.text_left - self.gap;
         let column = match (free, right) {

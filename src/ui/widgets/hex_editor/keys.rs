@@ -15,7 +15,8 @@ struct KeyReaction {
     leave: Option<FocusDirection>,
 }
 
-/// Handles the keys of the current frame. Call this before the widget is announced; otherwise Tab cannot leave the
+/// Handles the keys of the current frame. This must be called before the widget is announced, because otherwise Tab
+/// cannot leave the
 /// widget.
 pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let mut reaction = KeyReaction::default();
@@ -60,7 +61,7 @@ fn hear(event: &Event, model: &HexModel<'_>, view: &mut HexView, reaction: &mut 
     }
 }
 
-/// Handles Tab, which moves from the hex column to the text column and on to the next widget, and back.
+/// Handles Tab, which moves from the hex column to the text column and on to the next widget, or backwards.
 fn tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut KeyReaction) -> bool {
     if modifiers.command || modifiers.alt {
         return false;
@@ -133,7 +134,7 @@ fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView,
     true
 }
 
-/// Applies a change, or returns why it is not possible.
+/// Applies a change, or reports why the change is not possible.
 fn change(
     model: &HexModel<'_>,
     view: &mut HexView,
@@ -200,7 +201,8 @@ fn ascii_bytes(text: &str) -> Result<Vec<u8>, Text> {
     text.chars().map(byte).collect()
 }
 
-/// Writes bytes at the start of the selection; afterwards they are selected, or the cursor is placed after them.
+/// Writes bytes at the start of the selection. Afterwards, the written bytes are selected or the cursor is placed after
+/// them.
 fn put(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut KeyReaction, select: bool) {
     let address = view.selection().start;
     let room = model.wanted.len().saturating_sub(address);

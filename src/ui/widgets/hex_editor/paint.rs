@@ -131,7 +131,7 @@ impl Brush<'_> {
         }
     }
 
-    /// Draws a bracket below the bytes, open where the range continues on another line.
+    /// Draws a bracket below the marked bytes. The bracket is open at an end where the range continues on another line.
     fn mark(&self, mark: &HexMark<'_>, start: usize, end: usize) {
         let (first, last) = (mark.range.start.max(start), mark.range.end.min(end));
         if first >= last {

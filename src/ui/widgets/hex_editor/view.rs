@@ -15,7 +15,7 @@ pub struct HexView {
     pub(super) problem: Option<Text>,
     pub(super) reveal: bool,
     pub(super) page: usize,
-    /// Bytes before the last undo or redo, if any.
+    /// Copy of the bytes before the last undo or redo, if any.
     before: Option<Vec<u8>>,
 }
 
@@ -31,13 +31,13 @@ impl HexView {
         self.cursor
     }
 
-    /// Returns the selected addresses, which include at least the cursor unless the editor has no bytes.
+    /// Returns the selected addresses. The selection contains at least the cursor unless the editor has no bytes.
     pub fn selection(&self) -> Range<usize> {
         let (first, last) = (self.anchor.min(self.cursor), self.anchor.max(self.cursor));
         first..(last + 1).min(self.len.max(first))
     }
 
-    /// Selects a range and scrolls to its end; an empty range sets the cursor.
+    /// Selects a range and scrolls to its end. An empty range only sets the cursor.
     pub fn select(&mut self, range: Range<usize>) {
         self.pending = None;
         self.anchor = range.start;
@@ -53,13 +53,13 @@ impl HexView {
         bytes.get(range).unwrap_or_default()
     }
 
-    /// Moves the cursor to the first byte changed by an undo or redo, given the bytes before it.
+    /// Moves the cursor to the first byte changed by an undo or redo. `before` holds the bytes before that change.
     pub fn follow(&mut self, before: &[u8]) {
         self.pending = None;
         self.before = Some(before.to_vec());
     }
 
-    /// Moves the cursor to the first byte that a step has changed.
+    /// Moves the cursor to the first byte changed by an undo or redo step.
     pub(super) fn follow_to(&mut self, wanted: &[u8]) {
         let Some(before) = self.before.take().filter(|before| before.len() == wanted.len()) else { return };
         if let Some(at) = before.iter().zip(wanted).position(|(before, now)| before != now) {
@@ -67,12 +67,12 @@ impl HexView {
         }
     }
 
-    /// Returns why the last request was not carried out, if so.
+    /// Returns the reason if the last request was not carried out.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
 
-    /// Adapts the cursor and selection to a new byte count, which may be smaller.
+    /// Adapts the cursor and selection to a new number of bytes, which may be smaller.
     pub(super) fn fit(&mut self, len: usize) {
         self.len = len;
         let last = len.saturating_sub(1);

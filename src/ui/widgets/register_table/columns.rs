@@ -18,10 +18,10 @@ pub(super) enum Column {
     Default,
 }
 
-/// Column with its preferred and minimum width.
+/// A column with its preferred and minimum width.
 type Widths = (Column, f32, f32);
 
-/// Columns of a byte table in display order; the width of the value column follows from its kind.
+/// Columns of a byte table in display order. The width of the value column depends on its kind.
 const BYTES: [Widths; 8] = [
     (Column::Marks, 38.0, 34.0),
     (Column::Address, 80.0, 76.0),
@@ -41,12 +41,12 @@ const NUMBERS: [Widths; 7] = [
     (Column::Range, 130.0, 88.0),
     (Column::Default, 96.0, 78.0),
 ];
-/// Columns in the order in which they are hidden. Hidden values move to the tooltip.
+/// Columns in the order in which they are hidden if space is short. Hidden values move to the tooltip.
 const LEAST: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
-/// Share of the remaining width for the name column; the meaning column gets the rest.
+/// Share of the remaining width given to the name column. The meaning column gets the rest.
 const NAME: f32 = 0.45;
 
-/// Visible columns from left to right.
+/// Visible columns, from left to right.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Columns(Vec<(Column, Rangef)>);
 
@@ -83,11 +83,12 @@ impl Columns {
         Columns(shown.into_iter().map(place).collect())
     }
 
-    pub(super) fn hides(&self, kind: RegisterKind) -> bool {
+    pub(super) fn is_hidden_kind(&self, kind: RegisterKind) -> bool {
         self.0.len() < all(kind).len()
     }
 
-    /// Returns the horizontal extent of a column, measured from the table's left edge, or `None` if hidden.
+    /// Returns the horizontal extent of a column, measured from the table's left edge, or `None` if the column is
+    /// hidden.
     pub(super) fn range(&self, column: Column) -> Option<Rangef> {
         self.0.iter().find(|(own, _)| *own == column).map(|(_, range)| *range)
     }
@@ -136,11 +137,11 @@ mod tests {
         assert_eq!(shown(RegisterKind::Numbers, 552.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
         assert_eq!(shown(RegisterKind::Numbers, 551.0), [Marks, Address, Name, Value, Meaning, Range]);
         assert_eq!(shown(RegisterKind::Numbers, 473.0), [Marks, Address, Name, Value, Meaning]);
-        let hides = |width| Columns::new(RegisterKind::Numbers, width, 100.0).hides(RegisterKind::Numbers);
+        let hides = |width| Columns::new(RegisterKind::Numbers, width, 100.0).is_hidden_kind(RegisterKind::Numbers);
         assert!(!hides(552.0) && hides(551.0));
     }
 
-    /// Usual 694, minimum 550: at 622 each column has half of what it can spare.
+    /// At a usual width of 694 and a minimum width of 550, each column has half of its spare width at 622.
     #[test]
     fn columns_are_narrowed_before_one_is_hidden() {
         let columns = Columns::new(BYTES, 622.0, 100.0);

@@ -65,7 +65,7 @@ pub(super) fn editor_ui(
     }
 }
 
-/// Selects the whole value, so that typing replaces it; after a first typed character, the cursor is placed behind that
+/// Selects the whole value, so that typing replaces it. After a first typed character, the cursor is placed behind that
 /// character instead.
 fn select(ui: &Ui, response: &egui::Response, text: &str, typed: bool) {
     use egui::text::{CCursor, CCursorRange};

@@ -6,13 +6,13 @@ use super::lines::Lines;
 use super::view::{Edit, Selected};
 use super::{RegisterEvent, RegisterLocation, RegisterTable, RegisterView};
 
-/// Reserves the arrow keys for the table while the table has the keyboard focus.
+/// Reserves the arrow keys for the table while it has the keyboard focus.
 pub(super) fn hold(ui: &Ui, id: Id) {
     let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
 }
 
-/// Inserts the events held back in the previous frame before the current ones while the table has the keyboard focus.
+/// Inserts the events held back in the previous frame before the current events while the table has the keyboard focus.
 pub(super) fn catch_up(ui: &Ui, view: &mut RegisterView, id: Id) {
     let late = std::mem::take(&mut view.late);
     let focused = ui.memory(|memory| memory.focused());
@@ -25,7 +25,8 @@ pub(super) fn entry_id(table: Id) -> Id {
     table.with("entry")
 }
 
-/// Holds back whatever is typed in the current frame after a key that ends an edit: Enter, or an up or down arrow,
+/// Holds back everything typed in the current frame after a key that ends an edit. Such a key is Enter, or an up or
+/// down arrow,
 /// which acts as Enter and then moves to another line.
 pub(super) fn defer_keys(ui: &Ui, view: &mut RegisterView) {
     ui.input_mut(|input| {
@@ -150,7 +151,7 @@ fn step(at: usize, lines: &Lines, view: &mut RegisterView, next: impl Fn(usize) 
     true
 }
 
-/// Folds with Left and unfolds with Right; Left on a folded register moves to its group heading.
+/// Folds with Left and unfolds with Right. Left on a folded register moves to the heading of its group.
 fn fold(key: Key, modifiers: Modifiers, table: &RegisterTable<'_>, view: &mut RegisterView) -> bool {
     let open = match key {
         Key::ArrowLeft => false,
@@ -163,9 +164,9 @@ fn fold(key: Key, modifiers: Modifiers, table: &RegisterTable<'_>, view: &mut Re
     match view.selected {
         Some(Selected::Group(group)) => view.fold(group, !open),
         Some(Selected::Row(place)) if open => {
-            view.unfold(place, !(table.row)(place).fields.is_empty());
+            view.set_expanded(place, !(table.row)(place).fields.is_empty());
         }
-        Some(Selected::Row(place)) if view.open.contains(&place) => view.unfold(place, false),
+        Some(Selected::Row(place)) if view.open.contains(&place) => view.set_expanded(place, false),
         Some(Selected::Row(place)) => view.go(Selected::Group(place.group)),
         None => {}
     }

@@ -8,7 +8,7 @@ use super::{RegisterLocation, RegisterTable, RegisterView};
 pub(super) enum LineKind {
     Group(usize),
     Row(RegisterLocation),
-    /// Bit field of a register, by its index.
+    /// Bit field of a register, given by its index.
     Bits(RegisterLocation, usize),
 }
 
@@ -46,7 +46,7 @@ impl Lines {
         self.total
     }
 
-    /// Returns the kind of the line with the given zero-based index.
+    /// Returns the kind of the line with the given index, counted from zero.
     pub(super) fn at(&self, line: usize) -> Option<LineKind> {
         let group = self.group_at(line)?;
         let section = self.sections.get(group)?;
@@ -70,7 +70,7 @@ impl Lines {
         self.sections.partition_point(|section| section.start <= line).checked_sub(1)
     }
 
-    /// Returns the line of an item, or `None` if not shown.
+    /// Returns the line of an item, or `None` if the item is not shown.
     pub(super) fn line_of(&self, what: Selected) -> Option<usize> {
         match what {
             Selected::Group(group) => self.sections.get(group).map(|section| section.start),
@@ -82,7 +82,7 @@ impl Lines {
         }
     }
 
-    /// Returns the selectable item of a line: the item itself, or the register of a bit field.
+    /// Returns the item that can be selected on a line. For a bit field, this is its register.
     pub(super) fn selection_at(&self, line: usize) -> Option<Selected> {
         Some(match self.at(line)? {
             LineKind::Group(group) => Selected::Group(group),
@@ -114,7 +114,7 @@ mod tests {
         let table = RegisterTable { label: "", groups: &groups, row: &row, kind: RegisterKind::Numbers };
         let mut view = RegisterView::default();
         view.fold(2, true);
-        [place(0, 0), place(0, 1), place(3, 3), place(2, 1)].into_iter().for_each(|own| view.unfold(own, true));
+        [place(0, 0), place(0, 1), place(3, 3), place(2, 1)].into_iter().for_each(|own| view.set_expanded(own, true));
         let lines = Lines::new(&table, &view);
         let expected = [
             LineKind::Group(0),

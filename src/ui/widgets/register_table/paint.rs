@@ -10,7 +10,7 @@ use crate::app::Text;
 use crate::ui::{Theme, icons};
 
 pub(super) const HEADER: f32 = 20.0;
-/// Right edge of the caret shown for registers with bit fields.
+/// Position of the right edge of the caret shown for registers with bit fields.
 pub(super) const CARET: f32 = 16.0;
 /// Spacing between marks.
 const MARK: f32 = 13.0;
@@ -79,7 +79,7 @@ pub(super) fn heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup,
     inscribe(ui, theme, rect, middle, room, theme.caption(&group.note), false);
 }
 
-/// Draws a register, leaving out its value while the value is being edited.
+/// Draws a register. The value is left out while it is being edited.
 pub(super) fn row(
     ui: &Ui,
     theme: &Theme,
@@ -146,7 +146,8 @@ pub(super) fn value_box(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
     Rect::from_x_y_ranges(x, rect.top() + 0.5..=rect.bottom() - 0.5)
 }
 
-/// Draws the marks: a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a cost, a disk for
+/// Draws the marks of a register: a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a cost,
+/// a disk for
 /// storage.
 fn marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
     let palette = theme.palette;
@@ -195,7 +196,7 @@ fn is_too_long(ui: &Ui, theme: &Theme, range: Rangef, words: &egui::RichText) ->
     galley.size().x > range.span() - theme.space.between
 }
 
-/// Draws text within a column, truncated if it is too long; returns its width.
+/// Draws text within a column, truncated if it is too long. Returns the width of the drawn text.
 fn inscribe(
     ui: &Ui,
     theme: &Theme,

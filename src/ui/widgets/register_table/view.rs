@@ -11,18 +11,18 @@ use crate::ui::Theme;
 #[derive(Clone, Debug, Default)]
 pub struct RegisterView {
     pub(super) selected: Option<Selected>,
-    /// Groups that show only their heading.
+    /// Groups of which only the heading is shown.
     pub(super) folded: BTreeSet<usize>,
-    /// Registers with visible bit fields.
+    /// Registers whose bit fields are visible.
     pub(super) open: BTreeSet<RegisterLocation>,
     pub(super) edit: Option<Edit>,
     pub(super) wanted: Option<RegisterLocation>,
-    /// Reason why the value cannot be edited, if refused.
+    /// Reason why an attempt to edit the value was refused, if so.
     pub(super) refused: Option<String>,
     /// Whether the selection has moved and must be scrolled into view.
     pub(super) reveal: bool,
     pub(super) page: usize,
-    /// Events typed in the previous frame after a key that moves the focus to or from the editor; their recipient is
+    /// Events typed in the previous frame after a key that moves the focus to or from the editor. Their recipient is
     /// known only in the next frame.
     pub(super) late: Vec<Event>,
 }
@@ -59,13 +59,13 @@ impl RegisterView {
         }
     }
 
-    /// Returns why the edited value was rejected, or why the value cannot be edited.
+    /// Returns the reason why the edited value was rejected, or why the value cannot be edited.
     pub fn problem(&self, theme: &Theme) -> Option<String> {
         let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| theme.words(problem));
         typed.or_else(|| self.refused.clone())
     }
 
-    /// Returns the register whose value is being entered, or was refused.
+    /// Returns the register whose value is being entered or was refused.
     pub fn typed(&self) -> Option<RegisterLocation> {
         self.edit.as_ref().map(|edit| edit.place)
     }
@@ -93,7 +93,8 @@ impl RegisterView {
         self.folded.contains(&group)
     }
 
-    /// Adapts to a changed set of registers: selection and edit stay with their register, and end if the register no
+    /// Adapts to a changed set of registers. The selection and the edit stay with their register, and end if the
+    /// register no
     /// longer exists.
     pub fn follow(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
@@ -110,7 +111,7 @@ impl RegisterView {
         self.reveal = true;
     }
 
-    pub(super) fn unfold(&mut self, place: RegisterLocation, shown: bool) {
+    pub(super) fn set_expanded(&mut self, place: RegisterLocation, shown: bool) {
         if shown {
             self.open.insert(place);
         } else {

@@ -6,7 +6,7 @@ use egui::{Color32, FontId, Rect, RichText, Sense, Shape, Stroke, Ui, Vec2, Widg
 use super::Gauge;
 use crate::ui::{Theme, icons};
 
-/// Minimum width of the scale, and widths of the parts before it.
+/// Minimum width of the scale, and the widths of the parts before it.
 const SCALE: f32 = 96.0;
 const ICON: f32 = 16.0;
 const NAME: f32 = 112.0;
@@ -65,7 +65,7 @@ fn column(ui: &mut Ui, width: f32, words: RichText) {
     });
 }
 
-/// Draws the allowed band with a hand at the value, or an arrow at the end of the scale if the value lies beyond it.
+/// Draws the allowed band with a pointer at the value, or an arrow at the end of the scale if the value lies beyond it.
 fn scale(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, HEIGHT), Sense::hover());
     response.widget_info(|| {

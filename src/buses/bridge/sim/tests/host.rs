@@ -127,7 +127,7 @@ impl AttachableKind for DialSettings {
         &["rpm", "seed", "fault"]
     }
 
-    fn attached(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
+    fn attach_device(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
         let mut rpm = 0.0;
         for (key, value) in pairs.iter().filter(|(key, _)| key == "rpm") {
             rpm = RPM.take(key, value)?;
@@ -198,7 +198,7 @@ impl AttachableKind for WordGiver {
         &[]
     }
 
-    fn attached(&self, _: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
+    fn attach_device(&self, _: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError> {
         Ok(Some(AttachedDevice::Ssi(Box::new(WordGiver))))
     }
 }

@@ -211,7 +211,7 @@ impl<'a> Master<'a> {
 
     /// Examines more frames after five had wrong checksums and none was ever correct: with noise some are correct, with
     /// wrong widths none.
-    pub(super) fn look_at_more_frames(&mut self, failed: Error) -> Result<PositionReading, Error> {
+    pub(super) fn read_more_frames(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
             return Err(failed);
         }

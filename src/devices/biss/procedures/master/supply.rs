@@ -15,9 +15,9 @@ impl Master<'_> {
     /// Switches the supply on if requested and not done yet.
     pub(super) fn switch_on(&mut self) -> Result<(), Error> {
         let Some(Supply { millivolt, measured: None }) = self.station.supply else { return Ok(()) };
-        if self.station.adapter.found_supplied().is_none() {
+        if self.station.adapter.was_supplied_at_start().is_none() {
             let has_power = self.has_power();
-            self.station.adapter.find_supplied(has_power);
+            self.station.adapter.set_supplied_at_start(has_power);
         }
         let measured = self.adapter().supply(Supply::voltage(millivolt))?;
         self.station.supply = Some(Supply { millivolt, measured: Some(measured) });

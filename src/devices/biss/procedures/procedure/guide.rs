@@ -137,7 +137,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         let description = self.description.clone();
         let (master, standing) = (&mut *self.master, &mut self.standing);
         let ended = master.shielded(|master| {
-            if matches!(standing.activity, Activity::Running(run) if run.calibrates()) {
+            if matches!(standing.activity, Activity::Running(run) if run.is_calibration()) {
                 return master.with_patience(SILENCE, |master| lead_back(master, &description, lock, standing));
             }
             lead_back(master, &description, lock, standing)
@@ -239,7 +239,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             let status = self.master.with_patience(SILENCE, |master| master.read(procedure.status))?;
             let elapsed = self.master.now().since(started);
             begun |= status == course.active || status != course.was;
-            begun |= course.run.calibrates() && self.master.now().since(requested) >= BEGUN;
+            begun |= course.run.is_calibration() && self.master.now().since(requested) >= BEGUN;
             let waits = status == course.before || !begun;
             if waits && elapsed < STATUS {
                 // Not started yet.
@@ -328,7 +328,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             self.master.wait(SAMPLING)?;
         }
         if let (Task::Turn(run), Some(temperature)) = (task, self.role(Role::Temperature))
-            && run.calibrates()
+            && run.is_calibration()
         {
             measured.celsius = Some(Temperature::new(self.master.read(temperature)?).celsius());
         }
@@ -410,15 +410,15 @@ fn end_procedure(master: &mut Master<'_>, description: &Description, mode: Devic
             }
             Ok(())
         }
-        ProcedureKind::WiegandTest => tolerate(master.write(procedure.command, WiegandCommand::Stop.byte())),
+        ProcedureKind::WiegandTest => ignore_refusal(master.write(procedure.command, WiegandCommand::Stop.byte())),
         ProcedureKind::DataWrite if master.read(procedure.status)? == DataStatus::Open.byte() => {
-            tolerate(master.write(procedure.command, DataCommand::Cancel.byte()))
+            ignore_refusal(master.write(procedure.command, DataCommand::Cancel.byte()))
         }
         ProcedureKind::DataWrite | ProcedureKind::FilterSelection | ProcedureKind::Preset => Ok(()),
     }
 }
 
-fn tolerate(ended: Result<(), Error>) -> Result<(), Error> {
+fn ignore_refusal(ended: Result<(), Error>) -> Result<(), Error> {
     match ended {
         Err(Error::Refused { .. }) => Ok(()),
         // It is not known whether it was received: the next exchange shows whether the encoder is still there.

@@ -49,24 +49,24 @@ impl Run {
         matches!(self, Run::CalibrationClockwise | Run::WiegandClockwise)
     }
 
-    pub const fn calibrates(self) -> bool {
+    pub const fn is_calibration(self) -> bool {
         matches!(self, Run::CalibrationCounterclockwise | Run::CalibrationClockwise)
     }
 
     /// Returns the speeds at which the run may be started (manual 6.3 and 6.4).
     pub const fn allowed(self) -> SpeedRange {
-        if self.calibrates() { SpeedRange::new(300.0, 700.0) } else { SpeedRange::new(500.0, 2000.0) }
+        if self.is_calibration() { SpeedRange::new(300.0, 700.0) } else { SpeedRange::new(500.0, 2000.0) }
     }
 
     /// Returns the speed with the best result (manual 6.4). For the Wiegand test all are equal.
-    pub const fn recommended(self) -> SpeedRange {
-        if self.calibrates() { SpeedRange::new(498.0, 502.0) } else { self.allowed() }
+    pub const fn recommended_range(self) -> SpeedRange {
+        if self.is_calibration() { SpeedRange::new(498.0, 502.0) } else { self.allowed() }
     }
 
     /// Returns the allowed speed variation in revolutions per minute (manual 6.4). For the Wiegand test the manual
     /// requires a constant speed, without a number.
     pub const fn fluctuation(self) -> Option<f64> {
-        if self.calibrates() { Some(2.0) } else { None }
+        if self.is_calibration() { Some(2.0) } else { None }
     }
 
     /// Returns the speed variation that is considered steady at this speed, as far as it can be measured.
@@ -156,7 +156,7 @@ impl Demand {
         match (motion, task) {
             _ if unreadable => blockers.push(Blocker::NoPosition),
             (None, _) => blockers.push(Blocker::Measuring),
-            (Some(motion), Task::Turn(run)) => blockers.extend(Self::unfit(run, motion)),
+            (Some(motion), Task::Turn(run)) => blockers.extend(Self::unfit_reason(run, motion)),
             (Some(motion), Task::Stand | Task::StandAtPlace) => {
                 blockers.extend((!motion.is_still()).then_some(Blocker::Turning { rpm: motion.rpm }));
             }
@@ -165,10 +165,10 @@ impl Demand {
             blockers.push(Blocker::Temperature { celsius });
         }
         if let (Task::Turn(run), Some(motion)) = (task, motion) {
-            let recommended = run.recommended();
+            let recommended = run.recommended_range();
             let wavers = run.fluctuation().is_some_and(|fluctuation| motion.spread > fluctuation);
             let off = !recommended.contains(motion.rpm.abs()) || wavers;
-            advice.extend((run.calibrates() && off).then_some(Advice::Speed { recommended }));
+            advice.extend((run.is_calibration() && off).then_some(Advice::Speed { recommended }));
             advice.extend(marked.then_some(Advice::Marked));
         }
         if task == Task::Turn(Run::CalibrationClockwise) {
@@ -177,7 +177,7 @@ impl Demand {
         Demand { task, motion, celsius, blockers, advice, waited }
     }
 
-    fn unfit(run: Run, motion: Motion) -> Option<Blocker> {
+    fn unfit_reason(run: Run, motion: Motion) -> Option<Blocker> {
         let (rpm, allowed) = (motion.rpm.abs(), run.allowed());
         if rpm < Self::SLOWEST {
             Some(Blocker::Standing)

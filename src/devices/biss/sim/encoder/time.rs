@@ -12,16 +12,16 @@ impl Encoder {
         {
             self.power = Power::On;
         }
-        self.settle_runs(now);
+        self.update_runs(now);
         let rpm = self.drive.motor().rpm();
         if rpm != self.shaft.rpm() {
             self.calibration.disturb(now);
             self.shaft.set_rpm(now, rpm);
-            self.settle_runs(now);
+            self.update_runs(now);
         }
     }
 
-    fn settle_runs(&mut self, now: Moment) {
+    fn update_runs(&mut self, now: Moment) {
         let waited = self.waits_for_direction();
         match self.calibration.settle(now) {
             Ended::No => {}

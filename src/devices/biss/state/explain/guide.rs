@@ -58,13 +58,13 @@ pub fn mode(mode: DeviceMode) -> Text {
 pub fn task(task: Task) -> Text {
     match task {
         Task::Turn(run) => {
-            let id = match (run.is_clockwise(), run.calibrates()) {
+            let id = match (run.is_clockwise(), run.is_calibration()) {
                 (true, true) => "guide.turn_cw_best",
                 (false, true) => "guide.turn_ccw_best",
                 (true, false) => "guide.turn_cw",
                 (false, false) => "guide.turn_ccw",
             };
-            speeds(TEXTS.text(id), run.allowed()).with_number("best", run.recommended().middle(), 0)
+            speeds(TEXTS.text(id), run.allowed()).with_number("best", run.recommended_range().middle(), 0)
         }
         Task::Stand => TEXTS.text("guide.stand"),
         Task::StandAtPlace => TEXTS.text("guide.stand_at_place"),
@@ -100,7 +100,7 @@ pub fn advice(advice: Advice) -> Text {
 pub fn calibration_needs() -> Text {
     let run = Run::CalibrationCounterclockwise;
     let text = speeds(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
-    temperatures(text.with_number("best", run.recommended().middle(), 0))
+    temperatures(text.with_number("best", run.recommended_range().middle(), 0))
 }
 
 /// Returns what a Wiegand test requires of the motor.
@@ -126,7 +126,7 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     match outcome {
         Outcome::Skipped { after } => vec![TEXTS.text(match after {
             None => "guide.skipped",
-            Some(run) if run.calibrates() => "guide.skipped_calibration",
+            Some(run) if run.is_calibration() => "guide.skipped_calibration",
             Some(_) => "guide.skipped_wiegand",
         })],
         Outcome::Stored { registers } => vec![TEXTS.text("guide.stored").with("count", registers)],

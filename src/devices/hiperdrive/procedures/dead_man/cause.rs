@@ -52,7 +52,9 @@ impl DeadMan {
         let state = status.state();
         let is_out_of_contact = self.received.is_none_or(|(at, _)| now.since(at) > CONTACT_TIMEOUT);
         let (down, acknowledges) = match (self.stage, act.request) {
-            (Stage::Lead(lead), MotionRequest::Lead(_)) => (lead.only_down(state), lead.goal() == super::Goal::Off),
+            (Stage::Lead(lead), MotionRequest::Lead(_)) => {
+                (lead.only_downwards(state), lead.goal() == super::Goal::Off)
+            }
             (_, MotionRequest::Acknowledge) => (false, true),
             _ => (false, false),
         };
@@ -63,7 +65,7 @@ impl DeadMan {
         if is_out_of_contact {
             return Some(Ended::Deaf);
         }
-        if let Some(how) = self.overtaken(act.number, act.request, intent, permit) {
+        if let Some(how) = self.is_overtaken(act.number, act.request, intent, permit) {
             return Some(how);
         }
         if intent.is_stale(now) && !down {
@@ -87,7 +89,7 @@ impl DeadMan {
     }
 
     /// Returns how the act ends if the intent is no longer for it, or `None` if it still is.
-    fn overtaken(&self, number: u64, request: MotionRequest, intent: &Intent, permit: &Permit) -> Option<Ended> {
+    fn is_overtaken(&self, number: u64, request: MotionRequest, intent: &Intent, permit: &Permit) -> Option<Ended> {
         let rests = matches!(
             intent.request,
             MotionRequest::Rest | MotionRequest::Stop | MotionRequest::Pause | MotionRequest::Resume

@@ -57,7 +57,7 @@ impl Lead {
     }
 
     /// Returns whether the lead only removes torque or leaves it off, so that no refresh is required.
-    pub(super) fn only_down(&self, state: State) -> bool {
+    pub(super) fn only_downwards(&self, state: State) -> bool {
         self.goal <= Goal::of(state) || self.goal == Goal::Off
     }
 

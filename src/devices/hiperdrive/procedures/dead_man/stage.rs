@@ -185,13 +185,13 @@ impl DeadMan {
                 Goal::Operational | Goal::Ready => StopLevel::Off,
                 Goal::Off => StopLevel::Close,
             };
-            let (begun, word) = (self.mark(now), self.resting());
+            let (begun, word) = (self.mark(now), self.rest_word());
             self.stage = Stage::Stop { level, since: now, begun, word };
         }
     }
 
     /// Returns the word of a drive at rest: if enabled, a stop with bit 6 unchanged.
-    fn resting(&self) -> ControlWord {
+    fn rest_word(&self) -> ControlWord {
         let sent = self.sent.control;
         let enabled = Goal::of_word(sent) == Goal::Enabled;
         match self.level {
@@ -203,7 +203,7 @@ impl DeadMan {
     pub(super) fn setpoint(&self, actual: Actual) -> Setpoint {
         let motion = self.act.and_then(|act| act.motion);
         let control = match (&self.stage, motion) {
-            (Stage::Rest { .. }, _) => self.resting(),
+            (Stage::Rest { .. }, _) => self.rest_word(),
             (Stage::Lead(lead), _) => lead.word(),
             (Stage::Stop { level: StopLevel::Mode, word, .. }, _) => *word,
             (Stage::Stop { level: StopLevel::Operational, .. }, _) => ControlWord::OPERATIONAL,

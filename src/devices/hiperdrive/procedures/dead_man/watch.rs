@@ -50,7 +50,7 @@ impl Outside {
     /// Returns whether the direction may lead further out.
     pub fn is_outward(self, direction: Direction) -> bool {
         match self {
-            Outside::At(side) => side.outward() == direction,
+            Outside::At(side) => side.outward_direction() == direction,
             Outside::Unclear => true,
         }
     }
@@ -89,7 +89,7 @@ impl Side {
 
     /// Returns the direction that leads further out. Positions increase clockwise (manual 7.2: the step of parameter
     /// 170, +4096, is clockwise).
-    pub const fn outward(self) -> Direction {
+    pub const fn outward_direction(self) -> Direction {
         match self {
             Side::Above => Direction::Clockwise,
             Side::Below => Direction::Counterclockwise,
@@ -123,7 +123,8 @@ impl Watch {
         let best = motion.distance(actual);
         let at_end = match (motion.kind, limits) {
             (MotionKind::Run { direction, .. }, Some(limits)) => [Side::Below, Side::Above].into_iter().any(|side| {
-                side.outward() == direction && side.beyond(actual.position, limits) >= -i64::from(permit.degree)
+                side.outward_direction() == direction
+                    && side.beyond(actual.position, limits) >= -i64::from(permit.degree)
             }),
             _ => false,
         };
@@ -198,7 +199,9 @@ impl Permit {
         };
         match outside {
             Outside::Unclear => Err(Refusal::Unclear { position, low, high }),
-            Outside::At(side) if direction == Some(side.outward()) => Err(Refusal::Outward { position, low, high }),
+            Outside::At(side) if direction == Some(side.outward_direction()) => {
+                Err(Refusal::Outward { position, low, high })
+            }
             Outside::At(_) => Ok(()),
         }
     }

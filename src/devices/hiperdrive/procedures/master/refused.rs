@@ -1,7 +1,7 @@
 //! Diagnosis of a refused parameter: whether the drive exists, whether it is requested, and the present range of the
 //! value, as far as can be determined.
 
-use super::{Master, Repeats, settable};
+use super::{Master, Repeats, writable_parameter};
 use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
 use crate::devices::hiperdrive::procedures::Error;
 use crate::devices::hiperdrive::procedures::error::{Refusal, RequestedItem};
@@ -61,7 +61,7 @@ impl Master<'_> {
         value: i64,
         refusal: Refusal,
     ) -> Result<Error, Error> {
-        let row = settable(number)?;
+        let row = writable_parameter(number)?;
         match refusal.status {
             GeneralStatus::NOT_SETTABLE => Ok(Error::ReadOnly { number, name: row.name }),
             GeneralStatus::INVALID_VALUE => {

@@ -99,7 +99,12 @@ impl Connections {
 
 impl Plant {
     /// Handles a request to the connection manager; returns its reply with the socket items to send next to it.
-    pub(super) fn manage(&mut self, from: (Originator, u32), request: &Request, items: &Items) -> (Reply, Vec<Item>) {
+    pub(super) fn handle_connection(
+        &mut self,
+        from: (Originator, u32),
+        request: &Request,
+        items: &Items,
+    ) -> (Reply, Vec<Item>) {
         let alone = |reply| (reply, Vec::new());
         if let Err(status) = object(&request.path) {
             return alone(request.refused(status));
@@ -114,7 +119,9 @@ impl Plant {
                 Err(error) => alone(request.refused(wrong(error))),
             },
             service if service.code() == UNCONNECTED_SEND => match wrapped(&request.data) {
-                Ok(inner) if inner.class() == Some(Request::CONNECTION_MANAGER) => self.manage(from, &inner, items),
+                Ok(inner) if inner.class() == Some(Request::CONNECTION_MANAGER) => {
+                    self.handle_connection(from, &inner, items)
+                }
                 Ok(inner) => alone(self.object(&inner)),
                 Err(status) => alone(request.refused(status)),
             },

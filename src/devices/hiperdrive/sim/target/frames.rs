@@ -138,7 +138,7 @@ impl Plant {
     ) -> Result<(Reply, Vec<Item>), Refusal> {
         match Request::parse(message) {
             Ok(request) if request.class() == Some(Request::CONNECTION_MANAGER) => {
-                Ok(self.manage(from, &request, items))
+                Ok(self.handle_connection(from, &request, items))
             }
             Ok(request) => Ok((self.object(&request), Vec::new())),
             Err(_) => {

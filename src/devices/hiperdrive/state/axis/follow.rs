@@ -46,7 +46,7 @@ impl Axis {
     fn leave(&mut self, seen: &DriveFacts, skipped: bool, when: &str) {
         // The fact that was just confirmed may differ from the earlier one.
         self.settle(seen);
-        if self.fallen().is_some() {
+        if self.invalidated_text().is_some() {
             return;
         }
         if self.step == AxisStep::Reference {
@@ -70,7 +70,7 @@ impl Axis {
         if self.over.is_some() || !self.may_go_back(seen) {
             return;
         }
-        if let Some(step) = self.fallen().or_else(|| self.step.neighbour(-1)) {
+        if let Some(step) = self.invalidated_text().or_else(|| self.step.neighbour(-1)) {
             self.enter(step, seen);
         }
     }
@@ -109,7 +109,7 @@ impl Axis {
     }
 
     /// Records that a test move was started by the given act.
-    pub(crate) fn went(&mut self, place: TestTarget, target: i32, act: u64) {
+    pub(crate) fn note_test_move(&mut self, place: TestTarget, target: i32, act: u64) {
         if let Some(outcome) = self.outcomes.get_mut(place as usize) {
             *outcome = None;
         }

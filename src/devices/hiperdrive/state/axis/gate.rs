@@ -49,7 +49,7 @@ impl Axis {
             Button::Acknowledge if !seen.controlled => Err(TEXTS.text("hd_axis.no_control")),
             Button::Acknowledge if !seen.has_failed() => Err(TEXTS.text("hd_axis.no_fault")),
             Button::Acknowledge => Ok(DriveRequest::Acknowledge),
-            _ if let Some(step) = self.fallen() => Err(words::fallen(step)),
+            _ if let Some(step) = self.invalidated_text() => Err(words::invalidated_text(step)),
             Button::Do => stands().and_then(|()| self.step_request(seen)),
             Button::Confirm => match (seen.scale, seen.limits) {
                 (Some(_), Some(_)) => Ok(DriveRequest::ConfirmLimits),
@@ -99,7 +99,7 @@ impl Axis {
                 Ok(DriveRequest::SetPosition(reference.becomes))
             }
             AxisStep::Upper => {
-                let (low, high) = self.taught(seen)?;
+                let (low, high) = self.taught_limits(seen)?;
                 if seen.limits == Some((low, high)) {
                     return Err(TEXTS.text("hd_axis.already"));
                 }
@@ -117,7 +117,7 @@ impl Axis {
     }
 
     /// Returns both taught limits, after checking that the axis is between them.
-    fn taught(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
+    fn taught_limits(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
         let (low, high) = (self.entries.lower(ruler)?, self.entries.upper(ruler)?);
         let mm = |steps: i32| words::millimetres(ruler, steps.into());
@@ -146,8 +146,8 @@ impl Axis {
         if self.asked.is_some() {
             return Err(TEXTS.text("hd_axis.busy"));
         }
-        if let Some(step) = self.fallen() {
-            return Err(words::fallen(step));
+        if let Some(step) = self.invalidated_text() {
+            return Err(words::invalidated_text(step));
         }
         match seen.actual.map(|actual| actual.status.state()) {
             Some(State::Fault) => return Err(TEXTS.text("hd_refused.fault")),
@@ -165,8 +165,8 @@ impl Axis {
     /// # Errors
     /// Explains why it cannot.
     pub fn may_take_place(&self, seen: &DriveFacts) -> Result<(), Text> {
-        if let Some(step) = self.fallen() {
-            return Err(words::fallen(step));
+        if let Some(step) = self.invalidated_text() {
+            return Err(words::invalidated_text(step));
         }
         if self.asked.is_some() {
             return Err(TEXTS.text("hd_axis.busy"));
@@ -196,7 +196,7 @@ impl Axis {
 
     /// Returns whether the step can be skipped now.
     pub fn may_skip(&self, seen: &DriveFacts) -> bool {
-        self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.fallen().is_none()
+        self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.invalidated_text().is_none()
     }
 
     /// Checks whether the present step is complete, so that the next one may follow.
@@ -211,8 +211,8 @@ impl Axis {
         if seen.moves {
             return Err(TEXTS.text("hd_axis.moving"));
         }
-        if let Some(step) = self.fallen() {
-            return Err(words::fallen(step));
+        if let Some(step) = self.invalidated_text() {
+            return Err(words::invalidated_text(step));
         }
         match self.step {
             AxisStep::Request => {
@@ -234,7 +234,7 @@ impl Axis {
             }
             AxisStep::Lower => self.entries.lower(seen.ruler()).map(|_| ()),
             AxisStep::Upper => {
-                let taught = self.taught(seen)?;
+                let taught = self.taught_limits(seen)?;
                 lacks(seen.limits == Some(taught), "hd_axis.needs_limits")
             }
             AxisStep::Test => {

@@ -49,12 +49,12 @@ impl TestTarget {
 
 impl Outcome {
     /// Returns the number of steps between target and position.
-    pub fn missed(&self) -> i64 {
+    pub fn position_deviation(&self) -> i64 {
         i64::from(self.position) - i64::from(self.target)
     }
 
     pub fn is_good(&self) -> bool {
-        self.ended == Ended::Arrived && self.missed().abs() <= self.allowed
+        self.ended == Ended::Arrived && self.position_deviation().abs() <= self.allowed
     }
 }
 

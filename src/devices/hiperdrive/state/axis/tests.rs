@@ -200,7 +200,7 @@ fn until_test() -> (Axis, DriveFacts) {
 fn go(axis: &mut Axis, seen: &mut DriveFacts, place: TestTarget, ends: i32) {
     let DriveRequest::Move(target) = axis.ask(Button::Go(place), seen).unwrap() else { panic!("no move") };
     let act = seen.ended.map_or(1, |(act, _)| act + 1);
-    axis.went(place, target, act);
+    axis.note_test_move(place, target, act);
     seen.moves = true;
     axis.look(seen);
     assert_eq!(axis.going(), Some(place));
@@ -337,7 +337,7 @@ fn a_test_that_misses_its_target_does_not_count() {
     go(&mut axis, &mut seen, TestTarget::Middle, 498);
     assert!(axis.outcome(TestTarget::Middle).unwrap().is_good());
     let DriveRequest::Move(target) = axis.ask(Button::Go(TestTarget::Upper), &seen).unwrap() else { panic!("no move") };
-    axis.went(TestTarget::Upper, target, 9);
+    axis.note_test_move(TestTarget::Upper, target, 9);
     // An earlier act does not count for this one.
     axis.look(&seen);
     assert_eq!((axis.going(), axis.outcome(TestTarget::Upper)), (Some(TestTarget::Upper), None));

@@ -101,7 +101,7 @@ pub fn found(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Text> {
         }
         AxisStep::Test => {
             let good = TestTarget::ALL.into_iter().filter_map(|place| axis.outcome(place)).filter(Outcome::is_good);
-            let worst = good.clone().map(|own| own.missed().abs()).max()?;
+            let worst = good.clone().map(|own| own.position_deviation().abs()).max()?;
             let text = TEXTS.text("hd_axis.found_test").with("count", good.count());
             Some(text.with_text("missed", millimetres(ruler, worst)))
         }
@@ -138,7 +138,7 @@ fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
     Some(text.with_text("allowed", millimetres(ruler, allowed)).with_text("restart", proof))
 }
 
-pub fn fallen(step: AxisStep) -> Text {
+pub fn invalidated_text(step: AxisStep) -> Text {
     let why = TEXTS.text(match step {
         AxisStep::Request => "hd_axis.fell_request",
         AxisStep::Scale => "hd_axis.fell_scale",
@@ -176,7 +176,7 @@ pub fn outcome(outcome: &Outcome, seen: &DriveFacts) -> Text {
     let mm = |steps: i64| millimetres(seen.ruler(), steps);
     if outcome.ended == Ended::Arrived {
         let text = TEXTS.text("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
-        return text.with_text("missed", mm(outcome.missed()));
+        return text.with_text("missed", mm(outcome.position_deviation()));
     }
     let why = words::ended(outcome.ended, |steps| mm(steps.into()));
     TEXTS.text("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)

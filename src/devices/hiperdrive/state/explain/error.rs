@@ -55,7 +55,7 @@ pub fn device(error: &Error) -> Text {
         Error::NoDrive { drive } => TEXTS.text("hd_said.no_drive").with("drive", drive.get()),
         Error::NotRequested { drive } => TEXTS.text("hd_said.not_requested").with("drive", drive.get()),
         Error::OutOfRange(error) => out_of_range(error),
-        Error::Refuses(error) => ranged("hd_said.refuses", error),
+        Error::Refuses(error) => out_of_range_text("hd_said.refuses", error),
         Error::Length(error) => wrong_length(error),
         Error::Value { number, cause } => named("hd_said.value", *number).with_text("why", status::value(cause)),
         Error::ReadOnly { number, .. } => named("hd_said.read_only", *number),
@@ -77,7 +77,7 @@ pub fn device(error: &Error) -> Text {
 pub fn out_of_range(error: &OutOfRange) -> Text {
     match error.range {
         Range::OneOf([]) => named("hd_said.a_text", error.number),
-        _ => ranged("hd_said.out_of_range", error),
+        _ => out_of_range_text("hd_said.out_of_range", error),
     }
 }
 
@@ -97,7 +97,7 @@ pub fn range(range: Range) -> Text {
     }
 }
 
-fn ranged(id: &'static str, error: &OutOfRange) -> Text {
+fn out_of_range_text(id: &'static str, error: &OutOfRange) -> Text {
     named(id, error.number).with("value", error.value).with_text("range", range(error.range))
 }
 

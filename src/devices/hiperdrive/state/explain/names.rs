@@ -100,7 +100,7 @@ pub fn parameter(number: ParameterNumber) -> Text {
         base @ (NEWEST_ERROR..=OLDEST_ERROR) => {
             TEXTS.text("hd_parameter.error").with("number", base - NEWEST_ERROR + 1)
         }
-        base => match TEXTS.numbered("hd_parameter", base) {
+        base => match TEXTS.numbered_text("hd_parameter", base) {
             Some(name) => name,
             None => TEXTS.text("hd_parameter.other").with("number", number),
         },

@@ -117,7 +117,7 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     }
     if let Some(why) = blocked.into_iter().flatten().next()
         && shown.seen.controlled
-        && shown.axis.fallen().is_none()
+        && shown.axis.invalidated_text().is_none()
         // Shown above already.
         && shown.axis.may_go_on(shown.seen).err().as_ref() != Some(&why)
     {

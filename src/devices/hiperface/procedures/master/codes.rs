@@ -89,7 +89,7 @@ impl Master<'_> {
     }
 
     fn hear_late(&mut self, tries: u32) -> Result<(), Error> {
-        let quiet = self.quiet();
+        let quiet = self.silence_duration();
         Ok(self.line.hear_late(&mut self.station.line, tries, quiet)?)
     }
 

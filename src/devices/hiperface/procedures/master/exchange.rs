@@ -82,7 +82,7 @@ impl Master<'_> {
 
     /// Prepares an exchange: checks for cancellation, then waits for the dead time and for silence on the line.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
-        let quiet = self.quiet();
+        let quiet = self.silence_duration();
         Ok(self.line.begin(&mut self.station.line, quiet)?)
     }
 
@@ -97,7 +97,7 @@ impl Master<'_> {
     }
 
     /// Returns the silence after which the line is free.
-    pub(super) fn quiet(&self) -> Duration {
+    pub(super) fn silence_duration(&self) -> Duration {
         self.dead_time() + self.station.line.margin
     }
 
@@ -131,7 +131,7 @@ impl Master<'_> {
             (_, false) => None,
             (true, true) => Some(Damage::Trailing),
             (false, true) => {
-                let quiet = self.quiet();
+                let quiet = self.silence_duration();
                 self.line.discard_late_answers(&mut self.station.line, quiet)?;
                 Some(Damage::Late)
             }
@@ -147,7 +147,7 @@ impl Master<'_> {
         self.station.line.quiet_until = quiet_until;
         let trailing = line.len() > before;
         if trailing {
-            let (quiet, echo) = (self.quiet(), self.station.line.echo);
+            let (quiet, echo) = (self.silence_duration(), self.station.line.echo);
             self.line.pass(echo.strip(line, frame.bytes()).unwrap_or_default());
             self.line.wait_for_silence(&mut self.station.line, quiet)?;
         }

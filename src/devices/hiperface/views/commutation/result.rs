@@ -70,7 +70,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
             theme.sunken().show(ui, |ui| ui.label(theme.mono(lines.join("\n"))));
         }
         for found in stored(&encoder.staged) {
-            found_ui(ui, theme, &found);
+            stored_offset_ui(ui, theme, &found);
         }
         if let Some(words) = encoder.commutation.replaced(encoder.geometry(), &encoder.staged) {
             verdict_ui(ui, theme, Verdict::Warn, &words);
@@ -91,7 +91,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
     });
 }
 
-fn found_ui(ui: &mut Ui, theme: &Theme, found: &Stored) {
+fn stored_offset_ui(ui: &mut Ui, theme: &Theme, found: &Stored) {
     let text = match found.record {
         Ok(record) => TEXTS
             .text("commutation.found")

@@ -55,17 +55,17 @@ impl Master<'_> {
         self.leave_value()?;
         self.parameterising = true;
         self.sets_program();
-        self.acknowledged(command, tried, false)
+        self.wait_for_acknowledgement(command, tried, false)
     }
 
     /// Sends a word like [`set`](Self::set), but one that an encoder may also accept without a reply (`U`).
     pub(super) fn send_instruction(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.leave_value()?;
-        self.acknowledged(command, 0, true)
+        self.wait_for_acknowledgement(command, 0, true)
     }
 
-    fn acknowledged(&mut self, command: Command, tried: u32, may_run: bool) -> Result<(), Error> {
+    fn wait_for_acknowledgement(&mut self, command: Command, tried: u32, may_run: bool) -> Result<(), Error> {
         let (before, found) = (self.input, self.found_error);
         let holds = self.holds(command, tried);
         let patience = self.patience + holds.unwrap_or_default();

@@ -21,7 +21,7 @@ impl Master<'_> {
     ///
     /// # Errors
     /// Those of `work`; [`Error::NotRunning`] before it begins; [`Error::NotLedBack`].
-    pub fn guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
+    pub fn run_guarded<T>(&mut self, work: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, Error> {
         let ended = self.begin().and_then(|()| work(self));
         self.end(ended)
     }
@@ -65,7 +65,7 @@ impl Master<'_> {
                 }
                 ended => ended?,
             }
-            master.normal()?;
+            master.return_to_operation()?;
             let mode = master.ask_mode()?;
             master.found = Some(mode);
             if was_set {
@@ -186,7 +186,7 @@ impl Master<'_> {
             }
             self.known.hold = held.then_some((wanted, keeps));
             if !held {
-                self.normal()?;
+                self.return_to_operation()?;
             }
             is = self.ask_mode()?;
             if is_equivalent_mode(is, wanted) {
@@ -218,7 +218,7 @@ impl Master<'_> {
                 self.release_run()?;
             }
             self.run()?;
-            self.normal()?;
+            self.return_to_operation()?;
         }
         if self.unsure {
             self.ask_mode()?;

@@ -50,7 +50,7 @@ impl Held {
 
     /// Returns whether the condition has held long enough to exclude an old answer.
     pub(super) fn is_stable(self) -> bool {
-        self.cycles >= STANDS && self.lasts(STANDS_FOR)
+        self.cycles >= STANDS && self.is_stable_for(STANDS_FOR)
     }
 
     pub(super) fn is_settled(self) -> bool {
@@ -61,15 +61,15 @@ impl Held {
     /// stable.
     pub(super) fn has_lasted(self, duration: Duration) -> bool {
         let least = if self.timeless { STAYS } else { STANDS };
-        self.cycles >= least && self.lasts(duration)
+        self.cycles >= least && self.is_stable_for(duration)
     }
 
     /// Returns the time from the first cycle to the last in which the condition held.
-    pub(super) const fn lasted(self) -> Duration {
+    pub(super) const fn stable_for(self) -> Duration {
         self.lasted
     }
 
-    fn lasts(self, duration: Duration) -> bool {
+    fn is_stable_for(self, duration: Duration) -> bool {
         self.timeless || self.lasted >= duration
     }
 }

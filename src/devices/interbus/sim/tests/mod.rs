@@ -60,13 +60,13 @@ impl Master {
         self.now = self.now + Duration::from_millis(milliseconds);
     }
 
-    fn put_shaft(&mut self, place: i32) {
-        self.encoder.put_shaft(self.now, place);
+    fn set_shaft(&mut self, place: i32) {
+        self.encoder.set_shaft(self.now, place);
     }
 
     /// Returns the position, at a place of the disc.
     fn position(&mut self, place: i32) -> u32 {
-        self.put_shaft(place);
+        self.set_shaft(place);
         self.read()
     }
 

@@ -7,7 +7,7 @@ use crate::devices::interbus::profile::{Scale, Unit};
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{choice, entry, folding_card, paragraph, problem_below, settled_entry};
+use crate::ui::controls::{choice, committed_entry, entry, folding_card, paragraph, problem_below};
 
 /// Entered text that has not taken effect yet.
 #[derive(Default)]
@@ -51,7 +51,7 @@ pub(super) fn card_ui(
                 },
             );
             entry(ui, theme, &word, |ui| {
-                settled_entry(ui, &mut view.steps, &theme.plain(steps), NUMBER, &word, |text| {
+                committed_entry(ui, &mut view.steps, &theme.plain(steps), NUMBER, &word, |text| {
                     set(forms::scale(scale.unit(), text, scale.zero())?);
                     Ok(())
                 });
@@ -60,7 +60,7 @@ pub(super) fn card_ui(
         }
         let word = say(theme, "ib_scale.zero");
         entry(ui, theme, &word, |ui| {
-            settled_entry(ui, &mut view.zero, &scale.zero().to_string(), NUMBER, &word, |text| {
+            committed_entry(ui, &mut view.zero, &scale.zero().to_string(), NUMBER, &word, |text| {
                 set(forms::with_zero(scale, text, range)?);
                 Ok(())
             });

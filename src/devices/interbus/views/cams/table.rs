@@ -12,7 +12,7 @@ use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
 use crate::devices::interbus::state::cams::{Chart, Lane, words};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, forms};
-use crate::ui::controls::{card, name, paragraph, problem, settled_entry};
+use crate::ui::controls::{card, committed_entry, name, paragraph, problem};
 use crate::ui::{Theme, icons};
 
 /// Entered text that has not taken effect yet.
@@ -97,7 +97,7 @@ fn row(
     let draft = view.drafts.entry((program, cam, Column::Name)).or_default();
     let shown = lane.name.as_deref().unwrap_or_default();
     cell(ui, NAME, |ui| {
-        settled_entry(ui, draft, shown, NAME - MARGIN, &theme.words(&word), |text| {
+        committed_entry(ui, draft, shown, NAME - MARGIN, &theme.words(&word), |text| {
             put(Edit::Name { program, cam, name: text.to_owned() });
             Ok(())
         })
@@ -108,7 +108,7 @@ fn row(
             chart.edge(cam, edge).map_or_else(String::new, |own| forms::typed(own, &encoder.scale, chart.range));
         let word = theme.words(&words::edge(lane, edge));
         cell(ui, NUMBER, |ui| {
-            settled_entry(ui, draft, &shown, NUMBER - MARGIN, &word, |text| {
+            committed_entry(ui, draft, &shown, NUMBER - MARGIN, &word, |text| {
                 let to = forms::position(text, &encoder.scale, chart.range)?;
                 put(match lane.edges {
                     Some(_) => Edit::Edge { program, cam, edge, to },

@@ -83,7 +83,14 @@ impl CamChart<'_> {
     }
 
     /// Returns the event of a drag: a preview while the pointer is down, then the result.
-    pub(super) fn dragged(&self, ui: &Ui, base: Id, response: &Response, drag: Drag, snap: &Snap) -> Option<CamEvent> {
+    pub(super) fn drag_result(
+        &self,
+        ui: &Ui,
+        base: Id,
+        response: &Response,
+        drag: Drag,
+        snap: &Snap,
+    ) -> Option<CamEvent> {
         let given_up = ui.input(|input| input.key_pressed(Key::Escape)) || is_drag_cancelled(ui, base);
         let snap = if self.snaps && !ui.input(|input| input.modifiers.alt) { *snap } else { Snap::OFF };
         let to = self.pulled(drag.hold, drag.from, drag.at, &snap).filter(|_| !given_up);
@@ -153,7 +160,7 @@ impl CamChart<'_> {
     }
 
     /// Describes an edge to screen readers and handles their input.
-    pub(super) fn tell_edge(
+    pub(super) fn announce_edge(
         &self,
         ui: &Ui,
         theme: &Theme,

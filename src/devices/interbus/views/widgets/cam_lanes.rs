@@ -55,7 +55,7 @@ pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: 
     let looked = lanes.look(range);
     lanes.paint(drag);
     let pulled = lanes.grips(drag);
-    let switched = lanes.heads();
+    let switched = lanes.draw_heads();
     if drag.is_some() && !ui.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
         ui.data_mut(|data| data.remove::<Drag>(base));
     }

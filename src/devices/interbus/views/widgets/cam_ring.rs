@@ -163,7 +163,7 @@ impl Ring<'_> {
         let sense = if self.model.movable { Sense::click_and_drag() } else { Sense::click() };
         let response = self.ui.interact(rect, self.base.with("edge").with(hold), sense);
         let label = TEXTS.text("cams.on_ring").with_text("edge", words::edge(lane, edge));
-        let mut event = self.model.tell_edge(self.ui, self.theme, &response, hold, &label);
+        let mut event = self.model.announce_edge(self.ui, self.theme, &response, hold, &label);
         let apart = self.snap().apart.unwrap_or(1.0);
         event = event.or(self.model.keys(self.ui, &response, hold, apart));
         if response.clicked() || response.drag_started() {
@@ -203,7 +203,7 @@ impl Ring<'_> {
         let before = own.map_or(from, |drag| drag.at);
         let at = before + self.dial.turned(before, now);
         let to = own.and_then(|drag| drag.to);
-        self.model.dragged(self.ui, self.base, response, Drag { hold, from, at, to }, &self.snap())
+        self.model.drag_result(self.ui, self.base, response, Drag { hold, from, at, to }, &self.snap())
     }
 
     fn paint(&self) {

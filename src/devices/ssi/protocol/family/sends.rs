@@ -34,7 +34,7 @@ impl Family {
         tried
             .map(|(align, place)| Settings { align, errors: Some(place), ..asked.clone() })
             .filter(|settings| self.sends(settings, frame))
-            .map(|settings| self.fewest(settings, frame))
+            .map(|settings| self.shortest_settings(settings, frame))
             .min_by_key(count)
     }
 
@@ -43,7 +43,7 @@ impl Family {
     }
 
     /// Omits every setting that is not needed to produce the given frame.
-    fn fewest(&self, settings: Settings, frame: &Descriptor) -> Settings {
+    fn shortest_settings(&self, settings: Settings, frame: &Descriptor) -> Settings {
         LEAVE.iter().fold(settings, |settings, leave| {
             let mut fewer = settings.clone();
             leave(&mut fewer);

@@ -1,9 +1,9 @@
 //! Encoders of no known family: common widths, and separate bits for those that are always 1, have been active, or are
 //! unexplained.
 
-use super::code_ends::unusual;
+use super::code_ends::unusual_step_cost;
 use super::frame_set::FrameSet;
-use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, detect_parity, goes_over_zero, sum};
+use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, crosses_zero, detect_parity, sum};
 use super::plausible::{shares, widths};
 use super::reading::Read;
 use crate::devices::ssi::protocol::code::Code;
@@ -58,7 +58,7 @@ pub(super) fn any_other(
             let weights = [(inverted, EXCHANGED), (reading.parity.is_some(), PARITY)];
             let weight = ANY_OTHER + weight + ALWAYS_HIGH * high as f64 + sum(&weights);
             let base = Descriptor { errors: fixed, ..base };
-            let over = goes_over_zero(reading, inverted).into_iter().flat_map(|parity| over_zero(&base, parity));
+            let over = crosses_zero(reading, inverted).into_iter().flat_map(|parity| parity_variants(&base, parity));
             let all: Vec<(Descriptor, f64)> = over.map(|frame| (frame, PADDED)).chain([(base.clone(), 0.0)]).collect();
             for (frame, more) in all {
                 let whole = match repeat {
@@ -74,7 +74,7 @@ pub(super) fn any_other(
 }
 
 /// Returns the alternatives to a parity bit: a trailing zero, or an error bit covered by the code.
-fn over_zero(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
+fn parity_variants(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
     let none = Descriptor { parity: None, ..frame.clone() };
     let mut errors = frame.errors.clone();
     errors.push(named("ERROR", parity.clock, false));
@@ -88,7 +88,7 @@ fn over_zero(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
 fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
     let reading = &read.reading;
     if let Some((steps, _)) = reading.steps {
-        let unusual = f64::from(unusual(steps));
+        let unusual = f64::from(unusual_step_cost(steps));
         let per_turn = u32::try_from(steps).ok();
         return per_turn.map(|per_turn| (Range::Steps { per_turn, turns: 1 }, unusual)).into_iter().collect();
     }

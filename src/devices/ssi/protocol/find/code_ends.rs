@@ -66,7 +66,7 @@ fn best(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u6
     let reach = 4 + 2 * read.motion.median.unsigned_abs();
     let near =
         |steps: u64| (1..=4).flat_map(|by| [steps.saturating_add(by), steps.saturating_sub(by)]).collect::<Vec<_>>();
-    if let Some(steps) = jumped(&read.motion, whole) {
+    if let Some(steps) = jump_size(&read.motion, whole) {
         add(usual(steps.saturating_sub(8)..=steps.saturating_add(8)));
         add([vec![steps], near(steps)].concat());
     }
@@ -90,14 +90,14 @@ fn best(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u6
     }
     let mut as_well: Vec<u64> =
         costs.into_iter().filter(|(cost, _)| *cost <= lowest + AS_WELL_BITS).map(|(_, steps)| steps).collect();
-    as_well.sort_by_key(|steps| (unusual(*steps), *steps));
+    as_well.sort_by_key(|steps| (unusual_step_cost(*steps), *steps));
     let first = as_well.first().copied()?;
     let others = as_well.iter().filter(|steps| **steps != first).max();
     Some((first, others.copied().unwrap_or(first)))
 }
 
 /// Returns the number of steps from the size that most jumps have.
-fn jumped(motion: &Motion, whole: u64) -> Option<u64> {
+fn jump_size(motion: &Motion, whole: u64) -> Option<u64> {
     let mut jumps: Vec<u64> = motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     jumps.retain(|size| *size > motion.limit);
     jumps.sort_unstable();
@@ -130,7 +130,7 @@ fn usual(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
 }
 
 /// Ranks how unusual a number of steps is: 0 for a usual one, up to 5.
-pub(super) fn unusual(steps: u64) -> u8 {
+pub(super) fn unusual_step_cost(steps: u64) -> u8 {
     if !usual(steps..=steps).is_empty() || steps.is_power_of_two() {
         return 0;
     }

@@ -28,7 +28,7 @@ pub(super) struct Member {
 pub(super) type Take<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 'a;
 
 /// Returns the layouts that match the given reading and reproduce the probe's motion, in no particular order.
-pub(super) fn members(
+pub(super) fn group_members(
     probe: &Probe<'_>,
     read: &Read,
     words: &FrameSet,
@@ -73,7 +73,7 @@ pub(super) fn detect_parity(reading: &Reading, inverted: bool) -> Option<Parity>
 
 /// Returns the even parity bit after Gray that may just as well be a zero covered by the code: either looks like the
 /// lowest position bit.
-pub(super) fn goes_over_zero(reading: &Reading, inverted: bool) -> Option<Parity> {
+pub(super) fn crosses_zero(reading: &Reading, inverted: bool) -> Option<Parity> {
     detect_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }
 

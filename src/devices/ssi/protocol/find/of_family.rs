@@ -1,7 +1,7 @@
 //! Settings of a family whose position ends where the reading does.
 
 use super::frame_set::FrameSet;
-use super::members::{EXCHANGED, PADDED, Take, goes_over_zero, sum};
+use super::members::{EXCHANGED, PADDED, Take, crosses_zero, sum};
 use super::plausible::widths;
 use super::reading::Read;
 use crate::devices::ssi::protocol::code::Code;
@@ -28,7 +28,7 @@ pub(super) fn of_family(
     };
     let shifts: &[bool] = if family.shift { &[false, true] } else { &[false] };
     let coded: &[Coded] = match reading.code {
-        Code::Gray if goes_over_zero(reading, inverted).is_some() => {
+        Code::Gray if crosses_zero(reading, inverted).is_some() => {
             &[Coded::Position, Coded::Area, Coded::AreaAndErrors]
         }
         _ => &[Coded::Position],

@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::code_ends::{ends, unusual};
+use super::code_ends::{ends, unusual_step_cost};
 use super::frame_set::{FrameSet, entropy};
 use super::motion::Motion;
 use crate::devices::ssi::protocol::code::{Code, Coding, ones, ungray};
@@ -153,7 +153,7 @@ impl Reading {
             (self.gap.is_some(), GAP_BITS),
             (
                 self.steps.is_some(),
-                END_BITS + UNUSUAL_END_BITS * self.steps.map_or(0.0, |(steps, _)| unusual(steps).into()),
+                END_BITS + UNUSUAL_END_BITS * self.steps.map_or(0.0, |(steps, _)| unusual_step_cost(steps).into()),
             ),
         ];
         (bits + unusual.iter().filter(|(is, _)| *is).map(|(_, bits)| bits).sum::<f64>(), unexplained)
@@ -205,7 +205,7 @@ pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
     let frames = seen.words().len();
     let sample = sample(seen.words());
     let mut tried: Vec<(f64, Reading)> = Vec::new();
-    for reading in ways(seen) {
+    for reading in possible_readings(seen) {
         // Runs are not consecutive.
         let runs = sample.chunks(RUN).map(|run| reading.numbers(run, seen.clocks));
         let numbers: Vec<Option<u64>> = runs.flat_map(|run| run.into_iter().chain([None])).collect();
@@ -250,7 +250,7 @@ fn leaves_out_highest(seen: &FrameSet, read: &Read) -> bool {
 }
 
 /// Returns every possible reading, from each clock that moved first to each clock that could carry the lowest bit.
-fn ways(seen: &FrameSet) -> Vec<Reading> {
+fn possible_readings(seen: &FrameSet) -> Vec<Reading> {
     let moving: Vec<u8> = seen.bits().filter(|(_, bit)| bit.moves).map(|(clock, _)| clock).collect();
     let often = LAST_PERMILLE * seen.words().len() / 1000;
     let lowest: Vec<u8> =

@@ -35,7 +35,7 @@ pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
     let sure = sure && !has_uniform_jumps(&first.read) && words.different() >= SURE_DIFFERENT;
     // Regardless of how improbable the others are.
     let sure = sure && groups.iter().skip(1).all(|next| next.read.cost() - first.read.cost() >= LEAD_BITS);
-    let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven(words, first).is_empty();
+    let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven_properties(words, first).is_empty();
     (!proven).then_some(Uncertainty::Open)
 }
 
@@ -56,7 +56,7 @@ fn is_even(read: &Read, frames: usize, part: f64) -> bool {
         && disturbed * 100 <= DISTURBED_PERCENT * frames
 }
 
-fn unproven(words: &FrameSet, group: &Group) -> Vec<Open> {
+fn unproven_properties(words: &FrameSet, group: &Group) -> Vec<Open> {
     let Group { read, members, .. } = group;
     let reading = &read.reading;
     let mut open = Vec::new();
@@ -156,7 +156,7 @@ fn evidence(words: &FrameSet, group: &Group, most: f64) -> Evidence {
 
 /// Returns the motions that would tell the members apart or prove them.
 fn open(words: &FrameSet, group: &Group) -> Vec<Open> {
-    let mut open = unproven(words, group);
+    let mut open = unproven_properties(words, group);
     let members = &group.members;
     let differ = |what: fn(&Member) -> Vec<u8>| {
         let mut all = members.iter().map(what);

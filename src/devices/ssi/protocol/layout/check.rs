@@ -220,8 +220,8 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
         (bit, ones(word) & !(bit | (bit - 1)))
     });
     let used = errors.iter().fold(position | parity.0, |used, bit| used | bit);
-    many(RepeatedPart::ErrorBits, 8, descriptor.errors.len())?;
-    many(RepeatedPart::Patterns, 4, descriptor.patterns.len())?;
+    check_count(RepeatedPart::ErrorBits, 8, descriptor.errors.len())?;
+    check_count(RepeatedPart::Patterns, 4, descriptor.patterns.len())?;
     let patterns = descriptor.patterns.iter().map(|pattern| match pattern.word {
         Word::Ones => Ok(ones(clocks)),
         Word::Bits(word) if word > ones(clocks) => Err(LayoutError::Pattern { word, clocks }),
@@ -278,7 +278,7 @@ fn placed(parts: &[Part; 2], code: u64) -> u64 {
     parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word)
 }
 
-fn many(what: RepeatedPart, limit: usize, count: usize) -> Result<(), LayoutError> {
+fn check_count(what: RepeatedPart, limit: usize, count: usize) -> Result<(), LayoutError> {
     if count > limit { Err(LayoutError::Many { what, limit, count }) } else { Ok(()) }
 }
 

@@ -81,10 +81,10 @@ pub(super) fn entered(designer: &Designer, field: Field, input: &Input) -> Optio
         (Field::Clocks, Input::Number(clocks)) => next.clocks = byte(*clocks)?,
         // The parts after the position move with it.
         (Field::Lead, Input::Number(lead)) => {
-            return Some(Edit::Frame(Box::new(pushed(before, byte(*lead)?, before.between)?)));
+            return Some(Edit::Frame(Box::new(with_padding(before, byte(*lead)?, before.between)?)));
         }
         (Field::Between, Input::Number(between)) => {
-            return Some(Edit::Frame(Box::new(pushed(before, before.lead, byte(*between)?)?)));
+            return Some(Edit::Frame(Box::new(with_padding(before, before.lead, byte(*between)?)?)));
         }
         (Field::Area, Input::Number(area)) => next.area = byte(*area)?,
         (Field::Shift, Input::Switch(is_on)) => next.shift_right = *is_on,
@@ -148,7 +148,7 @@ fn apply_range_input(range: &Range, field: Field, input: &Input) -> Option<Range
 }
 
 /// Returns the frame with the given numbers of zeros before and within the position. The parts behind them shift along.
-fn pushed(before: &Descriptor, lead: u8, between: u8) -> Option<Descriptor> {
+fn with_padding(before: &Descriptor, lead: u8, between: u8) -> Option<Descriptor> {
     let by = i16::from(lead) + i16::from(between) - i16::from(before.lead) - i16::from(before.between);
     let moved = |clock: u8| u8::try_from(i16::from(clock) + by).ok();
     let mut next =

@@ -107,20 +107,21 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
     match handle {
         Handle::LeadEnd => {
             new.lead = plus(new.lead, by)?;
-            new.range = if both { resized(new.range, -by, 0)? } else { resize_range_evenly(new.range, -by)? };
+            new.range =
+                if both { with_resized_range(new.range, -by, 0)? } else { resize_range_evenly(new.range, -by)? };
         }
         Handle::Split if new.between > 0 => return None,
-        Handle::Split => new.range = resized(new.range, by, -by)?,
+        Handle::Split => new.range = with_resized_range(new.range, by, -by)?,
         Handle::TurnsEnd => {
-            new.range = resized(new.range, by, 0)?;
+            new.range = with_resized_range(new.range, by, 0)?;
             new.between = plus(new.between, -by)?;
         }
         Handle::BetweenEnd => {
-            new.range = resized(new.range, 0, -by)?;
+            new.range = with_resized_range(new.range, 0, -by)?;
             new.between = plus(new.between, by)?;
         }
         Handle::StepsEnd => {
-            new.range = if both { resized(new.range, 0, by)? } else { resize_range_evenly(new.range, by)? };
+            new.range = if both { with_resized_range(new.range, 0, by)? } else { resize_range_evenly(new.range, by)? };
             follow(layout, &mut new, by, following)?;
         }
         Handle::Position => {
@@ -139,7 +140,8 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
         }
         Handle::FrameEnd => {
             new.clocks = to;
-            new.patterns = new.patterns.into_iter().map(|pattern| longer(pattern, by)).collect::<Option<_>>()?;
+            new.patterns =
+                new.patterns.into_iter().map(|pattern| with_longer_pattern(pattern, by)).collect::<Option<_>>()?;
         }
         Handle::Error(index) => put(&mut new, Single::Error(index), at, to),
         Handle::Parity => put(&mut new, Single::Parity, at, to),
@@ -208,7 +210,7 @@ fn plus(value: u8, by: i16) -> Option<u8> {
 }
 
 /// Returns the range with the numbers of turn and step bits changed; at least one bit of each remains.
-fn resized(range: Range, turns: i16, steps: i16) -> Option<Range> {
+fn with_resized_range(range: Range, turns: i16, steps: i16) -> Option<Range> {
     let Range::Bits { multiturn, singleturn } = range else { return None };
     let multiturn = plus(multiturn, turns).filter(|bits| *bits > 0)?;
     let singleturn = plus(singleturn, steps).filter(|bits| *bits > 0)?;
@@ -227,7 +229,7 @@ fn resize_range_evenly(range: Range, by: i16) -> Option<Range> {
 }
 
 /// Returns the pattern extended by trailing clocks or shortened by trailing zeros.
-fn longer(pattern: Pattern, by: i16) -> Option<Pattern> {
+fn with_longer_pattern(pattern: Pattern, by: i16) -> Option<Pattern> {
     let Word::Bits(word) = pattern.word else { return Some(pattern) };
     let count = u32::from(by.unsigned_abs());
     let word = if by >= 0 {

@@ -7,7 +7,7 @@ use super::*;
 fn published_connection_matches() {
     let mut host = Host::new("position=163840");
     // The socket: family 2, port 2222, no address.
-    host.asks(OPEN, &format!("{OPENED} 00 80 10 00 00 02 08 AE 00 00 00 00 00 00 00 00 00 00 00 00"));
+    host.is_asking(OPEN, &format!("{OPENED} 00 80 10 00 00 02 08 AE 00 00 00 00 00 00 00 00 00 00 00 00"));
     let ours = bytes(
         "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 01 00 01 00 00 00 39 04 64 64 00 80 02 00 00 00 00 00 00 00 00 00",
     );
@@ -34,8 +34,8 @@ fn published_connection_matches() {
             .replace("12 00 01 00", "12 00 0E 00")
     );
     assert_eq!(host.target.figures().packets, 13);
-    host.asks(CLOSE, "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00");
-    host.asks(CLOSE, "CE 00 01 01 07 01 01 00 34 12 CD AB 00 00 00 00");
+    host.is_asking(CLOSE, "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00");
+    host.is_asking(CLOSE, "CE 00 01 01 07 01 01 00 34 12 CD AB 00 00 00 00");
     host.datagrams();
     host.wait(50);
     assert_eq!(host.datagrams(), []);
@@ -78,9 +78,9 @@ fn unsupported_connections_are_refused_with_a_status() {
         assert_eq!(host.open(OPEN), OPENED, "{label}");
     }
     let mut host = Host::new("");
-    host.asks(&OPEN.replace("CD AB 00 00 01 00 00 00", "CD AB 00 00 08 00 00 00"), "D4 00 09 00");
-    host.asks(&OPEN[..OPEN.len() - 3], "D4 00 13 00");
-    host.asks(&format!("{OPEN} 00"), "D4 00 15 00");
+    host.is_asking(&OPEN.replace("CD AB 00 00 01 00 00 00", "CD AB 00 00 08 00 00 00"), "D4 00 09 00");
+    host.is_asking(&OPEN[..OPEN.len() - 3], "D4 00 13 00");
+    host.is_asking(&format!("{OPEN} 00"), "D4 00 15 00");
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn a_second_master_is_refused() {
     let mut second = Host { target: host.target.connection(Ipv4Addr::new(10, 0, 0, 8)), now: host.now, session: 0 };
     second.register();
     assert_eq!(second.open(&other), "D4 00 01 01 06 01 01 00 34 12 CE AB 00 00 00 00");
-    second.asks(&CLOSE.replace("34 12 CD AB", "34 12 CE AB"), "CE 00 01 01 07 01 01 00 34 12 CE AB 00 00 00 00");
+    second.is_asking(&CLOSE.replace("34 12 CD AB", "34 12 CE AB"), "CE 00 01 01 07 01 01 00 34 12 CE AB 00 00 00 00");
     // After 80 ms without a packet the first one has ended.
     second.wait(80);
     assert_eq!(second.open(&other), OPENED.replace("34 12 CD AB", "34 12 CE AB").replace("01 00 02 00", "02 00 02 00"));
@@ -190,10 +190,10 @@ fn a_silent_master_is_lost_after_its_timeout() {
     let stopped = host.items("0E 03 20 65 24 01 30 6B");
     assert_eq!(host.datagrams(), []);
     host.wait(1000);
-    host.asks("0E 03 20 65 24 01 30 6B", &stopped);
+    host.is_asking("0E 03 20 65 24 01 30 6B", &stopped);
     // Not at its target, with fault 8601.
     assert_ne!(stopped, "8E 00 00 00 00 80 02 00");
-    host.asks("0E 03 20 65 24 01 30 6C", "8E 00 00 00 01 86");
+    host.is_asking("0E 03 20 65 24 01 30 6C", "8E 00 00 00 01 86");
     assert_eq!(host.open(OPEN), OPENED.replace("01 00 02 00 01", "02 00 02 00 01"));
 }
 
@@ -209,7 +209,7 @@ fn a_cyclic_connection_outlives_its_tcp_connection() {
     host.words(1, &[0x0400, 0x0401]);
     assert_eq!(host.status(), Some(0x2A33));
     host.register();
-    host.asks(CLOSE, "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00");
+    host.is_asking(CLOSE, "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00");
 }
 
 /// Reference 2: 2.5 turns, the high byte of every number first.

@@ -30,23 +30,23 @@ fn published_frames_match() {
 #[test]
 fn published_requests_match() {
     let mut host = Host::new("position=163840");
-    host.asks("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 80 02 00");
-    host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
-    host.asks("10 03 20 65 24 01 30 9E 00 00 01 FE", "90 00 00 00");
-    host.asks("0E 03 20 65 24 01 30 9E", "8E 00 00 00 00 00 01 FE");
+    host.is_asking("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 80 02 00");
+    host.is_asking("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
+    host.is_asking("10 03 20 65 24 01 30 9E 00 00 01 FE", "90 00 00 00");
+    host.is_asking("0E 03 20 65 24 01 30 9E", "8E 00 00 00 00 00 01 FE");
     // 158 above the position; the drive stores error 8501.
-    host.asks("10 03 20 65 24 01 30 9E FF FF FF 7F", "90 00 09 00");
-    host.asks("0E 03 20 65 24 01 30 6C", "8E 00 00 00 01 85");
-    host.asks("10 03 20 65 24 01 30 65 00 04", "90 00 00 00");
-    host.asks("0E 03 20 65 24 01 30 69", "8E 00 00 00 B1 2A");
-    host.asks("10 03 20 65 24 01 30 98 01", "90 00 00 00");
-    host.asks("10 03 20 64 24 01 30 2F 01 00", "90 00 00 00");
-    host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
+    host.is_asking("10 03 20 65 24 01 30 9E FF FF FF 7F", "90 00 09 00");
+    host.is_asking("0E 03 20 65 24 01 30 6C", "8E 00 00 00 01 85");
+    host.is_asking("10 03 20 65 24 01 30 65 00 04", "90 00 00 00");
+    host.is_asking("0E 03 20 65 24 01 30 69", "8E 00 00 00 B1 2A");
+    host.is_asking("10 03 20 65 24 01 30 98 01", "90 00 00 00");
+    host.is_asking("10 03 20 64 24 01 30 2F 01 00", "90 00 00 00");
+    host.is_asking("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
     // During a save nothing is written; then 47 is 0 again.
-    host.asks("10 03 20 65 24 01 30 98 01", "90 00 0C 00");
+    host.is_asking("10 03 20 65 24 01 30 98 01", "90 00 0C 00");
     host.wait(200);
-    host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
-    host.asks("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
+    host.is_asking("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
+    host.is_asking("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
 }
 
 /// Issue 21.8: a reset of drives is answered after it, as in the manual; other requests meanwhile are answered without
@@ -57,14 +57,14 @@ fn a_reset_is_answered_on_completion() {
         let mut host = Host::new(query);
         let reset = frame(0x6F, host.session, &unconnected(&bytes("10 03 20 64 24 01 30 2F FC FF")));
         assert!(host.bytes(&reset).is_empty(), "{query}");
-        host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
+        host.is_asking("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
         // The request arrived 10 ms ago, and its reply takes 1 ms.
         host.wait(ms - 10);
         assert!(host.target.poll(host.now).is_empty(), "{query}");
         host.wait(1);
         let reply = host.target.poll(host.now);
         assert_eq!(hex(&reply[reply.len() - 4..]), "90 00 00 00", "{query}");
-        host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
+        host.is_asking("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
     }
     // The same for a reset of one drive: 152 from 0 to 1, and 199.
     let mut host = Host::new("requested=0");
@@ -109,21 +109,21 @@ fn impossible_requests_are_refused_with_a_status() {
 #[test]
 fn drives_of_a_hub_have_consecutive_classes() {
     let mut host = Host::new("hub=8&drives=1,0,1,1,1,1,1,1&position=65536&variant=HDA70&requested=1");
-    host.asks("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 00 01 00");
-    host.asks("0E 03 20 66 24 01 30 6B", "8E 00 0C 00");
-    host.asks("0E 03 20 66 24 01 30 78", "8E 00 00 00 00 00");
-    host.asks("0E 03 20 66 24 01 30 98", "8E 00 00 00 00");
-    host.asks("0E 03 20 67 24 01 30 6B", "8E 00 00 00 00 00 01 00");
-    host.asks("0E 03 20 6C 24 01 30 65", "8E 00 00 00 00 00");
-    host.asks("0E 03 20 6C 24 01 30 6B", "8E 00 00 00 00 00 01 00");
-    host.asks("0E 03 20 6C 24 01 30 78", "8E 00 00 00 0D 00");
-    host.asks("0E 03 20 6C 24 01 30 98", "8E 00 00 00 01");
-    host.asks("0E 03 20 6D 24 01 30 6B", "8E 00 05 00");
+    host.is_asking("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 00 01 00");
+    host.is_asking("0E 03 20 66 24 01 30 6B", "8E 00 0C 00");
+    host.is_asking("0E 03 20 66 24 01 30 78", "8E 00 00 00 00 00");
+    host.is_asking("0E 03 20 66 24 01 30 98", "8E 00 00 00 00");
+    host.is_asking("0E 03 20 67 24 01 30 6B", "8E 00 00 00 00 00 01 00");
+    host.is_asking("0E 03 20 6C 24 01 30 65", "8E 00 00 00 00 00");
+    host.is_asking("0E 03 20 6C 24 01 30 6B", "8E 00 00 00 00 00 01 00");
+    host.is_asking("0E 03 20 6C 24 01 30 78", "8E 00 00 00 0D 00");
+    host.is_asking("0E 03 20 6C 24 01 30 98", "8E 00 00 00 01");
+    host.is_asking("0E 03 20 6D 24 01 30 6B", "8E 00 05 00");
     // "HIPERDRIVE HUB-8"
-    host.asks("0E 03 20 64 24 01 30 0D", "8E 00 00 00 48 49 50 45 52 44 52 49 56 45 20 48 55 42 2D 38");
+    host.is_asking("0E 03 20 64 24 01 30 0D", "8E 00 00 00 48 49 50 45 52 44 52 49 56 45 20 48 55 42 2D 38");
     let mut four = Host::new("hub=4&text=counted");
-    four.asks("0E 03 20 69 24 01 30 6B", "8E 00 05 00");
-    four.asks("0E 03 20 64 24 01 30 0D", "8E 00 00 00 10 48 49 50 45 52 44 52 49 56 45 20 48 55 42 2D 34");
+    four.is_asking("0E 03 20 69 24 01 30 6B", "8E 00 05 00");
+    four.is_asking("0E 03 20 64 24 01 30 0D", "8E 00 00 00 10 48 49 50 45 52 44 52 49 56 45 20 48 55 42 2D 34");
 }
 
 /// Worked out by hand: vendor 03F2, type 000C, code 1, revision 1.2, status, serial 4711 = 1267, "HIPERDRIVE SINGLE" has 17
@@ -135,10 +135,10 @@ const IDENTITY: &str =
 fn identity_is_reported_over_tcp_udp_and_cip() {
     let mut host = Host::new("");
     host.target.listen(SocketAddrV4::new(Ipv4Addr::new(192, 168, 1, 17), 44818));
-    host.asks("01 02 20 01 24 01", &format!("81 00 00 00 {IDENTITY}"));
-    host.asks("0E 03 20 01 24 01 30 01", "8E 00 00 00 F2 03");
-    host.asks("0E 03 20 01 24 01 30 08", "8E 00 14 00");
-    host.asks("10 03 20 01 24 01 30 01 00 00", "90 00 0E 00");
+    host.is_asking("01 02 20 01 24 01", &format!("81 00 00 00 {IDENTITY}"));
+    host.is_asking("0E 03 20 01 24 01 30 01", "8E 00 00 00 F2 03");
+    host.is_asking("0E 03 20 01 24 01 30 08", "8E 00 14 00");
+    host.is_asking("10 03 20 01 24 01 30 01 00 00", "90 00 0E 00");
     let item = format!("01 00 00 02 AF 12 C0 A8 01 11 00 00 00 00 00 00 00 00 {IDENTITY} 03");
     // 2 + 16 + 32 + 1 bytes.
     let expected = format!("01 00 0C 00 33 00 {item}");
@@ -182,48 +182,48 @@ fn other_commands_get_a_status_or_no_reply() {
     host.target.connect(host.now);
     assert_eq!(host.frame(0x6F, &unconnected(&bytes("0E 03 20 65 24 01 30 6B"))).map(|(s, _)| s), Some(0x64));
     host.register();
-    host.asks("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 00 00 00");
+    host.is_asking("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 00 00 00");
 }
 
 /// By ODVA: attribute 5 can be set only after attribute 3 is stored addresses.
 #[test]
 fn network_settings_can_be_written() {
     let mut host = Host::new("switch=17");
-    host.asks("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
+    host.is_asking("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
     // 192.168.1.17, 255.255.255.0 and nothing else, low byte first; an empty name.
     let fixed = "11 01 A8 C0 00 FF FF FF 00 00 00 00 00 00 00 00 00 00 00 00 00 00";
-    host.asks("0E 03 20 F5 24 01 30 05", &format!("8E 00 00 00 {fixed}"));
+    host.is_asking("0E 03 20 F5 24 01 30 05", &format!("8E 00 00 00 {fixed}"));
     // 10.0.0.5, 255.0.0.0, 10.0.0.1, no servers, "plant".
     let wanted = "05 00 00 0A 00 00 00 FF 01 00 00 0A 00 00 00 00 00 00 00 00 05 00 70 6C 61 6E 74 00";
-    host.asks(&format!("10 03 20 F5 24 01 30 05 {wanted}"), "90 00 0C 00");
-    host.asks("10 03 20 F5 24 01 30 03 03 00 00 00", "90 00 09 00");
-    host.asks("10 03 20 F5 24 01 30 03 00 00", "90 00 13 00");
-    host.asks("10 03 20 F5 24 01 30 03 00 00 00 00", "90 00 00 00");
-    host.asks(&format!("10 03 20 F5 24 01 30 05 {wanted}"), "90 00 00 00");
-    host.asks("0E 03 20 F5 24 01 30 05", &format!("8E 00 00 00 {wanted}"));
-    host.asks("0E 03 20 F5 24 01 30 04", "8E 00 00 00 02 00 20 F6 24 01");
-    host.asks("0E 03 20 F6 24 01 30 03", "8E 00 00 00 02 00 00 00 12 67");
+    host.is_asking(&format!("10 03 20 F5 24 01 30 05 {wanted}"), "90 00 0C 00");
+    host.is_asking("10 03 20 F5 24 01 30 03 03 00 00 00", "90 00 09 00");
+    host.is_asking("10 03 20 F5 24 01 30 03 00 00", "90 00 13 00");
+    host.is_asking("10 03 20 F5 24 01 30 03 00 00 00 00", "90 00 00 00");
+    host.is_asking(&format!("10 03 20 F5 24 01 30 05 {wanted}"), "90 00 00 00");
+    host.is_asking("0E 03 20 F5 24 01 30 05", &format!("8E 00 00 00 {wanted}"));
+    host.is_asking("0E 03 20 F5 24 01 30 04", "8E 00 00 00 02 00 20 F6 24 01");
+    host.is_asking("0E 03 20 F6 24 01 30 03", "8E 00 00 00 02 00 00 00 12 67");
     // −3 restores all factory settings.
-    host.asks("10 03 20 64 24 01 30 2F FD FF", "90 00 00 00");
-    host.asks("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
+    host.is_asking("10 03 20 64 24 01 30 2F FD FF", "90 00 00 00");
+    host.is_asking("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
 }
 
 /// Unconnected_Send and a connection of class 3, as clients of controllers use them.
 #[test]
 fn wrapped_and_connected_messages_are_answered() {
     let mut host = Host::new("position=163840");
-    host.asks("52 02 20 06 24 01 0A 05 08 00 0E 03 20 65 24 01 30 6B 00 00", "8E 00 00 00 00 80 02 00");
-    host.asks("52 02 20 06 24 01 0A 05 09 00 10 03 20 65 24 01 30 98 01 00 01 00 01 00", "90 00 00 00");
-    host.asks("52 02 20 06 24 01 0A 05 09 00 0E 03", "D2 00 13 00");
+    host.is_asking("52 02 20 06 24 01 0A 05 08 00 0E 03 20 65 24 01 30 6B 00 00", "8E 00 00 00 00 80 02 00");
+    host.is_asking("52 02 20 06 24 01 0A 05 09 00 10 03 20 65 24 01 30 98 01 00 01 00 01 00", "90 00 00 00");
+    host.is_asking("52 02 20 06 24 01 0A 05 09 00 0E 03", "D2 00 13 00");
     let open = "54 02 20 06 24 01 0A 05 00 00 00 00 27 04 19 71 27 04 09 10 09 10 19 71 07 00 00 00 01 40 20 00 F4 43 \
                 01 40 20 00 F4 43 A3 02 20 02 24 01";
     let opened = "D4 00 00 00 01 00 02 00 27 04 19 71 27 04 09 10 09 10 19 71 01 40 20 00 01 40 20 00 00 00";
-    host.asks(open, opened);
-    host.asks(open, "D4 00 01 01 00 01 27 04 09 10 09 10 19 71 00 00");
+    host.is_asking(open, opened);
+    host.is_asking(open, "D4 00 01 01 00 01 27 04 09 10 09 10 19 71 00 00");
     let message = "00 00 00 00 00 00 02 00 A1 00 04 00 01 00 02 00 B1 00 0A 00 2A 00 0E 03 20 65 24 01 30 6B";
     let expected = "00 00 00 00 00 00 02 00 A1 00 04 00 27 04 19 71 B1 00 0A 00 2A 00 8E 00 00 00 00 80 02 00";
     assert_eq!(host.frame(0x70, &bytes(message)).map(|(s, data)| (s, hex(&data))), Some((0, expected.to_owned())));
-    host.asks(
+    host.is_asking(
         "4E 02 20 06 24 01 0A 05 27 04 09 10 09 10 19 71 02 00 20 02 24 01",
         "CE 00 00 00 27 04 09 10 09 10 19 71 00 00",
     );

@@ -13,29 +13,29 @@ fn get(host: &mut Host) -> Option<(u32, Vec<u8>)> {
 fn saved_values_are_kept_and_unsaved_ones_lost() {
     let mut host = Host::new("");
     let (get, set) = ("0E 03 20 65 24 01 30 A6", "10 03 20 65 24 01 30 A6 C8 00");
-    host.asks(set, "90 00 00 00");
+    host.is_asking(set, "90 00 00 00");
     host.target.power_cycle();
     assert_eq!(host.frame(0x6F, &unconnected(&bytes(get))).map(|(status, _)| status), Some(0x64));
     host.register();
-    host.asks(get, "8E 00 00 00 5E 01");
-    host.asks(set, "90 00 00 00");
-    host.asks(SAVE, "90 00 00 00");
+    host.is_asking(get, "8E 00 00 00 5E 01");
+    host.is_asking(set, "90 00 00 00");
+    host.is_asking(SAVE, "90 00 00 00");
     host.wait(200);
     host.target.power_cycle();
     host.register();
-    host.asks(get, "8E 00 00 00 C8 00");
+    host.is_asking(get, "8E 00 00 00 C8 00");
     // −1 and −2 concern the adapter's own parameters; 166 belongs to the drive.
     for recall in ["10 03 20 64 24 01 30 2F FF FF", "10 03 20 64 24 01 30 2F FE FF"] {
-        host.asks(recall, "90 00 00 00");
+        host.is_asking(recall, "90 00 00 00");
         host.wait(200);
-        host.asks(get, "8E 00 00 00 C8 00");
+        host.is_asking(get, "8E 00 00 00 C8 00");
     }
     // −3 saves as well.
-    host.asks("10 03 20 64 24 01 30 2F FD FF", "90 00 00 00");
+    host.is_asking("10 03 20 64 24 01 30 2F FD FF", "90 00 00 00");
     host.wait(200);
     host.target.power_cycle();
     host.register();
-    host.asks(get, "8E 00 00 00 5E 01");
+    host.is_asking(get, "8E 00 00 00 5E 01");
     assert_eq!(host.target.with(|station| station.stores()), 2);
 }
 
@@ -43,14 +43,14 @@ fn saved_values_are_kept_and_unsaved_ones_lost() {
 #[test]
 fn power_can_fail_during_a_save() {
     let mut host = Host::new("fault=die-in-store:2");
-    host.asks(SAVE, "90 00 00 00");
+    host.is_asking(SAVE, "90 00 00 00");
     host.wait(200);
     for set in ["10 03 20 65 24 01 30 98 00", "10 03 20 65 24 01 30 BA 0A 00"] {
-        host.asks(set, "90 00 00 00");
+        host.is_asking(set, "90 00 00 00");
     }
     assert_eq!(host.open(OPEN), OPENED);
-    host.asks(SAVE, "90 00 00 00");
-    host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
+    host.is_asking(SAVE, "90 00 00 00");
+    host.is_asking("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
     host.datagrams();
     host.wait(100);
     assert_eq!(get(&mut host), None);
@@ -61,11 +61,11 @@ fn power_can_fail_during_a_save() {
     host.target.connect(host.now);
     assert_eq!(get(&mut host).map(|(status, _)| status), Some(0x64));
     host.register();
-    host.asks("0E 03 20 65 24 01 30 98", "8E 00 00 00 00");
-    host.asks("0E 03 20 65 24 01 30 BA", "8E 00 00 00 14 00");
-    host.asks(SAVE, "90 00 00 00");
+    host.is_asking("0E 03 20 65 24 01 30 98", "8E 00 00 00 00");
+    host.is_asking("0E 03 20 65 24 01 30 BA", "8E 00 00 00 14 00");
+    host.is_asking(SAVE, "90 00 00 00");
     host.wait(200);
-    host.asks(GET_107, "8E 00 00 00 00 00 00 00");
+    host.is_asking(GET_107, "8E 00 00 00 00 00 00 00");
 }
 
 /// After this number of frames and packets it neither answers nor receives: its drives lose their master.

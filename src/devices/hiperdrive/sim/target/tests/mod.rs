@@ -96,7 +96,7 @@ impl Host {
     }
 
     #[track_caller]
-    fn asks(&mut self, request: &str, reply: &str) {
+    fn is_asking(&mut self, request: &str, reply: &str) {
         assert_eq!(self.items(request), reply, "{request}");
     }
 

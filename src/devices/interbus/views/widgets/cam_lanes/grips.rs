@@ -101,7 +101,7 @@ impl LanePainter<'_> {
         let id = self.base.with("edge").with(hold);
         let response = self.ui.interact(rect, id, self.sense(shown, true));
         let label = words::edge(lane, edge);
-        let mut event = self.model.tell_edge(self.ui, self.theme, &response, hold, &label);
+        let mut event = self.model.announce_edge(self.ui, self.theme, &response, hold, &label);
         event = event.or(self.model.keys(self.ui, &response, hold, self.apart()));
         if response.clicked() || response.drag_started() {
             response.request_focus();
@@ -156,11 +156,11 @@ impl LanePainter<'_> {
         let (view, range) = (self.place.view, self.model.chart.range);
         let (first, last) = (f64::from(stretch.first), f64::from(stretch.last) + 1.0);
         let is_out = last < view.first() || first > view.first() + view.span();
-        let moved = response.gained_focus() || response.has_focus() && is_out && self.moved_by_key();
+        let moved = response.gained_focus() || response.has_focus() && is_out && self.has_moved_by_key();
         (moved && is_out).then(|| CamEvent::Viewed(view.panned(first - view.first() - view.span() / 2.0, range)))
     }
 
-    fn moved_by_key(&self) -> bool {
+    fn has_moved_by_key(&self) -> bool {
         use egui::Key::{ArrowLeft, ArrowRight};
         self.ui.input(|input| [ArrowLeft, ArrowRight].into_iter().any(|key| input.key_released(key)))
     }
@@ -181,6 +181,6 @@ impl LanePainter<'_> {
         let pressed = || self.ui.input(|input| input.pointer.press_origin()).map(|pos| self.place.position(pos.x));
         let from = own.map(|drag| drag.from).or_else(pressed).unwrap_or(at);
         let to = own.and_then(|drag| drag.to);
-        self.model.dragged(self.ui, self.base, response, Drag { hold, from, at, to }, &self.snap())
+        self.model.drag_result(self.ui, self.base, response, Drag { hold, from, at, to }, &self.snap())
     }
 }

@@ -17,7 +17,7 @@ const NUMBER: f32 = 18.0;
 const LAMP: f32 = 34.0;
 
 impl LanePainter<'_> {
-    pub(super) fn heads(&self) -> Option<CamEvent> {
+    pub(super) fn draw_heads(&self) -> Option<CamEvent> {
         let lamps = self.model.chart.lamps(self.model.position, self.model.own);
         let mut event = None;
         for (lane, lamp) in self.shown.lanes.iter().zip(lamps) {

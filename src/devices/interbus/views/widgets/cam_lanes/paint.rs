@@ -107,7 +107,7 @@ impl LanePainter<'_> {
                 ];
                 painter.extend(Shape::dashed_line(&path, stroke, 3.0, 3.0));
             }
-            self.over_the_end(painter, lane, bar, stretch.first == 0, stretch.last + 1 == range);
+            self.draw_wrapped_part(painter, lane, bar, stretch.first == 0, stretch.last + 1 == range);
         }
         if lane.beyond {
             let lane = place.lane(lane.cam).shrink2(Vec2::new(0.0, 3.0));
@@ -119,7 +119,7 @@ impl LanePainter<'_> {
     }
 
     /// Draws arrows on a cam that continues across the end of the range.
-    fn over_the_end(&self, painter: &Painter, lane: &Lane, bar: Rect, at_first: bool, at_last: bool) {
+    fn draw_wrapped_part(&self, painter: &Painter, lane: &Lane, bar: Rect, at_first: bool, at_last: bool) {
         if !lane.edges.is_some_and(|cam| cam.wraps()) {
             return;
         }
