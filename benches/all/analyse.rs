@@ -1,6 +1,6 @@
-//! Time to fit and analyse a capture of ten million samples (goal: 0.5 s), and to read a table of 100 MB (goal: 100 MB/s),
-//! each compared with a naive solution: a matrix of all samples solved by QR and an arc tangent for every sample; the lines
-//! of a text, split and parsed by the standard library.
+//! Time to fit and analyse a capture of ten million samples (goal: 0.5 s), and to read a table of 100 MB (goal: 100
+//! MB/s), each compared with a naive solution: a matrix of all samples solved by QR and an arc tangent for every
+//! sample; the lines of a text, split and parsed by the standard library.
 
 use crate::median;
 use std::f64::consts::TAU;

@@ -1,6 +1,6 @@
-//! Speed of decoding BiSS frames with their checksum (goal: 20 million per second on one core), compared with a checksum
-//! calculated bit by bit; and how many times faster than 20 000 frames per second the stream of an adapter is parsed and
-//! recorded.
+//! Speed of decoding BiSS frames with their checksum (goal: 20 million per second on one core), compared with a
+//! checksum calculated bit by bit; and how many times faster than 20 000 frames per second the stream of an adapter is
+//! parsed and recorded.
 //!
 //! `cargo bench -- biss`
 

@@ -1,6 +1,6 @@
-//! Time from the release of a jog to the stop word at the drive's socket (at most an interval and 5 ms), and the jitter of
-//! a cyclic connection while a window is drawn; each compared with a naive solution, a thread that sleeps an interval and
-//! then checks.
+//! Time from the release of a jog to the stop word at the drive's socket (at most an interval and 5 ms), and the jitter
+//! of a cyclic connection while a window is drawn; each compared with a naive solution, a thread that sleeps an
+//! interval and then checks.
 //!
 //! `cargo bench -- hiperdrive`; `HIPERDRIVE_RELEASES` (200) and `HIPERDRIVE_SECONDS` (20) set number and duration; for
 //! the naive solution a minute is enough.

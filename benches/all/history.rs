@@ -87,9 +87,9 @@ impl Naive {
     }
 }
 
-/// Measures both in turns, and then copies the same bytes into memory that the system has to provide first, which is the
-/// least cost of keeping them. The worst stall is the longest batch that is long in every round, which excludes other
-/// activity of the computer.
+/// Measures both in turns, and then copies the same bytes into memory that the system has to provide first, which is
+/// the least cost of keeping them. The worst stall is the longest batch that is long in every round, which excludes
+/// other activity of the computer.
 fn append(batch: usize) {
     let samples = 4_000_000;
     let batches = samples / batch;

@@ -1,5 +1,6 @@
-//! Cost of a frame of the plot panel: layout, reduction and tessellation of four lines of ten million samples, all visible,
-//! zoomed out and in, still and following; compared with egui_plot on the same samples. Prints figures without a verdict.
+//! Cost of a frame of the plot panel: layout, reduction and tessellation of four lines of ten million samples, all
+//! visible, zoomed out and in, still and following; compared with egui_plot on the same samples. Prints figures without
+//! a verdict.
 //!
 //! `cargo bench -- plot`
 

@@ -19,8 +19,8 @@ const LONGEST: f64 = 10.0;
 /// Settings bytes to poll with: 9600 and 38400, even, 44 bits.
 const SETTINGS: [u8; 2] = [0xE4, 0xE6];
 
-/// Returns the least time of 42h: a request of three characters, silence, processing, a reply of seven characters, silence;
-/// a character has 11 bits.
+/// Returns the least time of 42h: a request of three characters, silence, processing, a reply of seven characters,
+/// silence; a character has 11 bits.
 fn least_ms(baud: f64) -> f64 {
     (3.0 * 11.0 + 44.0 + 7.0 * 11.0 + 44.0) * 1000.0 / baud + PROCESSING
 }

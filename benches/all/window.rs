@@ -1,6 +1,6 @@
-//! Start-up time of the window, and its cost while open: the program compared with an empty window, both drawn in software;
-//! the time of a frame with forty million samples in the plot, and whether an adapter's stream of 20 000 frames per second
-//! is shown without loss. Needs a display, or Xvfb; prints a message if there is neither.
+//! Start-up time of the window, and its cost while open: the program compared with an empty window, both drawn in
+//! software; the time of a frame with forty million samples in the plot, and whether an adapter's stream of 20 000
+//! frames per second is shown without loss. Needs a display, or Xvfb; prints a message if there is neither.
 //!
 //! `cargo bench -- window`
 
@@ -70,8 +70,8 @@ pub(crate) fn run(parts: &[String]) {
 
 const STREAMED: Duration = Duration::from_secs(15);
 
-/// Runs the complete window with the position of a virtual BiSS encoder at the virtual adapter in its plot, as drawn when
-/// the adapter streams 20 000 frames per second.
+/// Runs the complete window with the position of a virtual BiSS encoder at the virtual adapter in its plot, as drawn
+/// when the adapter streams 20 000 frames per second.
 fn stream() {
     use encoder_studio::app::{Action, Environment, Studio, Tab, ThemeData};
     use encoder_studio::kinds::program;

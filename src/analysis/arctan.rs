@@ -12,8 +12,8 @@ pub const DEGREES: f64 = 360.0;
 pub struct Phase(f64);
 
 impl Phase {
-    /// Returns the phase of a position in periods, which is its fractional part for either sign, or `None` if the
-    /// number is not finite.
+    /// Returns the phase of a position in periods, which is the fractional part of a position of either sign. Returns
+    /// `None` if the position is not finite.
     pub fn of_periods(periods: f64) -> Option<Self> {
         // The remainder of -1e-20 rounds to 1.
         let phase = periods.rem_euclid(1.0);
@@ -30,7 +30,7 @@ impl Phase {
     }
 
     /// Returns which of the 2^`bits` steps in one period contains the phase, as an interpolating counter would. The
-    /// upper bits equal the step at a lower resolution; `bits` is limited to 32.
+    /// upper bits equal the step at a lower resolution, and `bits` is limited to 32.
     pub fn step(self, bits: u32) -> u32 {
         let bits = bits.min(32);
         let steps = 1_u64 << bits;
@@ -38,15 +38,16 @@ impl Phase {
         ((self.0 * steps as f64) as u64).min(steps - 1) as u32
     }
 
-    /// Returns the nearest of the 2^`bits` steps in one period, wrapping to 0 after the last. `bits` is limited to 32.
+    /// Returns the nearest of the 2^`bits` steps in one period, wrapping to 0 after the last step. `bits` is limited to
+    /// 32.
     pub fn nearest_step(self, bits: u32) -> u32 {
         let steps = 1_u64 << bits.min(32);
         ((self.0 * steps as f64).round() as u64 % steps) as u32
     }
 }
 
-/// Returns the exact phase of a pair of offset-free voltages, or `None` if there is no signal: both voltages are zero
-/// or one is not a number.
+/// Returns the exact phase of a pair of offset-free voltages, or `None` without a signal, which means that both
+/// voltages are zero or one is not a number.
 pub fn exact(sine: f64, cosine: f64) -> Option<Phase> {
     if sine == 0.0 && cosine == 0.0 { None } else { Phase::of_periods(sine.atan2(cosine) / TAU) }
 }
@@ -56,17 +57,17 @@ pub fn exact(sine: f64, cosine: f64) -> Option<Phase> {
 pub struct OctantTable(Vec<f64>);
 
 impl OctantTable {
-    /// Number of intervals sufficient according to the manual; the largest error is 1/79 255 of a period.
+    /// Number of intervals that is sufficient according to the manual. The largest error is 1/79 255 of a period.
     pub const INTERVALS: usize = 32;
 
-    /// Creates a table with the given number of intervals, at least one.
+    /// Creates a table with the given number of intervals, which is at least one.
     pub fn new(intervals: usize) -> Self {
         let intervals = intervals.max(1);
         OctantTable((0..=intervals).map(|node| (node as f64 / intervals as f64).atan()).collect())
     }
 
-    /// Returns the phase according to the table, or `None` if there is no signal: both voltages are zero or one is not
-    /// finite.
+    /// Returns the phase according to the table, or `None` without a signal, which means that both voltages are zero or
+    /// one is not finite.
     pub fn phase(&self, sine: f64, cosine: f64) -> Option<Phase> {
         let (a, b) = (sine.abs(), cosine.abs());
         if (a == 0.0 && b == 0.0) || !a.is_finite() || !b.is_finite() {
@@ -85,7 +86,7 @@ impl OctantTable {
         Phase::of_periods(angle / TAU)
     }
 
-    /// Returns the largest error of the linear interpolation between two nodes, in radians: h²/8 · 3√3/8.
+    /// Returns the largest error of linear interpolation between two nodes, in radians, which is h²/8 · 3√3/8.
     pub fn largest_error_rad(&self) -> f64 {
         let spacing = 1.0 / (self.0.len() - 1) as f64;
         spacing * spacing / 8.0 * (3.0 * 3.0_f64.sqrt() / 8.0)
@@ -111,8 +112,8 @@ impl Default for OctantTable {
 mod tests {
     use super::*;
 
-    /// Section 3: sine, cosine, exact degrees, table degrees, phase, the phase's five upper bits, nearest of 65 536
-    /// steps.
+    /// Values of section 3: sine, cosine, exact degrees, table degrees, phase, the phase's five upper bits, nearest of
+    /// 65 536 steps.
     const GOLDEN: [(f64, f64, f64, f64, f64, u32, u32); 9] = [
         (0.0, 0.5, 0.0, 0.0, 0.0, 0, 0x0000),
         (0.5, 0.0, 90.0, 90.0, 0.25, 8, 0x4000),

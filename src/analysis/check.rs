@@ -1,7 +1,7 @@
 //! Result of a device check: a list of steps, each with a verdict. The steps and their findings are defined by each
 //! kind of device.
 
-/// Outcome of a step; the worse verdict compares as greater.
+/// Outcome of a check step. A worse verdict compares as greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     Skipped,
@@ -20,7 +20,7 @@ pub struct StepResult<S, F> {
 }
 
 impl<S, F> StepResult<S, F> {
-    /// Creates the result of a step; its verdict is that of the worst finding, or good without findings.
+    /// Creates the result of a step. Its verdict is that of the worst finding, or good if there are no findings.
     pub(crate) fn of(step: S, findings: Vec<(Verdict, F)>) -> Self {
         let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
         StepResult { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
@@ -30,14 +30,14 @@ impl<S, F> StepResult<S, F> {
 /// Known wear of a device's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wear {
-    /// Counted write cycles, if known.
+    /// Counted write cycles, or `None` if unknown.
     pub seen: Option<u64>,
     pub warning: u64,
     pub limit: u64,
 }
 
 impl Wear {
-    /// Returns the verdict on the counted write cycles, or `None` if the count is unknown.
+    /// Returns the verdict on the counted write cycles and their number, or `None` if the count is unknown.
     pub(crate) fn judged(&self) -> Option<(Verdict, u64)> {
         let seen = self.seen?;
         let verdict = match seen {

@@ -19,12 +19,12 @@ pub struct SecondVector {
     /// Number of pole pairs derived from the movement, rounded; 0 if the shaft has moved by more than an electrical
     /// turn.
     pub pole_pairs: u32,
-    /// Ratio of the actual to the expected movement: 1 if all is well, negative if two phases are exchanged.
+    /// Ratio of the actual to the expected movement: 1 if correct, negative if two phases are exchanged.
     pub ratio: f64,
 }
 
 impl ElectricalAngle {
-    /// Creates an angle from electrical turns, dropping whole turns; `None` if the number is not finite.
+    /// Creates an angle from electrical turns, ignoring whole turns. Returns `None` if the number is not finite.
     pub fn from_turns(turns: f64) -> Option<Self> {
         const STEPS: f64 = 4_294_967_296.0;
         // 0.999… may round to a whole turn, which is equivalent to 0.
@@ -48,13 +48,14 @@ impl ElectricalAngle {
 }
 
 impl Motor {
-    /// Creates a motor from signal periods per revolution and pole pairs; `None` if either is zero.
+    /// Creates a motor with the given numbers of signal periods per revolution and pole pairs. Returns `None` if either
+    /// is zero.
     pub const fn new(periods: u32, pole_pairs: u32) -> Option<Self> {
         if periods == 0 || pole_pairs == 0 { None } else { Some(Motor { periods, pole_pairs }) }
     }
 
     /// Returns the offset to store (method 1), from the fine position in periods at which the shaft rests in a static
-    /// vector; `None` if the position is not finite.
+    /// vector. Returns `None` if the position is not finite.
     pub fn offset(&self, fine_periods: f64) -> Option<ElectricalAngle> {
         ElectricalAngle::from_turns(f64::from(self.pole_pairs) * self.revolutions(fine_periods))
     }
@@ -75,8 +76,8 @@ impl Motor {
     }
 
     /// Evaluates the shaft's movement, in periods, from one static vector to another that is `electrical_turns` ahead.
-    /// The distance must be below ½, or the shaft may turn the other way. `None` if the shaft has not moved or the
-    /// distance is zero.
+    /// The distance must be below ½, or the shaft may turn the other way. Returns `None` if the shaft has not moved or
+    /// the distance is zero.
     pub fn second_vector(&self, moved_periods: f64, electrical_turns: f64) -> Option<SecondVector> {
         let moved = moved_periods / f64::from(self.periods);
         let ratio = moved * f64::from(self.pole_pairs) / electrical_turns;
@@ -85,15 +86,15 @@ impl Motor {
         sensible.then_some(SecondVector { pole_pairs: pole_pairs as u32, ratio })
     }
 
-    /// Converts periods to the position within one revolution; whole revolutions, multiplied by the pole pairs, would
-    /// cost digits of the fraction.
+    /// Converts periods to the position within one revolution. Whole revolutions are dropped because they would cost
+    /// digits of the fraction.
     fn revolutions(&self, periods: f64) -> f64 {
         periods.rem_euclid(f64::from(self.periods)) / f64::from(self.periods)
     }
 }
 
 /// Returns the value for command 43h that sets the present position to period `period` (method 2). Its five lower bits
-/// are the upper bits of the phase, as the encoder requires. `None` beyond 2²⁷ periods.
+/// are the upper bits of the phase, as the encoder requires. Returns `None` beyond 2²⁷ periods.
 pub fn preset_position(period: u32, phase: Phase) -> Option<u32> {
     if period >> 27 == 0 { Some(period << 5 | phase.step(5)) } else { None }
 }

@@ -4,24 +4,24 @@
 //! A step of more than one and a half usual steps is a gap (U). The times in a table have few digits, so that even
 //! samples can have steps of two lengths: a difference of one digit is not a gap.
 
-/// Multiple of the usual step beyond which a step is a gap.
+/// Multiple of the usual time step above which a step is considered a gap.
 const GAP: f64 = 1.5;
-/// Approximate number of steps sampled to obtain the usual step, their median.
+/// Approximate number of time steps sampled to obtain the usual step, which is their median.
 const SAMPLED: usize = 1 << 14;
-/// Relative deviation from the usual step within which a step counts as equal.
+/// Relative deviation from the usual time step within which a step counts as equal.
 const SAME: f64 = 0.01;
-/// Share of equal steps below which differences are attributed to the limited digits of the times.
+/// Share of equal time steps below which differences are attributed to the limited digits of the times.
 const MOSTLY: f64 = 0.9;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Continuity {
-    /// Missing samples; `None` if the capture has no gap or no times.
+    /// Missing samples, or `None` if the capture has no gap or no times.
     pub missing: Option<Missing>,
-    /// First sample with a time earlier than that of the previous sample, counted from 0.
+    /// Index of the first sample with a time earlier than that of the previous sample, counted from 0.
     pub back: Option<usize>,
-    /// Total time in continuous sections, in seconds; `None` without times.
+    /// Total time in continuous sections in seconds, or `None` without times.
     pub stretches_s: Option<f64>,
-    /// Indices of the samples that begin a section, except the first sample.
+    /// Indices of the samples that begin a section, excluding the first sample.
     pub(super) breaks: Vec<usize>,
 }
 
@@ -32,9 +32,9 @@ pub struct Missing {
 }
 
 impl Continuity {
-    /// Examines times given in seconds.
+    /// Examines the continuity of times given in seconds.
     pub fn of(times_s: &[f64]) -> Self {
-        let Some(longest_even) = longest_even(times_s) else { return Continuity::default() };
+        let Some(longest_even) = longest_even_step(times_s) else { return Continuity::default() };
         let mut continuity = Continuity::default();
         let mut lost_s = 0.0;
         for (before, pair) in times_s.windows(2).enumerate() {
@@ -59,8 +59,8 @@ impl Continuity {
     }
 }
 
-/// Returns the longest step that is not a gap, in seconds, or `None` if no time passes.
-fn longest_even(times_s: &[f64]) -> Option<f64> {
+/// Returns the longest time step that is not a gap, in seconds, or `None` if no time passes.
+fn longest_even_step(times_s: &[f64]) -> Option<f64> {
     // An odd stride does not lock onto a pattern of length 2ⁿ.
     let stride = (times_s.len() / SAMPLED) | 1;
     let mut steps: Vec<f64> = times_s.windows(2).step_by(stride).filter_map(step).collect();
@@ -83,7 +83,7 @@ fn step(pair: &[f64]) -> Option<f64> {
     }
 }
 
-/// Returns the weight of the last decimal digit of the times, in seconds; 0 below a nanosecond.
+/// Returns the weight of the last decimal digit of the times, in seconds, or 0 below a nanosecond.
 fn last_digit(times_s: &[f64], stride: usize) -> f64 {
     let is_whole = |value: f64| (value - value.round()).abs() <= 1e-3;
     let fits = |places: &i32| times_s.iter().step_by(stride).all(|time| is_whole(time * 10_f64.powi(*places)));

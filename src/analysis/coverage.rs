@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::ellipse::Ellipse;
 use super::outliers::kept;
 
-/// Path of the samples along their ellipse.
+/// Path of the samples along an ellipse and their distance from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
     /// Number of octants of the corrected angle that contain at least one sample, 0 to 8.
@@ -25,7 +25,7 @@ pub struct Coverage {
     pub vector_v: (f64, f64),
 }
 
-/// Angle accumulated over periods: the quarters so far, and the vector within the current quarter.
+/// Angle accumulated over several periods, as the quarters so far and the vector within the current quarter.
 #[derive(Clone, Copy)]
 pub(super) struct Angle {
     quarters: i64,
@@ -68,7 +68,7 @@ struct AnglePath {
     bottom: Angle,
     high: Angle,
     low: Angle,
-    /// Angle at the start of the section; `turned` is the angle at the last reversal, `here` the current angle.
+    /// Angle at the start of the section. `turned` is the angle at the last reversal, and `here` is the current angle.
     begun: Angle,
     turned: Angle,
     here: Angle,
@@ -86,7 +86,7 @@ enum Direction {
 }
 
 impl AnglePath {
-    /// Number of quarter periods that an angle must move back to count as a reversal, so that noise does not.
+    /// Number of quarter periods that an angle must move back to count as a reversal, so that noise does not count.
     const BACK: i64 = 3;
 
     fn from(first: Angle) -> Self {
@@ -118,7 +118,7 @@ impl AnglePath {
         }
     }
 
-    /// Records a direction that has become apparent, or has changed since `at`.
+    /// Records a direction that has become apparent or has changed at the angle `at`.
     fn turn_at(&mut self, at: Angle, direction: Direction) {
         self.keep_ends();
         if self.direction != Direction::Unknown {
@@ -161,8 +161,8 @@ fn cut(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize
     starts.zip(inside.iter().copied().chain(std::iter::once(part.end))).map(|(start, end)| start..end)
 }
 
-/// Returns the quarter, 0 to 3, counted in the direction of increasing angle. Optimised for speed: comparisons without
-/// branches.
+/// Returns the quarter, 0 to 3, counted in the direction of increasing angle. Optimised for speed by comparisons
+/// without branches.
 fn quarter(sine: f64, cosine: f64) -> i32 {
     let upper = sine > 0.0 || (sine == 0.0 && cosine >= 0.0);
     let right = cosine > 0.0 || (cosine == 0.0 && sine <= 0.0);
@@ -181,8 +181,8 @@ impl Coverage {
         Coverage::without(sine, cosine, &[], &[], ellipse)
     }
 
-    /// Follows the samples in order, skipping those in `left_out`, a list of ordered ranges that do not overlap. The
-    /// path of the angle to each sample in `breaks` is unknown.
+    /// Follows the samples in order, skipping the ranges in `left_out`, which are ordered and do not overlap. The path
+    /// of the angle to each sample in `breaks` is unknown.
     pub(super) fn without(
         sine: &[f64],
         cosine: &[f64],
@@ -190,7 +190,7 @@ impl Coverage {
         breaks: &[usize],
         ellipse: &Ellipse,
     ) -> Option<Self> {
-        /// Number of squares summed separately to reduce rounding errors.
+        /// Number of squares that are summed separately to reduce rounding errors.
         const BLOCK: usize = 4096;
         let correction = ellipse.correction();
         let length = sine.len().min(cosine.len());
@@ -305,7 +305,7 @@ mod tests {
         assert_eq!((told.reversals, told.octants), (0, 8), "which way it went in between is not known");
     }
 
-    /// Section 7: r runs from 0.44595 to 0.53764 V.
+    /// The amplitude vector r runs from 0.44595 to 0.53764 V (section 7).
     #[test]
     fn the_amplitude_vector_matches_section_7() {
         let reference = Ellipse { phase_error_rad: 3.0_f64.to_radians(), ..ELLIPSE };

@@ -38,13 +38,13 @@ pub enum FitError {
     Constant,
     #[error("the {} channel does not change", .0.word())]
     Dead(Channel),
-    /// Both channels carry the same signal, or one carries the inverse of the other.
+    /// Both channels carry the same signal, or one channel carries the inverse of the other.
     #[error("the points lie on a line")]
     Line,
     /// The input has fewer than six distinct points, or more than one ellipse passes through them.
     #[error("the points do not tell one ellipse from another")]
     Ambiguous,
-    /// The best curve is a parabola or a hyperbola, or the points do not keep clear of the centre.
+    /// The best-fitting curve is a parabola or a hyperbola, or the points are too close to the centre.
     #[error("the points do not lie on an ellipse")]
     NotAnEllipse,
 }
@@ -57,7 +57,7 @@ pub enum Channel {
 
 pub const LEAST_POINTS: usize = 6;
 
-/// Fraction of the other channel's range below which a channel is dead; noise may be that large.
+/// Fraction of the other channel's range below which a channel is considered dead. Noise may be that large.
 const DEAD: f64 = 0.05;
 /// Ratio of the variance across a line to the variance along it, below which the points lie on the line.
 const THIN: f64 = 1e-4;
@@ -87,7 +87,7 @@ pub struct Conic {
 }
 
 impl Conic {
-    /// Returns the ellipse by Heydemann's formulae; `None` if the curve is not an ellipse around the origin.
+    /// Returns the ellipse by Heydemann's formulae, or `None` if the curve is not an ellipse around the origin.
     pub fn ellipse(&self) -> Option<Ellipse> {
         let Conic { a, b, c, d, e } = *self;
         if a <= 0.0 || b <= 0.0 || c * c >= 4.0 * a * b {
@@ -112,8 +112,8 @@ impl Conic {
 }
 
 impl Ellipse {
-    /// Fits an ellipse to points given as sine and cosine in volts; surplus values of the longer slice are ignored.
-    /// Takes two passes over the samples.
+    /// Fits an ellipse to points given as sine and cosine in volts, in two passes over the samples. Surplus values of
+    /// the longer slice are ignored.
     ///
     /// # Errors
     /// [`FitError`] if the points do not determine an ellipse. The caller must check that they cover the period.
@@ -124,7 +124,7 @@ impl Ellipse {
     /// Fits an ellipse to points given by their moments.
     ///
     /// # Errors
-    /// As for [`fit`](Self::fit).
+    /// The same as for [`fit`](Self::fit).
     pub fn of_moments(moments: &Moments) -> Result<Self, FitError> {
         if moments.count() < LEAST_POINTS {
             return Err(FitError::TooFew { points: moments.count() });
@@ -156,7 +156,8 @@ impl Ellipse {
         Ellipse { amplitude_v, offset_cosine_v: 0.0, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 }
     }
 
-    /// Returns the given number of points as (cosine, sine) in volts, with the first point repeated at the end.
+    /// Returns the given number of points of the outline as (cosine, sine) in volts, with the first point repeated at
+    /// the end.
     pub fn outline(&self, points: usize) -> Vec<(f64, f64)> {
         let point = |at: usize| {
             let (sine, cosine) = self.at(at as f64 / points as f64 * std::f64::consts::TAU);
@@ -195,14 +196,17 @@ impl Correction {
         (x * self.tan + self.scale * (sine - self.q), x)
     }
 
-    /// Returns the factors by which changes in the cosine and the sine affect the corrected sine; the corrected cosine
+    /// Returns the factors by which changes in the cosine and the sine affect the corrected sine. The corrected cosine
     /// changes by the same amount as the cosine.
     pub(super) fn stretch(&self) -> (f64, f64) {
         (self.tan, self.scale)
     }
 }
 
-/// Rejects points that enclose no area, with the reason.
+/// Rejects points that enclose no area.
+///
+/// # Errors
+/// Returns the reason why the points are rejected.
 fn check_not_flat(around_mean: &Moments) -> Result<(), FitError> {
     let (range_x, range_y) = around_mean.ranges();
     let most = range_x.max(range_y);
@@ -224,7 +228,7 @@ fn check_not_flat(around_mean: &Moments) -> Result<(), FitError> {
 
 /// Builds and solves the 5 × 5 normal equations, in the scale of the moments.
 fn solve(moments: &Moments) -> Result<Ellipse, FitError> {
-    /// Powers of x and y in the columns A to E.
+    /// Powers of x and y for the coefficients A to E.
     const POWERS: [(usize, usize); 5] = [(2, 0), (0, 2), (1, 1), (1, 0), (0, 1)];
     let power = |column: usize| POWERS.get(column).copied().unwrap_or_default();
     let normal = SMatrix::<f64, 5, 5>::from_fn(|row, column| {

@@ -15,7 +15,7 @@ pub struct InputFilter {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
-    /// Lag of the output in electrical degrees, 0 to 90.
+    /// Lag of the output behind the input in electrical degrees, 0 to 90.
     pub phase_deg: f64,
     /// Ratio of the output amplitude to the input amplitude, 0 to 1.
     pub gain: f64,
@@ -29,7 +29,7 @@ impl InputFilter {
 }
 
 impl Response {
-    /// Returns the lag in steps of the absolute position, 1/32 period each.
+    /// Returns the lag in steps of the absolute position of 1/32 period.
     pub fn lag_in_steps(&self) -> f64 {
         self.phase_deg / 360.0 * 32.0
     }

@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-/// Square in the plane of the cosine (to the right) and the sine (upwards).
+/// Square in the plane of the cosine (horizontal) and the sine (vertical).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Square {
     pub cosine_v: f64,
@@ -26,14 +26,14 @@ pub struct Density {
     bad: u64,
 }
 
-/// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts; (∞, 0) without samples.
+/// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts, or (∞, 0) without samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lengths {
     pub least_v: f64,
     pub most_v: f64,
 }
 
-/// Number of directions, 5° each, counted from the cosine axis towards the sine axis.
+/// Number of directions of 5° each, counted from the cosine axis towards the sine axis.
 pub const SECTORS: usize = 72;
 /// Maximum number of cells per side.
 pub const MOST_CELLS: usize = 2048;
@@ -59,7 +59,7 @@ impl Square {
 }
 
 impl Density {
-    /// Creates an empty picture of `side` × `side` cells, at least one and at most [`MOST_CELLS`] per side; `None` for
+    /// Creates an empty picture of `side` × `side` cells, limited to 1 to [`MOST_CELLS`] per side. Returns `None` for
     /// an empty square.
     pub fn new(square: Square, side: usize) -> Option<Self> {
         let Square { cosine_v, sine_v, half_v } = square;
@@ -84,7 +84,7 @@ impl Density {
         Some(density)
     }
 
-    /// Adds samples in volts; surplus values of one channel are ignored.
+    /// Adds samples in volts. Surplus values of the longer channel are ignored.
     pub fn add(&mut self, sine: &[f64], cosine: &[f64]) {
         let Square { cosine_v, sine_v, half_v } = self.square;
         let (left, bottom) = (cosine_v - half_v, sine_v - half_v);
@@ -129,7 +129,7 @@ impl Density {
         self.side
     }
 
-    /// Returns the number of samples in each cell, row by row in ascending order of sine; each row is in ascending
+    /// Returns the number of samples in each cell, row by row in ascending order of sine. Each row is in ascending
     /// order of cosine.
     pub fn counts(&self) -> &[u32] {
         &self.counts
@@ -145,12 +145,12 @@ impl Density {
     }
 
     /// Returns the number of samples that are not numbers.
-    pub fn bad(&self) -> u64 {
+    pub fn invalid_count(&self) -> u64 {
         self.bad
     }
 
-    /// Returns the shortest and longest vector in each of the [`SECTORS`] directions. The lengths are those of the
-    /// samples; near a border between two directions the cell decides.
+    /// Returns the shortest and longest vector in each of the [`SECTORS`] directions. The lengths are exact, but each
+    /// sample is assigned to the direction of its cell.
     pub fn lengths(&self) -> [Lengths; SECTORS] {
         self.lengths.map(|squares| Lengths { least_v: squares.least_v.sqrt(), most_v: squares.most_v.sqrt() })
     }
@@ -160,13 +160,13 @@ impl Lengths {
     const NONE: Lengths = Lengths { least_v: f64::INFINITY, most_v: 0.0 };
 }
 
-/// Returns the direction of a vector; at most `SECTORS` − 1.
+/// Returns the index of the direction of a vector, at most `SECTORS` − 1.
 fn sector(sine: f64, cosine: f64) -> usize {
     let share = (sine.atan2(cosine) / TAU).rem_euclid(1.0);
     ((share * SECTORS as f64) as usize).min(SECTORS - 1)
 }
 
-/// Returns the minimum and maximum of the finite values, or `None` without any.
+/// Returns the minimum and maximum of the finite values, or `None` if there are none.
 fn range(values: &[f64]) -> Option<(f64, f64)> {
     let finite = |value: f64| value.abs() < f64::INFINITY;
     let (groups, rest) = values.as_chunks::<4>();
@@ -211,7 +211,7 @@ mod tests {
             assert_eq!((found, density.outside()), (cell, u64::from(cell.is_none())), "{sine} {cosine}");
         }
         density.add(&[f64::NAN, 0.1, f64::INFINITY], &[0.1, f64::NAN, 0.1]);
-        assert_eq!((density.bad(), density.most()), (3, 0));
+        assert_eq!((density.invalid_count(), density.most()), (3, 0));
     }
 
     #[test]
@@ -256,7 +256,7 @@ mod tests {
     }
 
     proptest! {
-        /// However the samples are split, every sample is counted, and with a square around them none is outside.
+        /// Every sample is counted however the samples are split, and none is outside a square around them.
         #[test]
         fn every_sample_is_counted(samples in proptest::collection::vec((any::<f32>(), any::<f32>()), 1..300), cut in 0_usize..300) {
             let (sine, cosine): (Vec<f64>, Vec<f64>) =
@@ -267,7 +267,7 @@ mod tests {
                 density.add(&sine[..cut], &cosine[..cut]);
                 density.add(&sine[cut..], &cosine[cut..]);
                 let inside: u64 = density.counts().iter().map(|count| u64::from(*count)).sum();
-                prop_assert_eq!(inside + density.outside() + density.bad(), sine.len() as u64);
+                prop_assert_eq!(inside + density.outside() + density.invalid_count(), sine.len() as u64);
                 if square.half_v != 0.6 {
                     prop_assert_eq!(density.outside(), 0);
                 }

@@ -6,14 +6,14 @@ use super::ellipse::{Ellipse, FitError};
 
 /// Highest power.
 const ORDER: usize = 4;
-/// Number of powers in one row.
+/// Number of powers in a row of the table.
 const ROW: usize = ORDER + 1;
-/// Number of samples summed before their sums are added to the total: rounding errors grow with the square root of the
-/// number of blocks, not of samples.
+/// Number of samples summed before their sums are added to the total. Rounding errors then grow with the square root of
+/// the number of blocks, not of samples.
 const BLOCK: usize = 4096;
-/// Number of parallel sums, which lets the processor perform several additions at a time.
+/// Number of parallel sums, so that the processor can perform several additions at a time.
 const LANES: usize = 2;
-/// (power of x, power of y) of each sum.
+/// Powers of x and y for each sum.
 const POWERS: [(usize, usize); 14] =
     [(1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3), (4, 0), (3, 1), (2, 2), (1, 3), (0, 4)];
 
@@ -24,7 +24,7 @@ pub struct Scale {
     unit: f64,
 }
 
-/// Sums of xⁱ·yʲ with i + j ≤ 4; x is the cosine channel, y the sine channel.
+/// Sums of xⁱ·yʲ with i + j ≤ 4, where x is the cosine channel and y the sine channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moments {
     scale: Scale,
@@ -55,7 +55,7 @@ impl Moments {
         Moments { scale, count: 0, sums: [0.0; ROW * ROW], least, most }
     }
 
-    /// Returns the sums over all samples at the best scale; surplus values of one channel are ignored.
+    /// Returns the sums over all samples at the best scale. Surplus values of the longer channel are ignored.
     ///
     /// # Errors
     /// [`FitError::NotFinite`] with the index of the first sample that is not finite.
@@ -69,7 +69,7 @@ impl Moments {
         Ok(moments)
     }
 
-    /// Adds samples in volts; surplus values of one channel are ignored.
+    /// Adds samples in volts. Surplus values of the longer channel are ignored.
     ///
     /// # Errors
     /// [`FitError::NotFinite`] if a sample is not finite; the moments are then unchanged, except for whole blocks
@@ -104,7 +104,7 @@ impl Moments {
         self.count
     }
 
-    /// Returns the sum of xⁱ·yʲ in the unit of the scale; 0 beyond the fourth power.
+    /// Returns the sum of xⁱ·yʲ in the unit of the scale, or 0 beyond the fourth power.
     pub(super) fn sum(&self, i: usize, j: usize) -> f64 {
         if i + j > ORDER { 0.0 } else { self.sums.get(i * ROW + j).copied().unwrap_or(0.0) }
     }
@@ -124,8 +124,8 @@ impl Moments {
         self.moved_by(self.sum(1, 0) / count, self.sum(0, 1) / count)
     }
 
-    /// Returns the moments of the samples with the origin moved to (x, y), given in the unit of the scale: (x − a)ⁱ·(y
-    /// − b)ʲ by the binomial theorem.
+    /// Returns the moments with the origin moved to (x, y), in the unit of the scale. (x − a)ⁱ·(y − b)ʲ is expanded by
+    /// the binomial theorem.
     pub(super) fn moved_by(&self, x: f64, y: f64) -> Moments {
         const BINOMIAL: [[f64; ROW]; ROW] = [
             [1.0, 0.0, 0.0, 0.0, 0.0],

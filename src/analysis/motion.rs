@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use super::Time;
 
-/// Rates of change computed from unwrapped positions.
+/// Calculates speed and acceleration from unwrapped positions.
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// Averaging window in nanoseconds, at least 1.
@@ -16,14 +16,15 @@ pub struct Motion {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rates {
-    /// Speed in steps/s, averaged over the last window and thus valid for its middle; `None` until a window has passed.
+    /// Speed in steps/s, averaged over the last window and thus valid for its middle, or `None` until a window has
+    /// passed.
     pub speed: Option<f64>,
-    /// Acceleration in steps/s² from the last two windows; `None` until two windows have passed.
+    /// Acceleration in steps/s² from the last two windows, or `None` until two windows have passed.
     pub acceleration: Option<f64>,
 }
 
 impl Motion {
-    /// Fraction (as a divisor) of a window below which close positions are not all kept, which limits the memory at any
+    /// Divisor of the window below which close positions are not all kept, which limits memory at any sample
     /// rate.
     const RESOLUTION: i64 = 1024;
 
@@ -32,12 +33,13 @@ impl Motion {
         Motion { window: window.max(1), recent: VecDeque::with_capacity(4 * Self::RESOLUTION as usize + 16) }
     }
 
-    /// Resets the averages; the next position is not connected with the previous one.
+    /// Resets the averages, so that the next position is not connected with the previous one.
     pub fn reset(&mut self) {
         self.recent.clear();
     }
 
-    /// Processes the next position in steps. A position that is not later than the previous one yields no rates.
+    /// Processes the next position in steps and returns the rates. A position that is not later than the previous one
+    /// yields no rates.
     pub fn next(&mut self, time: Time, steps: i64) -> Rates {
         if self.recent.back().is_some_and(|(before, _)| time <= *before) {
             return Rates::default();
@@ -57,7 +59,7 @@ impl Motion {
         Rates { speed, acceleration }
     }
 
-    /// Returns the newest position at or before `time`.
+    /// Returns the newest position at or before `time`, or `None` if there is none.
     fn before(&self, time: Time) -> Option<(Time, i64)> {
         let after = self.recent.partition_point(|(at, _)| *at <= time);
         self.recent.get(after.checked_sub(1)?).copied()
@@ -86,7 +88,7 @@ impl Motion {
     }
 }
 
-/// Returns the speed in steps/s between two positions, the earlier one first. The differences are exact before the
+/// Returns the speed in steps/s between two positions, the earlier of which is `from`. The differences are exact before
 /// division.
 fn slope(from: (Time, i64), to: (Time, i64)) -> f64 {
     to.1.saturating_sub(from.1) as f64 / to.0.seconds_since(from.0)

@@ -13,7 +13,7 @@ pub struct Nonlinearity {
     /// Reference angle and both parts of the deviation with the mean removed, in mechanical degrees; includes only
     /// samples surrounded by a whole period.
     pub curve: Vec<Deviation>,
-    /// Number of revolutions covered by the curve; INL applies to a whole revolution only from 1 on.
+    /// Number of revolutions covered by the curve. The INL applies to a whole revolution only if at least 1.
     pub revolutions: f64,
 }
 
@@ -29,7 +29,7 @@ pub struct Deviation {
 
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NonlinearityError {
-    /// The reference reverses or stands still at a sample.
+    /// The reference angle reverses or stands still.
     #[error("the reference does not run on at sample {index}")]
     NotMonotonic {
         /// Sample index, counted from 0.
@@ -43,7 +43,7 @@ pub enum NonlinearityError {
     NotFinite,
 }
 
-/// Compares measured and reference angles in mechanical degrees, both unwrapped; `periods` is the number of signal
+/// Compares measured and reference angles in mechanical degrees, both unwrapped. `periods` is the number of signal
 /// periods per revolution.
 ///
 /// # Errors
@@ -86,7 +86,7 @@ pub fn nonlinearity(measured: &[f64], reference: &[f64], periods: u32) -> Result
 }
 
 /// Splits the error at each sample that is surrounded by a whole period. The mean over the period integrates the
-/// straight lines between the samples, so that their positions in the period make no difference.
+/// straight lines between samples, so the positions of the samples in the period make no difference.
 fn split(errors: &[f64], reference: &[f64], period_deg: f64, direction: f64) -> Vec<Deviation> {
     let start = reference.first().copied().unwrap_or(0.0);
     // Angles from the start, increasing in either direction of rotation.

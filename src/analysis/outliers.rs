@@ -11,35 +11,36 @@ use super::moments::{Moments, Scale};
 /// Samples excluded from a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outliers {
-    /// Ranges of outliers, by sample index from 0, in order; no two ranges touch.
+    /// Ordered ranges of outliers by sample index, counted from 0. No two ranges touch.
     pub stretches: Vec<Range<usize>>,
     pub count: usize,
     pub longest: usize,
-    /// Largest distance from the ellipse, in volts.
+    /// Largest distance of an outlier from the ellipse, in volts.
     pub farthest_v: f64,
     /// Ellipse through all samples and their coverage, or `None` if the samples do not determine an ellipse.
     pub all: Option<(Ellipse, Coverage)>,
 }
 
-/// Number of robust deviations beyond which a sample is left out: normally distributed noise exceeds it in one of 10¹⁵.
+/// Number of robust deviations above which a sample is left out. Normally distributed noise exceeds it in one of 10¹⁵
+/// samples.
 pub const DEVIATIONS: f64 = 8.0;
-/// Fraction of the amplitude within which a sample is never an outlier, however low the noise.
+/// Fraction of the amplitude within which a sample is never an outlier, however low the noise is.
 pub const LEAST_SHARE: f64 = 0.02;
-/// Share of samples above which deviating samples are not outliers but a property of the signal.
+/// Share of samples above which deviating samples are a property of the signal instead of outliers.
 pub const MOST: f64 = 0.05;
 /// Minimum number of samples required to recognise outliers.
 pub const LEAST_SAMPLES: usize = 50;
 
 /// Approximate number of evenly spread samples from which medians are taken.
 const SAMPLED: usize = 1 << 15;
-/// Maximum number of fits without outliers; fewer are needed once the outliers no longer change.
+/// Maximum number of fits without outliers. Fewer are needed once the outliers no longer change.
 const ROUNDS: usize = 4;
-/// Ratio of a normal distribution's deviation to the median of its distances from zero.
+/// Ratio of a normal distribution's standard deviation to the median of its distances from zero.
 const NORMAL: f64 = 1.4826;
-/// Median distance from an upright ellipse, as a fraction of its amplitude, beyond which the samples lie on no ellipse;
-/// a cloud has 0.3.
+/// Median distance from an upright ellipse, as a fraction of its amplitude, above which the samples lie on no ellipse.
+/// A cloud has 0.3.
 const UPRIGHT: f64 = 0.15;
-/// Fraction of the other channel's range below which a channel does not move.
+/// Fraction of the other channel's range below which a channel is considered constant.
 const DEAD: f64 = 0.05;
 
 pub(super) enum OutlierSearch {
@@ -102,13 +103,13 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     OutlierSearch::Outliers(ellipse, outliers)
 }
 
-/// Returns the channel that does not move, apart from single samples, or `None` if both move.
+/// Returns the channel that is constant apart from single samples, or `None` if both channels move.
 pub(super) fn dead_channel(sine: &[f64], cosine: &[f64]) -> Option<Channel> {
     let few = sine.len().min(cosine.len()) < LEAST_SAMPLES;
     boxed(sine, cosine).err().flatten().filter(|_| !few)
 }
 
-/// Returns the remaining ranges of `length` samples after removing `left_out`.
+/// Returns the remaining ranges of `length` samples after removing the ranges in `left_out`.
 pub(crate) fn kept(length: usize, left_out: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
     let starts = std::iter::once(0).chain(left_out.iter().map(|stretch| stretch.end));
     let ends = left_out.iter().map(|stretch| stretch.start).chain(std::iter::once(length));
@@ -123,10 +124,12 @@ fn fit_without(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale: S
     Ellipse::of_moments(&moments)
 }
 
-/// Returns an upright ellipse derived from quantiles, which a few samples do not affect. The error holds the constant
-/// channel, or `None` if both are constant.
+/// Returns an upright ellipse derived from quantiles, which a few samples do not affect.
+///
+/// # Errors
+/// Returns the constant channel, or `None` if both channels are constant.
 fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
-    /// Share of samples beyond each quantile: for a tenth of the time, a sine is outside cos(0.05·π) of its amplitude.
+    /// Share of samples beyond each quantile. For a tenth of the time, a sine is outside cos(0.05·π) of its amplitude.
     const SHARE: f64 = 0.05;
     let reach = (SHARE * std::f64::consts::PI).cos();
     let channel = |values: &[f64]| {
@@ -151,7 +154,7 @@ fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
     }
 }
 
-/// Returns the median distance from an ellipse, in volts on its corrected circle.
+/// Returns the median distance of the samples from an ellipse, in volts on its corrected circle.
 fn median_deviation(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
     let correction = ellipse.correction();
     let off = |(y, x): (&f64, &f64)| {
@@ -170,7 +173,7 @@ fn rank_of(values: &mut [f64], rank: usize) -> f64 {
 
 /// Returns the ranges of samples farther from the ellipse than `limit` volts.
 fn beyond(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) -> Vec<Range<usize>> {
-    /// Number of samples checked together; usually none of them is an outlier.
+    /// Number of samples checked together. Usually, none of them is an outlier.
     const BLOCK: usize = 256;
     let correction = ellipse.correction();
     let squared = |volts: f64| volts * volts;

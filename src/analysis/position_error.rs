@@ -22,7 +22,7 @@ pub const HARMONICS: usize = 8;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionError {
-    /// Measured error in electrical degrees at [`POINTS`] equidistant angles; the mean is zero.
+    /// Measured error in electrical degrees at [`POINTS`] equidistant angles, with a mean of zero.
     pub raw_deg: Vec<f64>,
     /// Remaining error after correction, in electrical degrees at the same angles.
     pub corrected_deg: Vec<f64>,
@@ -31,26 +31,26 @@ pub struct PositionError {
     pub corrected_pp_deg: f64,
 }
 
-/// The basis against which the remaining error was measured.
+/// Basis on which the remaining error was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Basis {
-    /// A steady motion: the deviation of the samples that the harmonics do not explain.
+    /// The motion was steady, so the error is the deviation of samples that the harmonics do not explain.
     Motion { noise_deg: f64 },
-    /// The distance from the ellipse, because the motion was not steady, or the capture was too short.
+    /// The distance from the ellipse was used, because the motion was not steady or the capture was too short.
     Ellipse,
 }
 
 pub const POINTS: usize = 720;
 
-/// Sine and cosine of each harmonic.
+/// Number of terms: a sine and a cosine for each harmonic.
 const TERMS: usize = 2 * HARMONICS;
 /// Number of periods in a segment, each of which is fitted with its own motion.
 const SEGMENT_PERIODS: f64 = 4.0;
 /// Maximum number of segments examined, which are distributed over the capture.
 const SEGMENTS: usize = 32;
-/// Maximum number of samples per segment; larger segments are thinned out.
+/// Maximum number of samples per segment. Larger segments are thinned out.
 const SEGMENT_SAMPLES: usize = 4096;
-/// Fewest samples for a fit of the motion with all harmonics.
+/// Minimum number of samples for a fit of the motion with all harmonics.
 const LEAST_SAMPLES: usize = 3 * TERMS;
 /// Minimum number of periods, below which harmonics and motion cannot be separated.
 const LEAST_PERIODS: f64 = 0.95;
@@ -62,7 +62,7 @@ type Terms = SVector<f64, TERMS>;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Samples<'a> {
-    /// Times in seconds. If they do not increase, they are ignored, and samples are assumed to be equidistant.
+    /// Times in seconds. If they do not increase, they are ignored and samples are assumed to be equidistant.
     pub time_s: &'a [f64],
     pub sine_v: &'a [f64],
     pub cosine_v: &'a [f64],
@@ -137,7 +137,7 @@ fn harmonics_at(angle: f64) -> Terms {
     terms
 }
 
-/// Returns the harmonics in radians, and the rms of the residual in degrees, or `None` if there are too few samples.
+/// Returns the harmonics in radians and the rms of the residual in degrees, or `None` if there are too few samples.
 fn fit(samples: &Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, periods: f64) -> Option<(Terms, f64)> {
     let count = samples.sine_v.len().min(samples.cosine_v.len());
     if count < LEAST_SAMPLES || periods < LEAST_PERIODS {
@@ -160,7 +160,7 @@ fn fit(samples: &Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, peri
     sums.solve()
 }
 
-/// A run of samples that is fitted with its own motion.
+/// A range of samples that is fitted with its own motion.
 struct Segment {
     times: Vec<f64>,
     sine: Vec<f64>,
@@ -186,7 +186,7 @@ impl Segment {
     }
 }
 
-/// Normal equations of the harmonics, the motions already taken out.
+/// Normal equations of the harmonics, with the motions already removed.
 struct Sums {
     normal: Normal,
     right: Terms,
@@ -237,8 +237,8 @@ impl Sums {
     }
 
     fn solve(self) -> Option<(Terms, f64)> {
-        /// Smallest significant share of the largest eigenvalue: few samples per period cannot separate high harmonics
-        /// from low ones.
+        /// Smallest significant eigenvalue, as a share of the largest one. Few samples per period cannot separate high
+        /// harmonics from low ones.
         const RANK: f64 = 1e-4;
         let parts = self.normal.symmetric_eigen();
         let largest = parts.eigenvalues.max();

@@ -5,13 +5,13 @@
 use super::ellipse::Ellipse;
 use crate::units::SupplyVoltage;
 
-/// A verdict, from good to bad.
+/// Verdict on a signal, ordered from good to bad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     Ok,
     /// The signal is outside its limits, but the position is still correct.
     Warn,
-    /// The signal is so far outside that a wire is broken or the angle is wrong.
+    /// The signal is so far outside its limits that a wire is broken or the angle is wrong.
     Fault,
 }
 
@@ -19,16 +19,16 @@ pub enum Verdict {
 pub struct Limits {
     /// Minimum and maximum good amplitude (peak, differential) in volts.
     pub ok_v: (f64, f64),
-    /// Amplitudes in volts outside which the signal is faulty.
+    /// Minimum and maximum amplitudes in volts outside which the signal is faulty.
     pub fault_v: (f64, f64),
     /// Largest offset as a share of the amplitude.
     pub offset: f64,
-    /// Least and largest gain ratio.
+    /// Minimum and maximum gain ratio.
     pub gain_ratio: (f64, f64),
     pub phase_deg: f64,
-    /// Largest deviation from the ellipse, rms, as a share of the amplitude.
+    /// Largest rms deviation from the ellipse as a share of the amplitude.
     pub residual: f64,
-    /// Least and greatest mean level of REFSIN and REFCOS in volts.
+    /// Minimum and maximum mean level of REFSIN and REFCOS in volts.
     pub level_v: (f64, f64),
 }
 
@@ -37,7 +37,7 @@ pub struct Limits {
 pub enum Family {
     #[default]
     Hiperface,
-    /// AFS60 and AFM60 with sine and cosine.
+    /// AFS60 and AFM60 encoders with sine and cosine.
     AfsAfm60,
     Ttk70,
 }
@@ -53,8 +53,8 @@ impl Family {
         }
     }
 
-    /// Returns the supply voltage of the family's encoders: HIPERFACE description 8010701; 4.5 to 5.5 V for AFS and
-    /// AFM60 with sine and cosine.
+    /// Returns the supply voltage of the family's encoders, according to HIPERFACE description 8010701, or 4.5 to 5.5 V
+    /// for AFS and AFM60 with sine and cosine.
     pub const fn supply(self) -> SupplyVoltage {
         match self {
             Family::Hiperface | Family::Ttk70 => SupplyVoltage { least: 7_000, given: 8_000, greatest: 12_000 },
@@ -71,14 +71,14 @@ impl Family {
     }
 }
 
-/// A quantity outside its limits.
+/// A quantity that is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QualityFinding {
-    /// An amplitude (peak) in volts, the smaller or larger of the two channels.
+    /// Peak amplitude in volts of the channel with the smaller or larger amplitude.
     Amplitude {
         /// Found, peak, in volts.
         volts: f64,
-        /// Good from, good to, in volts.
+        /// Minimum and maximum good amplitude in volts.
         ok_v: (f64, f64),
         verdict: Verdict,
     },
@@ -86,15 +86,16 @@ pub enum QualityFinding {
     OffsetCosine(f64),
     GainRatio(f64),
     PhaseError(f64),
-    /// Distance of the samples from the ellipse, rms, relative to the amplitude: noise, interference and harmonics.
+    /// Rms distance of the samples from the ellipse, relative to the amplitude, caused by noise, interference and
+    /// harmonics.
     Residual(f64),
 }
 
-/// Tolerance that keeps rounding from pushing a value on the limit beyond it.
+/// Tolerance that keeps rounding from moving a value on the limit beyond it.
 const SLACK: f64 = 1e-9;
 
 impl Limits {
-    /// HIPERFACE: 0.9 … 1.1 V peak to peak, mean level 2.0 … 3.0 V.
+    /// Limits for HIPERFACE: 0.9 … 1.1 V peak to peak, mean level 2.0 … 3.0 V.
     pub const HIPERFACE: Limits = Limits {
         ok_v: (0.45, 0.55),
         fault_v: (0.30, 0.70),
@@ -105,10 +106,10 @@ impl Limits {
         level_v: (2.0, 3.0),
     };
 
-    /// AFS/AFM60: 0.8 … 1.2 V peak to peak, mean level 2.5 V ± 10 %.
+    /// Limits for AFS/AFM60: 0.8 … 1.2 V peak to peak, mean level 2.5 V ± 10 %.
     pub const AFS_AFM60: Limits = Limits { ok_v: (0.40, 0.60), level_v: (2.25, 2.75), ..Limits::HIPERFACE };
 
-    /// TTK70: 0.9 … 1.1 V peak to peak, mean level 2.5 V ± 5 %.
+    /// Limits for TTK70: 0.9 … 1.1 V peak to peak, mean level 2.5 V ± 5 %.
     pub const TTK70: Limits = Limits { level_v: (2.375, 2.625), ..Limits::HIPERFACE };
 
     /// Judges the length of a single amplitude vector; `None` without a signal. A single vector also contains offset
@@ -118,7 +119,7 @@ impl Limits {
         if length.is_nan() || length == 0.0 { None } else { Some(self.amplitude(length)) }
     }
 
-    /// Judges an amplitude (peak) in volts.
+    /// Judges a peak amplitude in volts.
     pub fn amplitude(&self, volts: f64) -> Verdict {
         if within(volts, self.ok_v) {
             Verdict::Ok

@@ -9,12 +9,12 @@ use super::ellipse::Ellipse;
 use super::nonlinearity::{Nonlinearity, NonlinearityError, nonlinearity};
 use super::outliers::kept;
 
-/// Non-linearity with and without the correction of the ellipse.
+/// Nonlinearity with and without the correction of the ellipse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Revolution {
     /// As measured.
     pub raw: Nonlinearity,
-    /// With offsets, gain ratio and phase error corrected.
+    /// Nonlinearity with offsets, gain ratio and phase error corrected.
     pub corrected: Nonlinearity,
 }
 
@@ -26,13 +26,13 @@ pub enum RevolutionError {
     /// The signals do not match the reference for this number of periods per revolution.
     #[error("the capture has {found:.1} periods in a revolution of the reference, not {given}")]
     Periods {
-        /// Periods that were counted in a revolution of the reference.
+        /// Number of periods counted in a revolution of the reference.
         found: f64,
         given: u32,
     },
 }
 
-/// Tolerated deviation of the counted number of periods from the given one, as a fraction.
+/// Tolerated deviation of the counted from the given number of periods, as a fraction.
 const CLOSE: f64 = 0.02;
 
 impl Revolution {
@@ -40,7 +40,7 @@ impl Revolution {
     /// direction. Samples in `left_out`, and those taken while the reference is at rest, are ignored.
     ///
     /// # Errors
-    /// [`RevolutionError`].
+    /// Returns a [`RevolutionError`] if the signals and the reference are unsuitable or do not match.
     pub fn of(
         sine: &[f64],
         cosine: &[f64],
@@ -87,7 +87,7 @@ impl Revolution {
     }
 }
 
-/// An angle that continues where the measured one wraps.
+/// Follows an angle beyond the wraps of the measured value.
 struct Follow {
     whole: f64,
     last: Option<f64>,

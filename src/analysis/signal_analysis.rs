@@ -8,13 +8,13 @@ use super::ellipse::{Ellipse, FitError};
 use super::outliers::{self, OutlierSearch, Outliers};
 use super::position_error::{PositionError, Samples};
 
-/// Fewest octants of a period that must hold samples (U).
+/// Minimum number of octants of a period that must contain samples (U).
 pub const LEAST_OCTANTS: u32 = 6;
-/// Rms distance from the ellipse, relative to the amplitude, above which there is no ellipse: a cloud of noise around
+/// Rms distance from the ellipse, relative to the amplitude, above which there is no ellipse. A cloud of noise around
 /// one point has 0.4 or more, while a signal with a residual of 0.02 is already poor.
 pub const LARGEST_RESIDUAL: f64 = 0.25;
 
-/// Median angle between samples, in degrees, above which the direction is uncertain: with fewer than four samples per
+/// Median angle between samples, in degrees, above which the direction is uncertain. With fewer than four samples per
 /// period, noise or an uneven motion easily turns it into half a period (U).
 const LARGEST_STEP_DEG: f64 = 90.0;
 
@@ -23,38 +23,38 @@ pub struct Analysis {
     pub ellipse: Ellipse,
     pub coverage: Coverage,
     pub continuity: Continuity,
-    /// Median angle between consecutive samples, in degrees, 0 to 180.
+    /// Median angle between consecutive samples in degrees, 0 to 180.
     pub step_deg: f64,
     pub error: PositionError,
     /// Number of samples, including excluded ones.
     pub samples: usize,
     /// Time between the first and last sample in seconds, or `None` if times do not increase.
     pub duration_s: Option<f64>,
-    /// Excluded outliers with the ellipse that would include them, or `None` if there are none.
+    /// Excluded outliers with the ellipse that would include them, or `None` without outliers.
     pub outliers: Option<Outliers>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum AnalysisError {
-    /// The samples determine no ellipse.
+    /// The samples do not determine an ellipse.
     #[error(transparent)]
     Fit(#[from] FitError),
     /// The capture covers too little of a period for a reliable ellipse.
     #[error("samples in {octants} of 8 octants where {least} are needed", least = LEAST_OCTANTS)]
     Coverage { octants: u32 },
-    /// All samples lie around one point away from zero: the signal is present, and the shaft is at rest.
+    /// All samples lie around one point away from zero, so the signal is present and the shaft is at rest.
     #[error("all samples lie around one point")]
     AtRest,
     /// The samples are too far from the ellipse to be a sine and a cosine.
     #[error("the samples are {share:.2} of the amplitude off the ellipse")]
     NoSignal {
-        /// Rms distance as a share of the amplitude.
+        /// Rms distance from the ellipse as a share of the amplitude.
         share: f64,
     },
 }
 
 impl Analysis {
-    /// Analyses samples; surplus values of columns with different lengths are ignored.
+    /// Analyses samples. Surplus values of columns with different lengths are ignored.
     ///
     /// # Errors
     /// [`AnalysisError`] if the samples do not determine an ellipse or cover fewer than six octants of a period.
@@ -106,13 +106,13 @@ impl Analysis {
     }
 
     /// Returns the average number of periods per second over continuous sections, negative if the angle falls. After a
-    /// reversal, returns the positive mean of both directions. `None` without times.
+    /// reversal, returns the positive mean of both directions. Returns `None` without times.
     pub fn frequency_hz(&self) -> Option<f64> {
         let Coverage { path_periods, travel_periods, reversals, .. } = self.coverage;
         self.continuity.stretches_s.map(|seconds| if reversals > 0 { path_periods } else { travel_periods } / seconds)
     }
 
-    /// Returns whether periods have enough samples to track the angle, and therefore the frequency.
+    /// Returns whether there are enough samples per period to track the angle, and therefore the frequency.
     pub fn is_followed(&self) -> bool {
         self.step_deg <= LARGEST_STEP_DEG
     }
@@ -120,9 +120,9 @@ impl Analysis {
 
 /// Returns whether the samples scatter only slightly around a point other than zero.
 fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
-    /// Scatter of one channel, rms, relative to the distance of the point from zero: 6° of a signal (U).
+    /// Rms scatter of one channel, relative to the distance of the point from zero; the value is 6° of a signal (U).
     const SCATTER: f64 = 0.1;
-    /// Distance from zero in volts below which there may be no signal at all (U).
+    /// Distance from zero in volts below which there may be no signal (U).
     const LEAST_V: f64 = 0.1;
     let of = |values: &[f64]| {
         let count = values.len().max(1) as f64;

@@ -20,13 +20,13 @@ pub struct SpectralLine {
 
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SpectrumError {
-    /// A spectrum needs at least eight samples.
+    /// A spectrum requires at least eight samples.
     #[error("{samples} samples where 8 are needed")]
     TooFew { samples: usize },
-    /// The times do not run on evenly.
+    /// The times are not evenly spaced.
     #[error("the time from sample {index} to the next is not that of the others")]
     Uneven {
-        /// Index of the sample before the step, from 0.
+        /// Index of the sample before the uneven step, counted from 0.
         index: usize,
     },
     /// A sample or the rate is not a finite number, or the rate is not above zero.
@@ -35,14 +35,14 @@ pub enum SpectrumError {
 }
 
 const LEAST: usize = 8;
-/// Number of lines on each side of a peak that belong to it with a Hann window.
+/// Number of lines on each side of a peak that belong to the peak with a Hann window.
 const PEAK_REACH: usize = 2;
 
 impl Spectrum {
     /// Calculates the spectrum of samples taken at `rate_hz`, after removing their mean.
     ///
     /// # Errors
-    /// [`SpectrumError`] if there are too few samples, or one is not finite.
+    /// [`SpectrumError`] if there are too few samples, or if a sample is not finite.
     pub fn of(samples: &[f64], rate_hz: f64) -> Result<Self, SpectrumError> {
         let count = samples.len();
         if count < LEAST {
@@ -73,8 +73,8 @@ impl Spectrum {
         &self.amplitudes_v
     }
 
-    /// Returns the `most` highest peaks, highest first, with interpolated frequency and amplitude. Lines of peaks
-    /// already found and those around 0 Hz (the mean) are skipped.
+    /// Returns the `most` highest peaks in descending order, with interpolated frequency and amplitude. Lines of peaks
+    /// that were already found and those around 0 Hz (the mean) are skipped.
     pub fn peaks(&self, most: usize) -> Vec<SpectralLine> {
         let lines = &self.amplitudes_v;
         let mut order: Vec<usize> = (PEAK_REACH..lines.len())
@@ -116,7 +116,7 @@ impl Spectrum {
 /// with few digits.
 ///
 /// # Errors
-/// [`SpectrumError`] if there are fewer than eight times, or they do not increase evenly.
+/// [`SpectrumError`] if there are fewer than eight times, or if they do not increase evenly.
 pub fn sample_rate_hz(times_s: &[f64]) -> Result<f64, SpectrumError> {
     let (Some(first), Some(last), true) = (times_s.first(), times_s.last(), times_s.len() >= LEAST) else {
         return Err(SpectrumError::TooFew { samples: times_s.len() });

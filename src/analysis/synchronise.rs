@@ -15,23 +15,24 @@ pub const STEPS: u64 = 32;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchroniser {
-    /// Number of periods in the whole range: periods per revolution times revolutions, at least 1.
+    /// Number of periods in the whole range, which is periods per revolution times revolutions, at least 1.
     pub periods: u64,
-    /// Lead of a correct absolute position over the analogue one, in steps of 1/32 period; 0 if unknown.
+    /// Lead of a correct absolute position over the analogue position, in steps of 1/32 period; 0 if unknown.
     pub offset_steps: f64,
-    /// Whether the absolute position refers to the middle of its step rather than to its beginning.
+    /// Whether the absolute position refers to the middle of its step instead of the beginning.
     pub half_step: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SynchronisedPosition {
-    /// Whole periods, below the range.
+    /// Number of whole periods, below the range.
     pub period: u64,
     pub phase: Phase,
     /// Correction of the absolute position in periods: −1, 0 or 1.
     pub correction: i8,
     pub residual_periods: f64,
-    /// Warns beyond 8/32 (the encoder's own drift is up to 4/32), a fault beyond 14/32 (U).
+    /// Verdict on the difference between the positions. Warns above 8/32 (the encoder's own drift is up to 4/32) and
+    /// reports a fault above 14/32 (U).
     pub verdict: Verdict,
 }
 
@@ -45,12 +46,12 @@ impl Synchroniser {
         Synchroniser { periods: periods.max(1), offset_steps: 0.0, half_step: false }
     }
 
-    /// Brings an absolute position in steps of 1/32 period and an analogue phase together.
+    /// Combines an absolute position in steps of 1/32 period with an analogue phase.
     ///
     /// # Errors
     /// [`AmbiguousPeriod`] at exactly half a period.
     pub fn synchronise(&self, absolute: u64, phase: Phase) -> Result<SynchronisedPosition, AmbiguousPeriod> {
-        /// Tolerance for rounding at half a period, in steps.
+        /// Tolerance in steps for rounding at half a period.
         const SLACK: f64 = 1e-9;
         let half = if self.half_step { 0.5 } else { 0.0 };
         let low = (absolute % STEPS) as f64 + half - self.offset_steps;
@@ -89,15 +90,14 @@ impl SynchronisedPosition {
         self.period as f64 + self.phase.periods()
     }
 
-    /// Returns the fine position in steps of 2^`bits` a period (at most 32).
+    /// Returns the fine position with 2^`bits` steps per period, where `bits` is at most 32.
     pub fn steps(&self, bits: u32) -> u128 {
         (u128::from(self.period) << bits.min(32)) + u128::from(self.phase.step(bits))
     }
 }
 
-/// Returns the average lead of the absolute position in steps of 1/32 period: the mean of the differences over at least
-/// one turn, treated as angles, so that a difference of 31 steps equals −1. `None` without samples, or if they cancel
-/// each other out.
+/// Returns the average lead of the absolute position in steps of 1/32 period over at least one turn. Differences are
+/// averaged as angles, so that 31 steps equal −1. Returns `None` without samples, or if they cancel each other out.
 pub fn measure_offset(samples: impl IntoIterator<Item = (u64, Phase)>) -> Option<f64> {
     let (mut sine, mut cosine, mut count) = (0.0, 0.0, 0_usize);
     for (absolute, phase) in samples {
@@ -118,7 +118,7 @@ mod tests {
         Phase::of_periods(periods).unwrap()
     }
 
-    /// The table of section 4: periods in the range, A, φ, k, fine position, residual, verdict.
+    /// The results match the table of section 4: periods in the range, A, φ, k, fine position, residual, verdict.
     #[test]
     fn cases_match_section_4() {
         use Verdict::{Fault, Ok, Warn};
@@ -162,7 +162,7 @@ mod tests {
         }
     }
 
-    /// A true position with every delay below half a period is reconstructed, at any place.
+    /// A true position is reconstructed anywhere if every delay is below half a period.
     #[test]
     fn drift_below_half_a_period_is_corrected() {
         let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(64) };

@@ -2,8 +2,8 @@
 
 use crate::units::Moment;
 
-/// Point in time in whole nanoseconds from an origin that the samples of one history share: the start of a session's clock,
-/// or the trigger of a capture (earlier times are negative). Covers 292 years in both directions.
+/// Point in time in whole nanoseconds from an origin that the samples of one history share, such as the start of a
+/// session's clock or the trigger of a capture (earlier times are negative). Covers 292 years in both directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Time(i64);
@@ -19,25 +19,25 @@ impl Time {
         self.0
     }
 
-    /// Returns the point `nanoseconds` later; saturates at the end of the range.
+    /// Returns the point in time `nanoseconds` later, saturating at the end of the range.
     pub const fn plus(self, nanoseconds: i64) -> Self {
         Time(self.0.saturating_add(nanoseconds))
     }
 
-    /// Returns the exact number of nanoseconds since `origin`, negative if `origin` is later.
+    /// Returns the exact number of nanoseconds since `origin`, or a negative number if `origin` is later.
     pub const fn nanoseconds_since(self, origin: Time) -> i64 {
         self.0.saturating_sub(origin.0)
     }
 
-    /// Returns the number of seconds since `origin`. The difference is calculated before rounding, so it is exact near
-    /// `origin`.
+    /// Returns the number of seconds since `origin`. The difference is calculated before rounding, so the result is
+    /// exact near `origin`.
     pub fn seconds_since(self, origin: Time) -> f64 {
         self.nanoseconds_since(origin) as f64 / 1e9
     }
 }
 
 impl From<Moment> for Time {
-    /// Converts a moment of a clock, whose start is the origin.
+    /// Converts a moment of a clock. The origin is the start of the clock.
     fn from(moment: Moment) -> Self {
         let elapsed = moment.since_start();
         let seconds = i64::try_from(elapsed.as_secs()).unwrap_or(i64::MAX);

@@ -4,16 +4,16 @@
 #[derive(Clone, Copy, Debug)]
 pub struct Unwrap {
     range: Option<i64>,
-    /// Last position word with its unwrapped value.
+    /// Last position word and its unwrapped value.
     last: Option<(i64, i64)>,
     gap: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnwrappedPosition {
-    /// Steps; beyond the range after a wrap, negative below zero.
+    /// Unwrapped position in steps; beyond the range after a wrap, negative below zero.
     pub steps: i64,
-    /// Whether the path from the previous sample is unknown, because of a gap or an ambiguous step of half the range.
+    /// Whether the path from the previous sample is unknown because of a gap or an ambiguous step of half the range.
     /// Not set for the first position.
     pub broken: bool,
 }
@@ -24,7 +24,7 @@ impl Unwrap {
         (range >= 2).then_some(Unwrap { range: Some(range), last: None, gap: false })
     }
 
-    /// Creates the state for an encoder that does not wrap; positions are unchanged.
+    /// Creates the state for an encoder that does not wrap, whose positions are unchanged.
     pub fn linear() -> Self {
         Unwrap { range: None, last: None, gap: false }
     }
@@ -34,8 +34,8 @@ impl Unwrap {
         self.gap = true;
     }
 
-    /// Unwraps the next position word along the shortest way from the previous one, so a wrap is a step like any other.
-    /// Returns `None` for a word outside the range, which counts as a gap.
+    /// Unwraps the next position word along the shortest path from the previous word, so that a wrap is an ordinary
+    /// step. Returns `None` for a word outside the range, which counts as a gap.
     pub fn next(&mut self, word: i64) -> Option<UnwrappedPosition> {
         if self.range.is_some_and(|range| !(0..range).contains(&word)) {
             self.gap();

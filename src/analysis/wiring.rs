@@ -1,14 +1,14 @@
 //! The four wires of a sine/cosine signal against ground, named as in SICK 8010701: SIN, REFSIN, COS and REFCOS.
 //! Contains the samples of an analogue source without their times.
 
-/// Voltages of the four wires, all columns equally long.
+/// Voltages of the four wires. All columns have the same length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wires {
     pub sin_v: Vec<f64>,
     pub refsin_v: Vec<f64>,
     pub cos_v: Vec<f64>,
     pub refcos_v: Vec<f64>,
-    /// Shaft angle measured by a reference encoder, in mechanical degrees from 0 up to 360; empty without a reference.
+    /// Shaft angle measured by a reference encoder, in mechanical degrees from 0 up to 360. Empty without a reference.
     pub reference_deg: Vec<f64>,
 }
 

@@ -188,13 +188,13 @@ pub struct Opened<D: Kind> {
 /// An opened session on its own thread, with its kind of device erased.
 pub trait OpenedSession: Any + Send {
     /// Closes a session that is no longer required.
-    fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services);
+    fn close_unneeded(self: Box<Self>, session: SessionId, services: &mut Services);
 
     fn into_any(self: Box<Self>) -> Box<dyn Any>;
 }
 
 impl<D: Kind> OpenedSession for Opened<D> {
-    fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services) {
+    fn close_unneeded(self: Box<Self>, session: SessionId, services: &mut Services) {
         let Opened { worker, url, turn, .. } = *self;
         let about = services.world.kinds.display_link(&url);
         services.leave(worker, ClosingSessionInfo { session, about, url, write: None }, Some(turn));

@@ -10,8 +10,7 @@ use std::time::{Duration, Instant};
 use crate::worker::Stopper;
 
 /// A handle that stops the drives of a session when the program ends. It works from any thread, regardless of the state
-/// of the session
-/// and of whether the window still draws.
+/// of the session and of whether the window still draws.
 pub trait Brake: Send {
     /// Stops and switches off all drives and closes their connection because the program is ending. Later requests
     /// cannot start a motion. This does not block and may be called repeatedly.

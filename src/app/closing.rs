@@ -25,7 +25,7 @@ impl Studio {
 
     /// Returns whether the window may close now: no drive is under control, nothing is running, not even in released
     /// sessions, and all data are on disk. The window may also close if the grace period has expired.
-    pub fn may_close(&self) -> bool {
+    pub fn can_close(&self) -> bool {
         let services = &self.services;
         let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(|device| device.is_draft_kept());
         let writes = services.is_closing_with_write() || self.devices.iter().any(|device| device.is_writing());

@@ -109,8 +109,7 @@ impl Diverged {
     }
 
     /// Returns whether the file can be overwritten. A file written by a newer version of the program cannot be
-    /// overwritten, because
-    /// its unknown content would be lost.
+    /// overwritten, because its unknown content would be lost.
     pub fn can_keep_mine(&self) -> bool {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
     }

@@ -26,7 +26,7 @@ impl Studio {
         }
         match result {
             Ok(document) => {
-                self.services.log.settle_file(&file.path);
+                self.services.log.remove_file_notices(&file.path);
                 let remarks = explain::profile_remarks(&file.path, &document);
                 if !remarks.is_empty() {
                     self.services.notify(Severity::Warning, remarks, None);

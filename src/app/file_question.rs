@@ -36,8 +36,7 @@ pub struct DeviceFile {
 
 impl DeviceFile {
     /// Creates the question for a file to read. `title` is the title of the dialog, and `kind` the name of the file
-    /// type,
-    /// followed by its extensions.
+    /// type, followed by its extensions.
     pub fn to_read<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),

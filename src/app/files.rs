@@ -167,7 +167,7 @@ impl Studio {
             texts.push(Text::new("recorder.lost").with("count", lost));
         }
         if is_written {
-            self.services.log.settle_file(&exported.path);
+            self.services.log.remove_file_notices(&exported.path);
         }
         let severity = if lost > 0 { severity.max(Severity::Warning) } else { severity };
         self.services.notify(severity, texts, None);
@@ -176,7 +176,7 @@ impl Studio {
     pub(super) fn report_saved(&mut self, path: &Path, result: Result<(), FileError>) {
         let (severity, text) = match result {
             Ok(()) => {
-                self.services.log.settle_file(path);
+                self.services.log.remove_file_notices(path);
                 (Severity::Good, Text::new("report.saved").with("path", path.display()))
             }
             Err(error) => (Severity::Error, explain::file(&error)),
@@ -187,7 +187,7 @@ impl Studio {
     pub(super) fn finish_picture_save(&mut self, path: &Path, result: Result<(), FileError>) {
         match result {
             Ok(()) => {
-                self.services.log.settle_file(path);
+                self.services.log.remove_file_notices(path);
                 let text = Text::new("picture.saved").with("path", path.display());
                 self.services.notify(Severity::Good, vec![text], None);
             }

@@ -12,8 +12,8 @@
 //! | the keyboard goes to another widget | keys are forgotten | keys are forgotten | ends |
 //! | the window loses or gets the keyboard; it is disabled, enabled, or was not in the last picture | keys are forgotten | ends | ends |
 //!
-//! After its end it starts again only by another press; by a key only if that press is [fresh](FreshKeys), which none is
-//! immediately after another key.
+//! After its end it starts again only by another press; by a key only if that press is [fresh](FreshKeys), which none
+//! is immediately after another key.
 
 use super::press::{FreshKeys, PressKey};
 
@@ -177,8 +177,7 @@ impl HoldState {
     }
 
     /// Returns whether the button has the keyboard focus but no key release has been seen yet. In this case, the first
-    /// press
-    /// will not count.
+    /// press will not count.
     pub fn waits_for_release(&self) -> bool {
         let has_keyboard = self.scene.is_some_and(|scene| scene.enabled && scene.window && scene.keyboard);
         let armed = self.keys.is_armed(PressKey::Space) || self.keys.is_armed(PressKey::Enter);

@@ -24,8 +24,8 @@ impl Studio {
 
     /// Returns whether a motion requested in this window is running. Such a motion is the first to be stopped by
     /// Escape.
-    pub fn moves_by_hand(&self) -> bool {
-        self.motions().any(MotionControl::moves_by_hand)
+    pub fn is_turned_by_hand(&self) -> bool {
+        self.motions().any(MotionControl::is_turned_by_hand)
     }
 
     /// Returns whether a motion requested in this window has not ended yet.
@@ -49,7 +49,7 @@ impl Studio {
     }
 
     /// Ends a jog or run whose panel is no longer visible because of another tab or device, a dialog, or a question.
-    pub(super) fn hold_in_sight(&mut self) {
+    pub(super) fn end_invisible_motion(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || asks;
         let tab = self.settings.tab;

@@ -99,7 +99,7 @@ impl Log {
     }
 
     /// Removes the error about a file that has now been read or written.
-    pub(crate) fn settle_file(&mut self, path: &Path) {
+    pub(crate) fn remove_file_notices(&mut self, path: &Path) {
         let is_it = |notice: &Notice| {
             notice.severity == Severity::Error && notice.texts.first().is_some_and(|text| text.is_about(path))
         };
@@ -168,9 +168,9 @@ mod tests {
         let full = Text::new("file.disk_full").with("path", "/a/b.csv");
         let texts = vec![full, Text::new("session.not_saved")];
         log.add(Notice { at: Zoned::now(), severity: Severity::Error, texts, about: None, part: None });
-        log.settle_file(Path::new("/a/c.csv"));
+        log.remove_file_notices(Path::new("/a/c.csv"));
         assert!(log.standing().is_some());
-        log.settle_file(Path::new("/a/b.csv"));
+        log.remove_file_notices(Path::new("/a/b.csv"));
         assert!(log.standing().is_none() && log.notices().len() == 1);
     }
 

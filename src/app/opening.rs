@@ -17,16 +17,15 @@ use crate::link::{LinkUrl, Scheme, TraceEntry, UrlError};
 use crate::worker::{OpenError, Ring, Session, Worker};
 
 /// Maximum number of frames waiting for the window. This is ten seconds at 2,000 frames per second, far more than a
-/// window that still
-/// draws leaves unread.
+/// window that still draws leaves unread.
 const FRAMES: usize = 20_000;
 /// Maximum memory used by waiting frames, in bytes.
 const FRAME_BYTES: usize = 8 << 20;
 
 impl Studio {
     /// Returns the tab of the device to which a link leads. If the link does not determine the kind of device, the kind
-    /// last used with the
-    /// link is chosen, or the tab shown last if there were several kinds. A new link uses the open tab.
+    /// last used with the link is chosen, or the tab shown last if there were several kinds. A new link uses the open
+    /// tab.
     pub(super) fn tab_of(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
         let tab = self.settings.tab;
@@ -100,8 +99,7 @@ impl Studio {
     }
 
     /// Releases the session on a connection for another use, unless the session is writing. A session whose link is
-    /// still being
-    /// opened has ended when the returned channel closes.
+    /// still being opened has ended when the returned channel closes.
     ///
     /// # Errors
     /// Returns the session that is writing.
@@ -132,8 +130,7 @@ impl Studio {
     }
 
     /// Opens a link for a session. If a drive may be on the line, the user is asked before anything is opened.
-    /// Listening proves nothing, because
-    /// the drive may have read the encoder at power-up and been silent since.
+    /// Listening proves nothing, because the drive may have read the encoder at power-up and been silent since.
     fn open_for(&mut self, id: SessionId, url: LinkUrl) {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
@@ -167,7 +164,7 @@ impl Studio {
         let Some(device) = self.devices.iter_mut().find(own) else {
             if let Ok(opened) = result {
                 // Its session was closed, or has opened another one since.
-                opened.turn_away(session, &mut self.services);
+                opened.close_unneeded(session, &mut self.services);
             }
             return;
         };

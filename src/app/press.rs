@@ -14,8 +14,7 @@ pub enum PressKey {
 }
 
 /// Minimum time in seconds between a user's release and the next press of a key. Remote desktops, and displays that do
-/// not
-/// distinguish repetitions from presses, repeat a key by a release followed immediately by a press.
+/// not distinguish repetitions from presses, repeat a key by a release followed immediately by a press.
 const LEAST: f64 = 0.05;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,8 +24,7 @@ enum KeyState {
     Nothing,
     Down,
     /// The key was released, or another key was pressed, in the frame at the given time, and the key has not been seen
-    /// up long
-    /// enough since.
+    /// up long enough since.
     Released(f64),
     Up,
 }
@@ -58,8 +56,7 @@ impl FreshKeys {
     }
 
     /// Records that another key was pressed. Only the key pressed last is repeated by the system, so a repetition of an
-    /// unknown key is
-    /// ignored.
+    /// unknown key is ignored.
     pub fn press_other_key(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
@@ -70,8 +67,7 @@ impl FreshKeys {
     }
 
     /// Records that another key was pressed outside a text entry. A press immediately afterwards is not made by a
-    /// person,
-    /// since barcode scanners type digits and Enter that fast.
+    /// person, since barcode scanners type digits and Enter that fast.
     pub fn doubt(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);

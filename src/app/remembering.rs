@@ -29,14 +29,15 @@ impl Studio {
         let now = self.services.now();
         let is_old = self.settings_store.is_older(&now, STALE);
         let mut is_due = self.is_in_control() && self.settings_store.is_older(&now, PACE);
-        for drives in self.drives_in_hand() {
+        for drives in self.controlled_drives() {
             if is_old && drives.marks() == SettingsReadState::Read {
                 drives.set_marks(SettingsReadState::Unread);
             }
             is_due |= drives.marks() == SettingsReadState::Unread;
         }
         if is_due && self.settings_store.begin_read(&self.services) {
-            self.drives_in_hand().for_each(|drives| drives.set_marks(drives.marks().max(SettingsReadState::Reading)));
+            self.controlled_drives()
+                .for_each(|drives| drives.set_marks(drives.marks().max(SettingsReadState::Reading)));
         }
     }
 
@@ -48,17 +49,17 @@ impl Studio {
         }
         self.remember_drives();
         let reading = |drives: &&mut dyn DriveMemory| drives.marks() == SettingsReadState::Reading;
-        self.drives_in_hand().filter(reading).for_each(|drives| drives.set_marks(SettingsReadState::Read));
+        self.controlled_drives().filter(reading).for_each(|drives| drives.set_marks(SettingsReadState::Read));
     }
 
     /// Records that the settings could not be read. No drive under control moves until they have been read.
     pub(super) fn settings_unread(&mut self, error: &FileError) {
         tracing::warn!("{error}");
         self.settings_store.fail_read();
-        self.drives_in_hand().for_each(|drives| drives.set_marks(SettingsReadState::Unread));
+        self.controlled_drives().for_each(|drives| drives.set_marks(SettingsReadState::Unread));
     }
 
-    fn drives_in_hand(&mut self) -> impl Iterator<Item = &mut dyn DriveMemory> {
+    fn controlled_drives(&mut self) -> impl Iterator<Item = &mut dyn DriveMemory> {
         let in_hand = self.devices.iter_mut().filter(|own| own.motion().is_some_and(MotionControl::is_in_control));
         in_hand.filter_map(|device| device.remembers_drives())
     }

@@ -74,8 +74,7 @@ impl Settings {
     }
 
     /// Returns the readable part of a file that [`parse`](Self::parse) refuses, entry by entry. For example, an unknown
-    /// tab
-    /// does not cause the links to be lost.
+    /// tab does not cause the links to be lost.
     pub(super) fn salvage(text: &str) -> Self {
         macro_rules! entry {
             ($name:ident: $type:ty, $usual:expr) => {{
@@ -116,8 +115,7 @@ impl Settings {
     }
 
     /// Returns the settings with the changes from `known` to `ours` applied. Another window may have changed everything
-    /// else
-    /// in the meantime.
+    /// else in the meantime.
     #[must_use]
     pub(super) fn with_changes(mut self, known: &Settings, ours: &Settings) -> Self {
         macro_rules! take {
@@ -143,7 +141,7 @@ impl Settings {
         }
     }
 
-    pub(super) fn take_drives(&mut self, from: &Settings) {
+    pub(super) fn adopt_drives(&mut self, from: &Settings) {
         self.drives = from.drives.clone();
     }
 

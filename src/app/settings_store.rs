@@ -151,7 +151,7 @@ impl SettingsStore {
         match result {
             Ok(SettingsWritten { settings: found, aside }) => {
                 self.known = written;
-                self.meet(&found, settings);
+                self.reconcile(&found, settings);
                 self.failed = None;
                 if let Some((path, aside)) = aside {
                     let text = Text::new("session.settings_broken").with("aside", aside.display());
@@ -201,7 +201,7 @@ impl SettingsStore {
             return found;
         }
         if let Some(found) = found {
-            self.meet(&found, settings);
+            self.reconcile(&found, settings);
         }
         None
     }
@@ -214,11 +214,11 @@ impl SettingsStore {
     }
 
     /// Adopts data about drives that other windows have written.
-    fn meet(&mut self, found: &Settings, settings: &mut Settings) {
+    fn reconcile(&mut self, found: &Settings, settings: &mut Settings) {
         let ours = settings.clone();
-        settings.take_drives(found);
+        settings.adopt_drives(found);
         settings.change_drives(&self.known, &ours);
-        self.known.take_drives(found);
+        self.known.adopt_drives(found);
     }
 
     pub(super) fn is_idle(&self) -> bool {

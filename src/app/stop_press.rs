@@ -14,8 +14,7 @@ pub struct StopPresses {
 
 impl StopPresses {
     /// Returns whether a press at the given time refers to a motion that is running or has just ended. Such a press
-    /// counts as a
-    /// stop itself.
+    /// counts as a stop itself.
     pub fn means_motion(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_just_stopped(pressed);
         if means {

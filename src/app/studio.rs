@@ -99,7 +99,7 @@ impl Studio {
             Action::Stop => self.stop(),
             Action::StopMotion => self.stop_motion(),
             Action::LetGo => self.release_jogs(),
-            Action::Escape => self.escape(),
+            Action::Escape => self.press_escape(),
             Action::Close => self.close(),
             Action::Quit => self.quit(),
             Action::Confirm => self.confirm(),
@@ -146,7 +146,7 @@ impl Studio {
                 self.services.notify(Severity::Error, vec![text], None);
             }
         }
-        self.hold_in_sight();
+        self.end_invisible_motion();
         self.write_if_changed();
     }
 
@@ -170,7 +170,7 @@ impl Studio {
         self.feed_exports();
         self.remember_drives();
         self.refresh_settings();
-        self.hold_in_sight();
+        self.end_invisible_motion();
         self.write_if_changed();
     }
 
@@ -366,9 +366,9 @@ impl Studio {
         self.tools.iter_mut().for_each(|(_, tool)| tool.stop(&mut self.services));
     }
 
-    fn escape(&mut self) {
+    fn press_escape(&mut self) {
         // Before anything else.
-        if self.moves_by_hand() {
+        if self.is_turned_by_hand() {
             return self.stop_motion();
         }
         if self.dismiss_question() || self.diverged.take().is_some() || self.close_comparison() {

@@ -79,8 +79,7 @@ impl<'de> Deserialize<'de> for Name {
 }
 
 /// Interns a tab name read from the settings, including names of tabs that this program does not have, since another
-/// version
-/// still uses their links. Each name is kept once for the lifetime of the process.
+/// version still uses their links. Each name is kept once for the lifetime of the process.
 fn intern(name: String) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);

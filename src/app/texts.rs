@@ -312,7 +312,11 @@ mod tests {
         let cause = Text::new("link.not_found").with("target", "COM3");
         let text = Text::new("link.other").with("target", "COM3").with_text("why", cause);
         assert!(text.terminal().contains("\"encoder-studio ports\" lists"), "{}", text.terminal());
-        assert!(text.words(Language::English).contains("Connect… lists"), "{}", text.words(Language::English));
+        assert!(
+            text.words(Language::English).contains("\"Connect…\" dialog lists"),
+            "{}",
+            text.words(Language::English)
+        );
         assert_eq!(Text::new("encoder.cancelled").terminal(), Text::new("encoder.cancelled").words(Language::English));
     }
 

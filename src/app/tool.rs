@@ -100,8 +100,7 @@ impl ToolContext<'_> {
     }
 
     /// Releases the session on a connection, unless the session is writing. `why` is reported in that session. The
-    /// returned
-    /// channel, if any, closes when the connection is free.
+    /// returned channel, if any, closes when the connection is free.
     ///
     /// # Errors
     /// Returns the session that is writing.
@@ -147,8 +146,7 @@ impl Studio {
     }
 
     /// Opens a requested capture in the open tab if that is a tool, or otherwise in the first tool. If another tab has
-    /// been opened
-    /// in the meantime, it stays open.
+    /// been opened in the meantime, it stays open.
     pub(super) fn open_capture(&mut self, path: PathBuf) {
         let tab = self.settings.tab;
         let at = self.tools.iter().position(|(own, _)| *own == tab).unwrap_or_default();

@@ -23,8 +23,7 @@ pub use watchable::{Watchable, WatchedValue};
 /// Maximum number of positions, enough for more than a day at the fastest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
 /// Time in nanoseconds between positions above which they are never joined, because a connecting line would show a
-/// motion that was
-/// not observed.
+/// motion that was not observed.
 const APART: i64 = 5_000_000_000;
 /// Tolerated delay of a position in nanoseconds, in addition to four intervals. It allows for a lost reply that was
 /// requested again.
@@ -179,7 +178,7 @@ impl<W: Watchable> Track<W> {
         self.see(meaning);
         let mut columns = Columns::default();
         for sighting in sightings {
-            self.sight(sighting, &mut columns);
+            self.add_sample(sighting, &mut columns);
         }
         let flags = &columns.flags;
         let parts = [
@@ -191,7 +190,7 @@ impl<W: Watchable> Track<W> {
         let _ = self.recorder.append(self.positions, &columns.times, &parts);
     }
 
-    fn sight(&mut self, sighting: &PositionSample, columns: &mut Columns) {
+    fn add_sample(&mut self, sighting: &PositionSample, columns: &mut Columns) {
         let time = Time::from(sighting.at).plus(self.shift);
         if self.newest.is_some_and(|newest| time < newest) {
             // A single reading between two samples that are already recorded.
@@ -295,8 +294,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Discards the recording of the previous device, unless it contains minutes of data that have not been exported.
-    /// The selection of watched values is
-    /// kept.
+    /// The selection of watched values is kept.
     pub fn forget(&mut self) {
         let watched = self.watched();
         if self.recorder.unsaved() >= MUCH {
@@ -312,9 +310,8 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Decodes the recording again, as far as its words are stored. The times do not change. If not all words are
-    /// stored,
-    /// the old recording is kept as well.
-    pub fn begin_again(&mut self, kept: usize) {
+    /// stored, the old recording is kept as well.
+    pub fn restart_line(&mut self, kept: usize) {
         if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
             self.part(&Meaning::of_steps(None));
             (self.follower, self.newest) = (None, None);

@@ -18,7 +18,7 @@ use super::commands::{Commands, OwnOptions};
 use crate::app::Given;
 use crate::link::LinkUrl;
 
-/// Heading in the help of the options that every command has.
+/// Help heading of the options that every command has.
 const COMMON_HEADING: &str = "Common options";
 
 /// Configure position encoders and small drives: read, compare, write, verify, save and restore. Without a command, the
@@ -36,8 +36,8 @@ struct Front {
 #[derive(Args)]
 #[command(next_help_heading = COMMON_HEADING)]
 pub struct Common {
-    /// Link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, enip:HOST, bridge:PATH, bridge:tcp:HOST:PORT
-    /// or replay:FILE, followed by ?name=value&… for parameters.
+    /// Link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, enip:HOST, bridge:PATH,
+    /// bridge:tcp:HOST:PORT or replay:FILE, followed by ?name=value&… for parameters.
     #[arg(long, global = true, value_name = "URL")]
     pub(crate) link: Option<LinkUrl>,
     /// Print JSON.
@@ -52,13 +52,13 @@ pub struct Common {
     pub(super) trace: Option<PathBuf>,
     #[command(flatten)]
     pub(super) own: OwnOptions,
-    /// The kinds of device that have options among these; parsing puts them here.
+    /// Kinds of device that add options to every command. Set by parsing.
     #[arg(skip = Commands::NONE)]
     pub(super) commands: Commands,
 }
 
 impl Common {
-    /// Returns the values of the options that kinds of device add.
+    /// Returns the values of the options that the kinds of device add.
     pub(super) fn given(&self) -> Result<Given, Failure> {
         self.commands.devices().iter().try_fold(Given::default(), |given, device| device.given(&self.own, given))
     }
@@ -200,7 +200,7 @@ pub struct Restore {
     /// Keep the device's bytes of this data field, whose meaning is unknown; repeatable.
     #[arg(long, value_name = "field:N")]
     pub(crate) leave: Vec<String>,
-    /// Also restore values of the mounting to another serial number.
+    /// Also restore mounting values to another serial number.
     #[arg(long)]
     pub(crate) with_mounting: bool,
     /// Delete and create again a field whose size differs and that is not the last one.
@@ -224,8 +224,8 @@ pub struct Write {
     pub(super) device: String,
     /// Name of the value to write
     pub(crate) item: String,
-    /// Number (decimal or 0x), hexadecimal bytes for a data field or consecutive registers (+COUNT), or a word or a range
-    /// where the item takes one.
+    /// Number (decimal or 0x), hexadecimal bytes for a data field or consecutive registers (+COUNT), or a word or a
+    /// range where the item takes one.
     #[arg(allow_hyphen_values = true)]
     pub(crate) value: String,
     #[command(flatten)]

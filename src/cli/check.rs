@@ -9,12 +9,12 @@ use crate::app::Text;
 use crate::app::check::{CheckLine, verdict};
 use crate::link::LineQuality;
 
-/// Prints the results of the check; a fault makes the command fail.
+/// Prints the results of the check, and returns an error if they include a fault.
 pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
     show_with(output, lines, None)
 }
 
-/// Prints the results of the check like `show`, with the line quality where it was measured.
+/// Prints the results of the check like `show`, with the line quality if it was measured.
 pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal).collect::<Vec<_>>();

@@ -13,7 +13,7 @@ use super::{Failure, Result};
 use crate::app::{Given, Text};
 use crate::profile::Body;
 
-/// The commands that a kind of device may support.
+/// Commands that a kind of device may support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CommandId {
     /// Search for devices.
@@ -24,7 +24,7 @@ pub enum CommandId {
     Status,
     /// Read the position.
     Position,
-    /// Read a value from the memory.
+    /// Read a value from the device memory.
     Read,
     /// Save a profile.
     Save,
@@ -85,15 +85,15 @@ pub trait DeviceCommands: ProfileCommands {
     /// Returns the name of the kind on the command line and in profiles.
     fn name(&self) -> &'static str;
 
-    /// Returns a one-sentence description for the help.
+    /// Returns a one-sentence description for the help text.
     fn about(&self) -> &'static str;
 
-    /// Returns additional sentences for the program's help.
+    /// Returns additional sentences for the program's help text.
     fn note(&self) -> Option<&'static str> {
         None
     }
 
-    /// Returns the help of a command for this kind: items, values and formats.
+    /// Returns the help text of a command for this kind, with items, values and formats.
     fn help(&self, _command: CommandId) -> Option<String> {
         None
     }
@@ -108,7 +108,7 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Adds the values of these options, and values from the environment that replace them.
+    /// Adds the values of the common options, and values from the environment that replace them.
     ///
     /// # Errors
     /// A value is invalid.
@@ -121,17 +121,17 @@ pub trait DeviceCommands: ProfileCommands {
         Vec::new()
     }
 
-    /// Returns the actions of `do` that combine several others; they are listed last.
+    /// Returns the actions of `do` that combine several other actions. They are listed last.
     fn combined_actions(&self) -> Vec<PossibleValue> {
         Vec::new()
     }
 
-    /// Returns the options of `simulate` that abbreviate `--set` with the same name.
+    /// Returns the options of `simulate` that abbreviate a `--set` option with the same name.
     fn setting_options(&self) -> Vec<Arg> {
         Vec::new()
     }
 
-    /// Returns why an option of this kind is refused for another kind, or `None` without a special reason.
+    /// Returns the reason why an option of this kind is refused for another kind, or `None` without a special reason.
     fn refused_option(&self, _option: &str) -> Option<String> {
         None
     }
@@ -146,20 +146,20 @@ pub trait DeviceCommands: ProfileCommands {
         false
     }
 
-    /// Runs a command for this kind: find, identify, status, position, read, save, write, do or decode. Returns `None`
-    /// if the kind does not support it.
+    /// Runs one of the commands find, identify, status, position, read, save, write, do and decode for this kind.
+    /// Returns `None` if the kind does not support the command.
     fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result>;
 
     /// Creates the virtual device to serve.
     fn simulated(&self, output: &Output, simulate: &Simulate) -> Result<Box<dyn Simulated>>;
 }
 
-/// Restoring profiles, and reading a device for comparison.
+/// Commands that restore profiles and read a device for comparison.
 pub trait ProfileCommands: Sync {
     /// Writes a profile to a device after review and consent.
     fn restore(&self, common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result;
 
-    /// Reads a device for comparison: everything, or at least the items in the profile.
+    /// Reads a device for comparison. Reads everything, or at least the items in the profile.
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
     /// Returns a note that applies to every use of a profile.
@@ -187,17 +187,17 @@ pub trait ProtocolDecoder: Sync {
     /// Returns the name of the protocol on the command line.
     fn name(&self) -> &'static str;
 
-    /// Returns a one-sentence description for the help.
+    /// Returns a one-sentence description for the help text.
     fn about(&self) -> &'static str;
 
-    /// Returns the help of `decode` for this protocol.
+    /// Returns the help text of `decode` for this protocol.
     fn help(&self) -> &'static str;
 
     /// Explains captured bytes.
     fn decode(&self, output: &Output, decode: &Decode) -> Result;
 }
 
-/// All commands of the command line: kinds of device, protocols and further commands.
+/// All commands of the command line, from kinds of device, protocols and other parts of the program.
 #[derive(Clone, Copy)]
 pub struct Commands {
     devices: &'static [&'static dyn DeviceCommands],
@@ -237,13 +237,13 @@ impl Commands {
         self.devices.iter().flat_map(|device| device.common_options())
     }
 
-    /// Explains why an option is refused for a kind of device that does not have it.
+    /// Returns an explanation why an option is refused for a kind of device that does not have it.
     pub(super) fn refusal(self, option: &str, chosen: &str) -> String {
         let own = self.devices.iter().find_map(|device| device.refused_option(option));
         own.unwrap_or_else(|| format!("{option} is not for {chosen} devices"))
     }
 
-    /// Returns the refusal of a given common option that the chosen kind of device does not have.
+    /// Returns a refusal if a given common option does not exist for the chosen kind of device.
     pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &OwnOptions) -> Option<String> {
         let own = chosen.common_options();
         let foreign = self.common_options().find(|option| {
@@ -271,7 +271,7 @@ impl Commands {
         named.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {name} devices.")]))
     }
 
-    /// Returns the refusal of an option that the chosen kind of device or protocol does not have.
+    /// Returns a refusal if a given option does not exist for the chosen kind of device or protocol.
     pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &OwnOptions) -> Option<String> {
         let has = |device: &&&dyn DeviceCommands, id: &clap::Id| {
             device.options(command).iter().any(|option| option.get_id() == id)
@@ -301,7 +301,7 @@ impl OwnOptions {
         parse(&self.0)
     }
 
-    /// Returns whether an option was given; defaults do not count.
+    /// Returns whether an option was given. Defaults do not count.
     pub(super) fn has(&self, id: &str) -> bool {
         self.0.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
     }
@@ -323,7 +323,7 @@ pub(crate) fn values_of<V: ValueEnum>() -> Vec<PossibleValue> {
     V::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect()
 }
 
-/// The options are added when the list of kinds is known.
+/// The options are added once the list of kinds is known.
 impl clap::Args for OwnOptions {
     fn augment_args(command: clap::Command) -> clap::Command {
         command

@@ -11,7 +11,7 @@ use crate::profile::Consent;
 use crate::worker::commit::{ApprovedPlan, Planned};
 use crate::worker::{self, NotBegun};
 
-/// Requires consent. Without a terminal the question cannot be asked, so the command is refused before anything is
+/// Requires consent. Without a terminal the user cannot be asked, so the command is refused before anything is
 /// opened.
 pub fn require_consent(consent: &Consenting) -> Result<()> {
     if consent.yes || can_ask() {
@@ -25,7 +25,7 @@ pub(crate) fn can_ask() -> bool {
     stdin().is_terminal() && stderr().is_terminal()
 }
 
-/// Shows the plan and all other points that require consent, and asks about each, unless the command line has already
+/// Shows the plan and all other points that require consent, and asks about each unless the command line has already
 /// consented. Returns the approved plan.
 pub fn confirm_plan<P: Planned>(
     output: &Output,
@@ -43,8 +43,8 @@ pub fn confirm_plan<P: Planned>(
     Ok(ApprovedPlan { prepared, consent: granted, force_wear: consent.force_wear })
 }
 
-/// Refuses a write to a device that has reached its limit of write cycles, or whose write cycles are unknown, before
-/// consent is requested.
+/// Refuses, before consent is requested, a write to a device that has reached its limit of write cycles or whose write
+/// cycles are unknown.
 pub fn check_wear<D>(consent: &Consenting, prepared: &impl Planned) -> Result<()>
 where
     D: Runs,
@@ -55,8 +55,8 @@ where
         .map_err(|refused| JobFailure::<D>::Job(Box::new(refused.into())).into_failure())
 }
 
-/// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal it is
-/// replaced, as other tools do, and [`ReplacementNotice::report`] states so.
+/// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal the file
+/// is replaced, as other tools do, and [`ReplacementNotice::report`] states so.
 pub(super) fn replaces(path: &Path, force: bool) -> Result<ReplacementNotice> {
     // A pipe or a device is written to, and has no content to replace.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());
@@ -73,13 +73,13 @@ pub(super) fn replaces(path: &Path, force: bool) -> Result<ReplacementNotice> {
     Err(Failure::Failed(vec![format!("Not confirmed; {name} was not changed.")]))
 }
 
-/// The message after a file was written.
+/// Message to print after a file was written.
 pub(super) struct ReplacementNotice {
     message: Option<String>,
 }
 
 impl ReplacementNotice {
-    /// Reports that a file was replaced, if the user was not asked.
+    /// Reports that a file was replaced if the user was not asked.
     pub(super) fn report(&self, output: &Output) {
         if let Some(message) = &self.message {
             output.remark(message);

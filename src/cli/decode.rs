@@ -8,11 +8,11 @@ use super::{Done, Failure, Result};
 use crate::bits::parse_hex;
 
 pub(crate) struct Explained {
-    /// The frame as captured, in readable form.
+    /// Captured frame in readable form.
     pub(crate) shown: String,
-    /// The frame as printed in JSON.
+    /// Captured frame as printed in JSON.
     pub(crate) compact: String,
-    /// Meaning in one string per line, or the reason why the bytes are not a frame.
+    /// Meaning of the frame, one string per line, or the reason why the bytes are not a frame.
     pub(crate) meaning: std::result::Result<Vec<String>, String>,
     pub(crate) more: Map<String, Json>,
 }
@@ -54,7 +54,8 @@ pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
     Err(Failure::Failed(broken))
 }
 
-/// Parses hex bytes: arguments of three bytes or more are separate frames; shorter ones are combined into one.
+/// Parses hex bytes. Arguments of three bytes or more are separate frames; shorter arguments are combined into one
+/// frame.
 pub(crate) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;
     if parts.iter().all(Vec::is_empty) {

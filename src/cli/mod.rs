@@ -35,10 +35,10 @@ use crate::app::Given;
 use crate::link::LinkUrl;
 use crate::profile::Formats;
 
-/// The successful ends of a command.
+/// Ways in which a command can succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Done {
-    /// Status 0: no differences and no error.
+    /// Status 0: there were no errors, and no differences were found.
     Well,
     /// Status 3: `diff` or `verify` has found differences.
     Differs,
@@ -48,7 +48,7 @@ pub enum Done {
 pub enum Failure {
     /// Status 2: incorrect usage.
     Usage(String),
-    /// Status 1: failure of the device or the operation, in one to four lines.
+    /// Status 1: the device or the operation has failed, described in one to four lines.
     Failed(Vec<String>),
     /// The reader of the output has closed it, so nothing more can be reported.
     NobodyReads,
@@ -56,7 +56,7 @@ pub enum Failure {
 
 pub type Result<T = Done> = std::result::Result<T, Failure>;
 
-/// The request in the arguments.
+/// What the program arguments request.
 pub enum Invocation {
     Command(u8),
     Window(Window),
@@ -70,7 +70,7 @@ pub struct Window {
 }
 
 /// Runs the command given by the arguments of a process, starting with the program name; without a command, requests
-/// the window. `formats` are the readable profiles, and `commands` the kinds of device with commands.
+/// the window. `formats` are the readable profiles, and `commands` are the available commands.
 pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands: Commands) -> Invocation {
     let arguments = match args::parse_arguments(words, commands) {
         Ok(arguments) => arguments,
@@ -92,7 +92,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands
     }
 }
 
-/// Prints why the window cannot open. Returns the exit status.
+/// Prints the reason why the window cannot open, and returns the exit status.
 pub fn no_window(why: &str) -> u8 {
     end(Err(Failure::Failed(vec![why.to_owned()])))
 }

@@ -2,7 +2,7 @@
 
 use super::Failure;
 
-/// Parses a decimal number, or a hexadecimal one with `0x`; a sign may precede.
+/// Parses a decimal number, or a hexadecimal number with `0x`. A sign may precede either.
 pub(crate) fn parse_number(text: &str) -> Option<i64> {
     let (sign, digits) = match text.strip_prefix('-') {
         Some(digits) => (-1, digits),

@@ -13,7 +13,7 @@ pub struct Output {
     commands: Commands,
 }
 
-/// Lines of label and value, aligned.
+/// Aligned lines with a label and a value each.
 #[derive(Default)]
 pub struct Lines(Vec<(String, String)>);
 
@@ -59,7 +59,7 @@ impl Output {
         }
     }
 
-    /// Prints a result like [`show`](Self::show) after a write, which must be reported even if the output fails.
+    /// Prints a result like [`show`](Self::show) after a write. The write must be reported even if the output fails.
     pub(super) fn show_written(&self, json: &Value, text: &str) -> Result<(), Failure> {
         self.show(json, text).map_err(|failure| match failure {
             Failure::Failed(lines) => {
@@ -82,7 +82,7 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{ending}")
 }
 
-/// Prints help unchanged, and an argument error in at most four lines, the last of which is the usage.
+/// Prints help unchanged, and argument errors in at most four lines, the last of which is the usage.
 pub(super) fn print_usage_error(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {
@@ -99,14 +99,14 @@ pub(super) fn print_usage_error(error: &clap::Error) {
     }
 }
 
-/// Writes to stderr, ignoring errors, since they cannot be reported anywhere.
+/// Writes to stderr and ignores errors, since they cannot be reported anywhere.
 pub(crate) fn say(text: &str) {
     let mut err = io::stderr().lock();
     let _ = err.write_all(show_control_characters(text).as_bytes()).and_then(|()| err.flush());
 }
 
-/// Replaces control characters with visible ones, since text from a file, a device or an argument must not control the
-/// terminal.
+/// Replaces control characters with visible ones, because text from a file, a device or an argument must not control
+/// the terminal.
 fn show_control_characters(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -115,7 +115,7 @@ fn show_control_characters(text: &str) -> String {
     shown
 }
 
-/// Prints warnings of the program itself to stderr; details are left to the log file of the window.
+/// Prints the program's own warnings to stderr. Details are only written to the log file of the window.
 pub(super) fn log_to_stderr() {
     let subscriber = tracing_subscriber::fmt()
         .with_writer(io::stderr)

@@ -12,7 +12,7 @@ use crate::worker::Committed;
 
 pub struct PlanReport {
     pub operations: Vec<Json>,
-    /// The plan with its cost as text.
+    /// Plan and its cost as text.
     pub text: String,
     pub write_cycles: u64,
 }
@@ -38,7 +38,7 @@ pub struct PlanStep {
     pub item: String,
     pub old: Option<String>,
     pub new: Option<String>,
-    /// Number of write cycles; zero for an operation that is saved together with others.
+    /// Number of write cycles, or zero for an operation that is saved together with others.
     pub write_cycles: u64,
 }
 
@@ -60,7 +60,8 @@ pub fn lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     lines
 }
 
-/// Formats a plan: its lines, its cost in addition to the write cycles known to this computer, and the limit, if any.
+/// Formats a plan with its lines, its cost in addition to the write cycles known to this computer, and the limit, if
+/// any.
 pub fn text<Base, Op: Operation>(
     plan: &Plan<Base, Op>,
     mut lines: Lines,
@@ -88,7 +89,7 @@ pub struct WriteSummary {
 }
 
 impl WriteSummary {
-    /// Summarises an executed plan, and prints what the logbook could not record.
+    /// Summarises an executed plan and prints what could not be recorded in the logbook.
     pub fn of(output: &Output, committed: Committed<Written>) -> Self {
         let Committed { written, backup, logbook_warning } = committed;
         warn(output, logbook_warning.as_ref());

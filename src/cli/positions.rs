@@ -7,7 +7,7 @@ use super::runner::{JobFailure, Runner, Runs};
 use super::{Done, Result};
 use crate::worker::JobInterruption as _;
 
-/// Runs `job` repeatedly and prints each result with `show`; a failed job ends the loop.
+/// Runs `job` repeatedly and prints each result with `show`. A failed job ends the loop.
 pub fn readings<D: Runs>(
     runner: &mut Runner<D>,
     position: &Position,

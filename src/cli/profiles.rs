@@ -24,7 +24,7 @@ pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
     Ok(document.body)
 }
 
-/// Reads a profile that is to be written to a device, so its schema must be fully known.
+/// Reads a profile that is to be written to a device. Its schema must therefore be fully known.
 pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
     let document =
         read_document(output, path)?.known().map_err(|error| failed(&explain::profile(path, &error, Kinds::NONE)))?;
@@ -86,7 +86,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Re
     output.commands().device(profile.kind())?.restore(common, output, restore, profile)
 }
 
-/// Returns the profile to restore. Refuses before anything is opened if consent cannot be given.
+/// Returns the profile to restore. If consent cannot be given, the restore is refused before anything is opened.
 pub fn to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
     if !restore.dry_run {
         require_consent(&restore.consent)?;
@@ -100,7 +100,7 @@ pub(crate) fn print_missing(output: &Output, items: &[impl Display]) {
     }
 }
 
-/// Reports which values of another device's mounting are left unchanged.
+/// Reports which mounting values of another device are left unchanged.
 pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
     for item in items {
         output.remark(&format!(
@@ -109,7 +109,7 @@ pub(crate) fn print_skipped_mounting(output: &Output, items: &[impl Display]) {
     }
 }
 
-/// Writes the plan that restores a profile, or only shows it.
+/// Writes the plan that restores a profile, or only prints it.
 pub fn write_restore(
     output: &Output,
     restore: &Restore,
@@ -167,9 +167,9 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
 
 /// Items that a restore leaves unchanged.
 pub struct UnrestoredItems {
-    /// Number of items that already have the value in the profile.
+    /// Number of items that already have the value from the profile.
     pub unchanged: u64,
-    /// Items that are present on one side only.
+    /// Items that are present only in the profile or only in the device.
     pub missing: Vec<String>,
     /// Values from another device that must be set up again.
     pub redo: Vec<String>,
@@ -227,7 +227,7 @@ fn show_restored(output: &Output, spent: &WriteSummary, left: &UnrestoredItems) 
     Ok(Done::Well)
 }
 
-/// Prints the result of writing an item: `operations` were carried out, `changes` describe old and new values.
+/// Prints the result of writing an item, with the executed `operations` and the old and new values in `changes`.
 pub(crate) fn show_changed(
     output: &Output,
     item: &str,

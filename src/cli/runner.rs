@@ -24,12 +24,12 @@ use crate::worker::{Device, Event, OpenError, Session, Worker};
 
 /// A device on which the command line can run jobs.
 pub trait Runs: Kind {
-    /// Part of a session outside its thread.
+    /// Part of a session that is kept outside the session's thread.
     type Context;
-    /// Whether the line allows a single master, which may be a connected drive: `--only-master` confirms that there is
-    /// none.
+    /// Whether the line allows only one master, which may be a connected drive. `--only-master` confirms that no drive
+    /// is connected.
     const HAS_ONE_MASTER: bool = false;
-    /// The command-line part of the kind.
+    /// Command-line part of the kind of device.
     const COMMANDS: &'static dyn DeviceCommands;
 
     /// Returns whether another master may be on the line of a link. If so, the user is asked before the first byte is
@@ -38,7 +38,7 @@ pub trait Runs: Kind {
         false
     }
 
-    /// Prepares a session, with the options of every command.
+    /// Prepares a session with the options that every command has.
     fn begin(session: &mut Session<Self>, given: &Given) -> Self::Context;
 
     /// Prints a message of the device immediately; by default, nothing is printed.
@@ -47,7 +47,7 @@ pub trait Runs: Kind {
     /// Describes a step for the progress bar on a terminal.
     fn step(doing: &Self::JobStep) -> String;
 
-    /// Returns a message about a step for the user at the terminal, printed when it changes.
+    /// Returns a message about a step for the user at the terminal. The message is printed when it changes.
     fn announce(_doing: &Self::JobStep) -> Option<String> {
         None
     }
@@ -57,7 +57,7 @@ pub trait Runs: Kind {
         None
     }
 
-    /// Returns the immediate effect of Ctrl-C, called each time; the argument is `true` for the second time, after which
+    /// Returns a function that is called for each Ctrl-C. Its argument is `true` for the second Ctrl-C, after which
     /// the program ends.
     fn interrupt(_kept: &Self::Context) -> Box<dyn Fn(bool) + Send> {
         Box::new(|_| ())
@@ -70,7 +70,7 @@ pub struct Runner<D: Runs> {
     interrupted: Arc<AtomicBool>,
     patience: SlowReplyNotice,
     pub remarks: Vec<D::DeviceMessage>,
-    /// Part of the session outside its thread.
+    /// Part of the session that is kept outside the session's thread.
     pub kept: D::Context,
 }
 
@@ -140,7 +140,7 @@ impl<D: Runs> Runner<D> {
         self.try_run(job).map_err(JobFailure::into_failure)
     }
 
-    /// Runs a job to its end; the caller handles the error.
+    /// Runs a job to its end and leaves its error to the caller.
     pub(super) fn try_run(&mut self, job: D::Job) -> std::result::Result<D::Output, JobFailure<D>> {
         self.remarks.clear();
         let id = self.worker.submit(job).map_err(|_| JobFailure::Worker)?;
@@ -192,7 +192,7 @@ impl<D: Runs> Runner<D> {
         }
     }
 
-    /// Waits between two jobs; ends early if the user cancels or the connection is lost.
+    /// Waits between two jobs. Ends early if the user cancels or the connection is lost.
     pub(super) fn pause(&self, duration: Duration) -> Result<()> {
         let end = Instant::now() + duration;
         loop {
@@ -231,7 +231,7 @@ impl<D: Runs> JobFailure<D> {
     }
 }
 
-/// Returns at most four lines: if there are more sentences, all but the first and last share a line.
+/// Combines sentences into at most four lines. If there are more sentences, all but the first and last share a line.
 fn lines(mut sentences: Vec<String>) -> Vec<String> {
     if sentences.len() > 4 {
         let last = sentences.split_off(sentences.len() - 1);
@@ -264,7 +264,7 @@ pub fn unexpected(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }
 
-/// Asks whether a drive is on the line, if the program runs on a terminal and the user has not confirmed yet.
+/// Asks whether a drive is on the line if the program runs on a terminal and the user has not confirmed yet.
 fn ask_for_other_master(common: &Common) -> Result<()> {
     if common.only_master || !can_ask() {
         return Ok(());
@@ -294,7 +294,7 @@ fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A progress bar on a terminal; prints nothing elsewhere.
+/// A progress bar that is drawn only on a terminal.
 pub(crate) struct Bar(ProgressBar);
 
 impl Default for Bar {
@@ -317,7 +317,7 @@ impl Bar {
 }
 
 impl Bar {
-    /// Prints a line above the bar, or where the bar will be.
+    /// Prints a line above the bar, or at the future position of the bar.
     fn print_above(&self, words: &str) {
         match self.0.length() {
             Some(_) => self.0.println(words),

@@ -16,25 +16,25 @@ use crate::link::{Clock, RealClock};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{Baud, CharacterFormat, Moment};
 
-/// Time to wait for bytes while the device is idle; also the latency of an interrupt.
+/// Time to wait for bytes while the device is idle. Also limits how long an interrupt takes.
 const PATIENCE: Duration = Duration::from_millis(20);
 /// Waiting time below which the thread sleeps, because socket time-outs only have the resolution of the system tick.
 const SHORT: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
 pub trait Simulated: ByteDevice {
-    /// Returns the line format at a moment, or `None` without a serial line or while the device does not receive.
+    /// Returns the line format at `now`, or `None` without a serial line or while the device does not receive.
     fn format(&self, _now: Moment) -> Option<CharacterFormat> {
         None
     }
 
-    /// Returns a device for another simultaneous client at this address, or `None` if the device has a single line, so
-    /// that clients are served one after another.
+    /// Returns a device for another simultaneous client at the given address, or `None` if the device has a single line
+    /// and clients are served one after another.
     fn another(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         None
     }
 
-    /// Returns the datagram side of the same device, on the port that also serves TCP.
+    /// Returns the UDP side of the same device, which is served on the same port as TCP.
     fn datagrams(&self) -> Option<Box<dyn DatagramDevice>> {
         None
     }
@@ -100,8 +100,8 @@ impl Device {
         Some(Device { kind: self.kind, simulated, clock: self.clock.clone() })
     }
 
-    /// Serves a client until it disconnects or the program is interrupted. `baud` is the baud rate of the client's end,
-    /// if it can be read.
+    /// Serves a client until it disconnects or the program is interrupted. The baud rate of the client's end is
+    /// followed if it can be read.
     fn serve(&mut self, client: &mut impl Client, ended: &AtomicBool) -> std::io::Result<()> {
         self.simulated.connect(self.clock.now());
         let mut buffer = [0; 512];
@@ -127,8 +127,8 @@ impl Device {
         Ok(())
     }
 
-    /// Follows the baud rate of the client. Parity cannot be read from this end, and over TCP not even the baud rate:
-    /// the client's format is then assumed to be correct.
+    /// Follows the baud rate of the client. Parity cannot be read from this end, and over TCP not even the baud rate,
+    /// so the client's format is then assumed to be correct.
     fn follow_format(&mut self, baud: Option<Baud>) {
         let now = self.clock.now();
         if let Some(own) = self.simulated.format(now) {
@@ -137,7 +137,7 @@ impl Device {
         }
     }
 
-    /// Prints a line that scripts wait for.
+    /// Prints the line that scripts wait for.
     fn ready(&self, place: &str) -> Result<()> {
         let mut out = std::io::stdout().lock();
         writeln!(out, "ready {} {place}", self.kind)
@@ -241,7 +241,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
     })
 }
 
-/// Serves a client over TCP. A client that cannot be served is disconnected; the next one may connect.
+/// Serves a client over TCP. A client that cannot be served is disconnected, and the next client may connect.
 fn attend(device: &mut Device, mut client: TcpStream, ended: &AtomicBool) {
     let _ = client
         .set_nonblocking(false)
@@ -295,8 +295,8 @@ mod terminal {
     }
 
     impl Link {
-        /// Creates the link. A link that points nowhere is left over from an earlier run and is replaced; anything else
-        /// belongs to another program and is refused.
+        /// Creates the link. A dangling link is left over from an earlier run and is replaced; anything else belongs to
+        /// another program and is refused.
         fn make(path: &Path, target: &Path) -> std::io::Result<Self> {
             if path.is_symlink() && !path.exists() {
                 std::fs::remove_file(path)?;

@@ -4,29 +4,29 @@ use std::time::{Duration, Instant};
 
 use crate::link::Replies;
 
-/// Time before the first message.
+/// Time before the first notice.
 const WONDERS: Duration = Duration::from_secs(3);
-/// Interval between the following checks.
+/// Interval between checks after the first notice.
 const LOOKS: Duration = Duration::from_millis(500);
-/// Reply time from which a reply is considered slow.
+/// Minimum reply time that is considered slow.
 const SLOW: Duration = Duration::from_millis(100);
 
 pub struct Pace {
     pub(crate) replies: Replies,
-    /// Allowed reply time, as set by `timeout=` in the link.
+    /// Time-out for a reply, as set by `timeout=` in the link.
     pub(crate) timeout: Duration,
     /// The longest `timeout=`.
     pub(crate) longest: Duration,
 }
 
-/// Monitor of a long command, which reports once that the command is slow.
+/// Monitor that reports once that a long command is slow.
 pub(super) struct SlowReplyNotice {
     pace: Option<Pace>,
     look: Instant,
 }
 
 impl SlowReplyNotice {
-    /// Starts the time now; a kind of device without a pace is never reported as slow.
+    /// Starts measuring time now. A kind of device without a pace is never reported as slow.
     pub(super) fn begin(pace: Option<Pace>) -> Self {
         SlowReplyNotice { pace, look: Instant::now() + WONDERS }
     }
@@ -50,7 +50,7 @@ impl SlowReplyNotice {
 }
 
 impl Pace {
-    /// Returns the message, with how to allow more time if that may help.
+    /// Returns the message, including how to allow more time if that may help.
     fn words(&self) -> Option<String> {
         let (timeout, longest) = (self.timeout, self.replies.longest());
         let more = if timeout < self.longest {
@@ -80,7 +80,7 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// Returns the message for a time-out in milliseconds after replies with these times in milliseconds.
+    /// Returns the message for a time-out and for reply times, all in milliseconds.
     fn message(timeout: u64, took: &[u64]) -> Option<String> {
         let replies = Replies::default();
         took.iter().for_each(|ms| replies.note(Duration::from_millis(*ms)));

@@ -38,7 +38,7 @@ impl Clock for RealClock {
     }
 }
 
-/// A clock that only advances while a thread waits on it, so an hour takes no real time.
+/// A clock that advances only while a thread waits on it, so that waiting an hour takes no real time.
 #[derive(Debug, Default)]
 pub struct VirtualClock {
     nanoseconds: AtomicU64,

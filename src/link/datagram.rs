@@ -14,7 +14,7 @@ pub trait DatagramChannel: Send {
     /// Sends subsequent packets to this port of the target.
     fn set_target_port(&mut self, port: u16);
 
-    /// Also receives the packets that the target sends to a multicast group. Virtual devices have a single receiver and
+    /// Also receives packets that the target sends to a multicast group. Virtual devices have a single receiver and
     /// ignore this call.
     ///
     /// # Errors
@@ -39,14 +39,14 @@ pub trait DatagramChannel: Send {
 
 /// A factory for datagram channels to a target.
 pub trait DatagramPort: Send {
-    /// Opens a local port.
+    /// Opens a channel on a local port.
     ///
     /// # Errors
     /// No port is available, or the target cannot be reached.
     fn open(&mut self) -> Result<Box<dyn DatagramChannel>, LinkError>;
 }
 
-/// A request to all devices in a network, and their replies.
+/// A channel for requests to all devices in a network, and for their replies.
 pub trait Broadcast: Send {
     /// Sends a request to all devices.
     ///

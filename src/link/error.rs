@@ -2,11 +2,11 @@
 
 use std::io;
 
-/// A connection cannot be opened, or was lost.
+/// Error for a connection that cannot be opened or was lost.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{target}: {kind}")]
 pub struct LinkError {
-    /// Port, host or file as given by the user.
+    /// Port, host or file, as given by the user.
     pub target: String,
     /// Kind of error.
     pub kind: LinkErrorKind,
@@ -18,28 +18,28 @@ pub enum LinkErrorKind {
     /// The port, host or file does not exist.
     #[error("does not exist")]
     NotFound,
-    /// The user has no permission to open it.
+    /// The user has no permission to open the target.
     #[error("permission denied")]
     Permission {
-        /// Group with permission, if the system reports one.
+        /// Group whose members have permission, if the system reports one.
         group: Option<String>,
     },
-    /// Another program is using it.
+    /// Another program is using the target.
     #[error("in use by another program")]
     Busy,
     /// The path exists but is not a serial port.
     #[error("not a serial port")]
     NotAPort,
-    /// Nothing listens at the address, or it cannot be reached.
+    /// Nothing listens at the address, or the address cannot be reached.
     #[error("cannot be reached: {0}")]
     Unreachable(String),
-    /// The connection was lost: unplugged, or closed by the remote end.
+    /// The connection was lost because it was unplugged or closed by the remote end.
     #[error("connection lost")]
     Lost,
-    /// A recording has no answer to the request.
+    /// The port cannot be set to the requested format.
     #[error("cannot be set to {0}")]
     Format(String),
-    /// Any other error of the system.
+    /// The port cannot be set to the requested format.
     #[error("the recording has no answer to {0}")]
     NotRecorded(String),
     /// Any other error reported by the system.
@@ -53,8 +53,8 @@ impl LinkError {
         LinkError { target: target.into(), kind }
     }
 
-    /// Converts an I/O error on an open connection. Any such error is treated as a lost connection, unless it clearly
-    /// has another cause.
+    /// Converts an I/O error on an open connection. Any error that does not clearly have another cause is treated as a
+    /// lost connection.
     pub(super) fn during_use(target: &str, error: &io::Error) -> Self {
         let kind = match error.kind() {
             io::ErrorKind::InvalidInput | io::ErrorKind::OutOfMemory => LinkErrorKind::Other(error.to_string()),

@@ -18,15 +18,15 @@ use super::{Ctx, Direction, LinkError, LinkErrorKind};
 use crate::bits::MaskedBytes;
 use crate::units::Moment;
 
-/// Tries before a reading command fails.
+/// Number of attempts before a reading command fails.
 pub(crate) const TRIES: u32 = 5;
-/// Time without a valid reply after which no further attempt is made, since a command must finish within ten seconds.
+/// Time without a valid reply after which no further attempt is made, because a command must finish within ten seconds.
 const PATIENCE: Duration = Duration::from_secs(8);
 /// Longest interval between two checks for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
-/// Duration of continuous reception after which a line is considered never silent.
+/// Duration of continuous reception after which a line is considered never to be silent.
 const NEVER_SILENT: Duration = Duration::from_secs(2);
-/// Maximum number of bytes kept that belong to no frame, because a socket can deliver noise without limit.
+/// Maximum number of bytes kept that belong to no frame, because a socket can deliver unlimited noise.
 pub(crate) const MOST_KEPT: usize = 4096;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ pub(crate) enum LineError {
 }
 
 impl LineError {
-    /// Converts the line error to the error type of the device on that line.
+    /// Converts a line error to the error type of the device on the line.
     pub(crate) fn into_device_error<E>(self, cancelled: E, never_silent: E, link: fn(LinkError) -> E) -> E {
         match self {
             LineError::Cancelled => cancelled,
@@ -58,10 +58,10 @@ impl From<LinkError> for LineError {
 
 pub(crate) struct SerialLine<'a> {
     pub(crate) ctx: Ctx<'a>,
-    /// Time to repeat requests without an answer, if not the default.
+    /// Time during which unanswered requests are repeated, if not the default.
     pub(crate) patience: Option<Duration>,
     shielded: bool,
-    /// The skipped bytes, or `None` if they are not being recorded.
+    /// Skipped bytes, or `None` if they are not being recorded.
     passed: Option<Vec<u8>>,
 }
 
@@ -74,11 +74,13 @@ impl<'a> SerialLine<'a> {
         self.ctx.clock.now()
     }
 
-    /// Sets whether cancellation is ignored; returns the previous setting.
+    /// Sets whether cancellation is ignored, and returns the previous setting.
     pub(crate) fn shield(&mut self, shielded: bool) -> bool {
         std::mem::replace(&mut self.shielded, shielded)
     }
 
+    /// Checks whether the user has cancelled.
+    ///
     /// # Errors
     /// Returns [`LineError::Cancelled`] if the user has cancelled.
     pub(crate) fn check_cancel(&self) -> Result<(), LineError> {
@@ -125,8 +127,8 @@ impl<'a> SerialLine<'a> {
         if !self.shielded && self.ctx.cancel.stops_transaction() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
-    /// Prepares an exchange on a line without packets: checks for cancellation and waits for silence. On a busy line,
-    /// the silence has to last for `quiet`.
+    /// Prepares an exchange on a line without packets by checking for cancellation and waiting for silence. On a busy
+    /// line, the silence has to last for `quiet`.
     ///
     /// # Errors
     /// Returns a [`LineError`] if the user cancels or the line stays busy.
@@ -146,7 +148,8 @@ impl<'a> SerialLine<'a> {
         }
     }
 
-    /// Sends a frame and traces its visible bytes, even if the frame is not part of a recording.
+    /// Sends a frame and traces it as `shown`, with masked bytes. The error for a frame that is not part of a recording
+    /// contains only the masked bytes.
     ///
     /// # Errors
     /// Returns connection errors.
@@ -174,7 +177,7 @@ impl<'a> SerialLine<'a> {
         self.passed = Some(Vec::new());
     }
 
-    /// Returns the recorded bytes that arrived too late or after a reply, and stops recording them.
+    /// Returns the recorded bytes that arrived too late or after a reply, and stops recording.
     pub(crate) fn take_late_bytes(&mut self) -> Vec<u8> {
         self.passed.take().unwrap_or_default()
     }
@@ -194,8 +197,8 @@ impl<'a> SerialLine<'a> {
         self.show(at, MaskedBytes::hidden(count));
     }
 
-    /// Counts an unanswered attempt and returns whether another is allowed. `longest` is the maximum duration of an
-    /// attempt.
+    /// Counts an unanswered attempt and returns whether another attempt is allowed. `longest` is the maximum duration
+    /// of an attempt.
     pub(crate) fn may_ask_again(&mut self, state: &mut LineState, tries: u32, longest: Duration) -> bool {
         let now = self.now();
         state.damaged += 1;
@@ -210,8 +213,8 @@ impl<'a> SerialLine<'a> {
         again
     }
 
-    /// Keeps receiving after a time-out, for longer each time. Bytes that arrive now belong to an earlier request on a
-    /// connection that is slower than its margin, and must not be taken for the reply to the next request.
+    /// Keeps receiving after a time-out, for longer each time. Bytes that arrive now answer an earlier request on a
+    /// connection slower than its margin, and must not be taken for the reply to the next request.
     ///
     /// # Errors
     /// See [`LineError`].
@@ -236,7 +239,7 @@ impl<'a> SerialLine<'a> {
     }
 
     /// Skips late bytes, since every unanswered request may still get a reply. The first late byte shows the maximum
-    /// delay of the connection; nothing is sent until that much time has passed after the last one.
+    /// delay of the connection, and nothing is sent until that much time has passed after the last late byte.
     ///
     /// # Errors
     /// See [`LineError`].
@@ -255,7 +258,7 @@ impl<'a> SerialLine<'a> {
         Ok(())
     }
 
-    /// Receives until nothing arrives for `quiet`.
+    /// Receives bytes until the line is silent for `quiet`.
     ///
     /// # Errors
     /// Returns connection errors, or [`LineError::NeverSilent`].

@@ -1,7 +1,7 @@
 //! Connections, clocks, and the execution context of procedures.
 //!
-//! Most devices require a byte stream ([`ByteLink`]); some also exchange cyclic data as datagrams ([`DatagramChannel`]).
-//! Protocols with registers, process data or explicit messages share the same [`Ctx`].
+//! Most devices require a byte stream ([`ByteLink`]); some also exchange cyclic data as datagrams
+//! ([`DatagramChannel`]). Protocols with registers, process data or explicit messages share the same [`Ctx`].
 
 #![warn(missing_docs)]
 
@@ -42,14 +42,14 @@ use crate::units::{CharacterFormat, Moment};
 
 /// A connection that transports bytes in both directions.
 pub trait ByteLink: Send {
-    /// Writes bytes in a single call, so that no gap arises within a frame. May return before the last bit has been
+    /// Writes bytes in a single call, so that there is no gap within a frame. May return before the last bit has been
     /// sent.
     ///
     /// # Errors
     /// The line was lost.
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError>;
 
-    /// Waits until `until` for bytes and appends them to `into`; appends nothing on time-out.
+    /// Waits until `until` for bytes and appends them to `into`. Appends nothing on time-out.
     ///
     /// # Errors
     /// The line was lost.
@@ -62,7 +62,7 @@ pub trait ByteLink: Send {
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
     /// Returns whether [`set_format`](Self::set_format) has an effect. A device server has its own settings, which are
-    /// not visible here: a reply through it proves nothing about baud rate and parity.
+    /// not visible here, so a reply through it proves nothing about baud rate and parity.
     fn sets_format(&self) -> bool {
         true
     }
@@ -81,7 +81,7 @@ pub struct Cancel(Arc<CancelState>);
 #[derive(Debug)]
 struct CancelState {
     requested: AtomicBool,
-    /// Number of transactions left before automatic cancellation.
+    /// Number of transactions left before cancellation is requested automatically.
     fuse: AtomicU64,
 }
 
@@ -114,7 +114,7 @@ impl Cancel {
         self.0.requested.load(Ordering::SeqCst)
     }
 
-    /// Returns whether the next transaction must not begin. Called before each transaction.
+    /// Returns whether the next transaction must not begin. Must be called before each transaction.
     pub fn stops_transaction(&self) -> bool {
         let left = self.0.fuse.load(Ordering::SeqCst);
         if left == 0 {
@@ -126,7 +126,7 @@ impl Cancel {
     }
 }
 
-/// Execution context of a procedure: connection, clock, cancellation and trace.
+/// Execution context of a procedure, with connection, clock, cancellation and trace.
 pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
     /// Connection to the device.
     pub wire: &'a mut W,

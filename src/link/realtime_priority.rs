@@ -3,8 +3,8 @@
 
 use thread_priority::{Error, ThreadPriority};
 
-/// Asks the system to wake the calling thread before all ordinary ones, until it ends. Returns whether the system
-/// agreed: Linux does for users with permission (`rtprio` among their limits).
+/// Asks the system to schedule the calling thread before all ordinary threads until it ends. Returns whether the system
+/// agreed, which on Linux requires a permission (`rtprio` among the user's limits).
 pub fn wake_before_others() -> bool {
     let asked = ask();
     if let Err(error) = &asked {
@@ -13,7 +13,7 @@ pub fn wake_before_others() -> bool {
     asked.is_ok()
 }
 
-/// Requests the lowest real-time priority, which is above every ordinary priority.
+/// Requests the lowest real-time priority, which is above all ordinary priorities.
 #[cfg(unix)]
 fn ask() -> Result<(), Error> {
     use thread_priority::unix::{

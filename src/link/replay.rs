@@ -8,12 +8,12 @@ use crate::units::{CharacterFormat, Moment};
 
 struct Exchange {
     request: MaskedBytes,
-    /// The reply, or `None` if it never arrived or was masked.
+    /// Recorded reply, or `None` if it never arrived or was masked.
     reply: Option<Vec<u8>>,
 }
 
-/// Playback of a recording. Each request is searched for from the position of the previous one, wrapping around once;
-/// masked bytes match anything.
+/// Playback of a recording. Each request is searched for from the position of the previous one, wrapping around once.
+/// Masked bytes match anything.
 pub struct ReplayLink {
     target: String,
     exchanges: Vec<Exchange>,

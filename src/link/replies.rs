@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Measured reply times of a session, shared by its clones.
+/// Measured reply times of a session, shared by all clones.
 #[derive(Clone, Debug, Default)]
 pub struct Replies(Arc<Measured>);
 
@@ -32,7 +32,7 @@ impl Replies {
         self.0.sum.load(Ordering::Relaxed).checked_div(count).map(Duration::from_micros)
     }
 
-    /// Returns the longest reply time; zero before the first reply.
+    /// Returns the longest reply time, or zero before the first reply.
     pub fn longest(&self) -> Duration {
         Duration::from_micros(self.0.longest.load(Ordering::Relaxed))
     }

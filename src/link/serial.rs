@@ -15,7 +15,7 @@ use crate::units::{CharacterFormat, Moment, Parity};
 pub struct PortInfo {
     /// Path or name, as used in a link.
     pub path: String,
-    /// Manufacturer and product of the adapter as reported by the system; may be empty.
+    /// Manufacturer and product of the adapter as reported by the system. May be empty.
     pub description: String,
     /// Serial number of a USB adapter.
     pub serial_number: Option<String>,
@@ -65,11 +65,11 @@ impl SerialLink {
         Self::open_as(path, format, clock, |builder| builder)
     }
 
-    /// Opens the port of an adapter with DTR asserted, since an edge of DTR resets many microcontrollers. Linux asserts
-    /// it automatically, other systems on request.
+    /// Opens the port of an adapter and keeps DTR asserted, because an edge of DTR resets many microcontrollers. Linux
+    /// asserts DTR automatically, other systems on request.
     ///
     /// # Errors
-    /// As for [`open`](Self::open).
+    /// The same as for [`open`](Self::open).
     pub fn open_adapter(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         Self::open_as(path, format, clock, |builder| builder.dtr_on_open(true))
     }
@@ -163,7 +163,7 @@ fn parity(parity: Parity) -> serialport::Parity {
     }
 }
 
-/// The system's error message for a device without a baud rate, such as /dev/null.
+/// System error message for a device without a baud rate, such as /dev/null.
 const NOT_A_TERMINAL: &str = "Not a typewriter";
 
 fn opening(path: &str, error: &serialport::Error) -> LinkErrorKind {
@@ -187,7 +187,8 @@ mod platform {
 
     use super::LinkErrorKind;
 
-    /// Returns whether `serialport` can list ports: it reads this folder without checking that the folder exists.
+    /// Returns whether `serialport` can list ports. The crate reads this folder without checking that the folder
+    /// exists.
     pub(super) fn lists_ports() -> bool {
         !cfg!(target_os = "linux") || Path::new("/sys/class/tty").is_dir()
     }
@@ -205,7 +206,7 @@ mod platform {
         LinkErrorKind::Permission { group }
     }
 
-    /// Returns the name of a group, except that of root, which must not be recommended.
+    /// Returns the name of a group, or `None` for the root group, which must not be recommended.
     fn group_name(gid: u32) -> Option<String> {
         let groups = std::fs::read_to_string("/etc/group").ok()?;
         let id = gid.to_string();

@@ -8,7 +8,7 @@ use super::{ByteLink, Clock, DatagramChannel, DatagramPort, LinkError};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{CharacterFormat, Moment};
 
-/// A connection to a virtual device, which can be shared with a test that inspects it, or with the next link.
+/// A connection to a virtual device. The device can be shared with a test that inspects it, or with the next link.
 pub struct SimLink {
     device: Arc<Mutex<dyn ByteDevice>>,
     clock: Arc<dyn Clock>,
@@ -63,18 +63,18 @@ impl ByteLink for SimLink {
     }
 }
 
-/// Datagram channels to a virtual device.
+/// Factory for datagram channels to a virtual device.
 pub struct SimPort {
     device: Arc<Mutex<dyn DatagramDevice>>,
     clock: Arc<dyn Clock>,
     next: u16,
 }
 
-/// First port to be assigned; the choice is arbitrary.
+/// First port to be assigned, chosen arbitrarily.
 const FIRST_PORT: u16 = 50_000;
 
 impl SimPort {
-    /// Creates a factory for channels to a device.
+    /// Creates a factory for datagram channels to a device.
     pub fn new(device: Arc<Mutex<dyn DatagramDevice>>, clock: Arc<dyn Clock>) -> Self {
         SimPort { device, clock, next: FIRST_PORT }
     }

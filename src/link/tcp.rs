@@ -18,7 +18,7 @@ pub struct TcpLink {
 
 impl TcpLink {
     const CONNECT_TIME: Duration = Duration::from_secs(3);
-    /// Longest wait that is polled: a socket's own time-out only has the resolution of the system tick.
+    /// Longest wait that is polled, because the time-out of a socket only has the resolution of the system tick.
     const SHORT: Duration = Duration::from_millis(10);
     const GLANCE: Duration = Duration::from_micros(500);
 
@@ -117,7 +117,7 @@ mod tests {
     use crate::link::RealClock;
     use std::net::TcpListener;
 
-    /// A tick of the system may be ten milliseconds: a hundred checks would take a second.
+    /// A system tick may last ten milliseconds, so a hundred checks that each wait for one would take a second.
     #[test]
     fn polling_does_not_wait_and_short_waits_are_short() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();

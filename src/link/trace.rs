@@ -24,7 +24,7 @@ pub enum Direction {
     Received,
 }
 
-/// A frame on the line.
+/// A recorded frame on the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceEntry {
     /// Time at which the first byte was sent or received.
@@ -50,7 +50,7 @@ impl fmt::Debug for Trace {
 }
 
 impl Trace {
-    /// Calls `watcher` for every subsequent frame. It must not block.
+    /// Calls `watcher` for every subsequent frame. The watcher must not block.
     pub fn watch(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
         self.watchers.push(Box::new(watcher));
     }
@@ -73,7 +73,7 @@ pub const HEADER: &str = "# encoder-studio trace 1";
 /// Writes the header of a trace file.
 ///
 /// # Errors
-/// Errors of the writer.
+/// Returns errors of the writer.
 pub fn write_header(file: &mut impl Write) -> io::Result<()> {
     writeln!(file, "{HEADER}")
 }
@@ -81,7 +81,7 @@ pub fn write_header(file: &mut impl Write) -> io::Result<()> {
 /// Appends a line to a trace file.
 ///
 /// # Errors
-/// Errors of the writer.
+/// Returns errors of the writer.
 pub fn write_entry(file: &mut impl Write, entry: &TraceEntry) -> io::Result<()> {
     let sign = match entry.direction {
         Direction::Sent => '>',
@@ -90,7 +90,7 @@ pub fn write_entry(file: &mut impl Write, entry: &TraceEntry) -> io::Result<()> 
     writeln!(file, "{:.6} {sign} {}", entry.at.since_start().as_secs_f64(), entry.bytes)
 }
 
-/// The reason why a string is not a trace.
+/// Reason why a string is not a trace.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TraceFileError {
     /// The first line is not the header of a trace file.

@@ -15,17 +15,17 @@ use crate::units::Moment;
 const LONGEST: usize = 1500;
 /// Maximum number of received packets waiting to be read; further packets are dropped.
 const WAITING: usize = 64;
-/// Maximum time until a receiver thread notices that its owner has been dropped.
+/// Maximum time until a receiver thread notices that its channel has been dropped.
 const GLANCE: Duration = Duration::from_millis(100);
 
-/// UDP channels to the target of a TCP connection, bound to the local address that leads to it.
+/// UDP channels to the target of a TCP connection, bound to the local address used to reach it.
 pub struct UdpPort {
     target: String,
     clock: Arc<dyn Clock>,
 }
 
 impl UdpPort {
-    /// Creates a factory for channels to a target, given as `host:port` of its TCP connection.
+    /// Creates a factory for channels to a target, which is given as the `host:port` of its TCP connection.
     pub fn new(target: &str, clock: Arc<dyn Clock>) -> Self {
         UdpPort { target: target.to_owned(), clock }
     }
@@ -64,7 +64,7 @@ impl DatagramPort for UdpPort {
     }
 }
 
-/// Returns the local address from which packets to the target leave.
+/// Returns the local address from which packets to the target are sent.
 fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
     // Sends nothing, and selects the network interface.
@@ -75,8 +75,8 @@ fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     }
 }
 
-/// Packets to and from one target. A dedicated thread receives them, so that a wait ends exactly when the packet
-/// arrives or the time is up.
+/// A channel for packets to and from a single target. A dedicated thread receives packets, so that a wait ends exactly
+/// when a packet arrives or the time is up.
 struct UdpChannel {
     name: String,
     target: SocketAddrV4,
@@ -214,13 +214,13 @@ impl UdpBroadcast {
     }
 }
 
-/// Returns the broadcast addresses of the directly connected networks, if the system lists them.
+/// Returns the broadcast addresses of the directly connected networks, if the system lists any.
 fn local_networks() -> Vec<Ipv4Addr> {
     std::fs::read_to_string("/proc/net/route").map(|table| broadcasts(&table)).unwrap_or_default()
 }
 
-/// Returns the broadcast addresses in Linux's routing table, whose columns are interface, destination, gateway, flags,
-/// … and, eighth, the mask.
+/// Returns the broadcast addresses in Linux's routing table, whose columns include interface, destination, gateway,
+/// flags, and, as the eighth, the mask.
 fn broadcasts(table: &str) -> Vec<Ipv4Addr> {
     let address = |text: &str| u32::from_str_radix(text, 16).ok().map(|raw| u32::from_be_bytes(raw.to_le_bytes()));
     let mut found = Vec::new();

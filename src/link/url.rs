@@ -22,7 +22,7 @@ pub enum Scheme {
     Bridge,
     /// A Modbus/TCP gateway to process data.
     Modbus,
-    /// EtherNet/IP: explicit messages over TCP, cyclic data as datagrams.
+    /// EtherNet/IP, with explicit messages over TCP and cyclic data as datagrams.
     Enip,
 }
 
@@ -42,7 +42,7 @@ impl Scheme {
         Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
     }
 
-    /// Describes what has to follow the colon, with an example.
+    /// Returns a description of what has to follow the colon, with an example.
     fn needs(self) -> &'static str {
         match self {
             Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
@@ -60,17 +60,17 @@ impl Scheme {
 pub struct LinkUrl {
     /// Kind of connection.
     pub scheme: Scheme,
-    /// Path, host and port, or file; empty for `sim:`. For `bridge:`, a path, or host and port after `tcp:`; for
-    /// `modbus:` and `enip:`, always with the port, which defaults to 502 or 44818.
+    /// Path, host and port, or file; empty for `sim:`. For `bridge:`, a path, or host and port after `tcp:`. For
+    /// `modbus:` and `enip:`, the port is always included and defaults to 502 or 44818.
     pub target: String,
     /// Parameters after the question mark.
     pub query: Query,
 }
 
-/// The resource of the computer that a link uses, which several links may share.
+/// A resource of the computer that a link uses and that several links may share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire<'a> {
-    /// The device is in this process.
+    /// A device in this process, without a connection.
     Inside,
     /// A serial port.
     Port(&'a str),
@@ -80,11 +80,11 @@ pub enum Wire<'a> {
     File(&'a str),
 }
 
-/// Parameters in the order written. Names are lower case and unique.
+/// Parameters in the order in which they were written. Names are lower case and unique.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Query(Vec<(String, String)>);
 
-/// The reason why a string is not a link.
+/// Reason why a string is not a link.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UrlError {
     /// The colon is missing, or the keyword before it is unknown.
@@ -177,7 +177,7 @@ impl LinkUrl {
         LinkUrl { scheme: Scheme::Sim, target: String::new(), query: Query::default() }
     }
 
-    /// Returns the resource that must be opened.
+    /// Returns the resource that must be opened for the link.
     pub fn wire(&self) -> Wire<'_> {
         let target = self.target.as_str();
         match (self.scheme, target.strip_prefix("tcp:")) {
@@ -212,7 +212,7 @@ impl LinkUrl {
 const MODBUS_PORT: &str = ":502";
 const ENIP_PORT: &str = ":44818";
 
-/// Returns whether the target is a host without a port; the host may be an IPv6 address in brackets.
+/// Returns whether the target is a host without a port. The host may be an IPv6 address in brackets.
 fn has_no_port(target: &str) -> bool {
     !target.is_empty() && (!target.contains(':') || target.ends_with(']'))
 }
@@ -246,12 +246,12 @@ impl FromStr for Query {
 }
 
 impl Query {
-    /// Returns the value of a parameter.
+    /// Returns the value of a parameter, if present.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
     }
 
-    /// Sets a parameter; an existing one keeps its position.
+    /// Sets a parameter. An existing parameter keeps its position.
     pub fn set(&mut self, name: &str, value: &str) {
         match self.0.iter_mut().find(|(own, _)| own == name) {
             Some((_, own)) => value.clone_into(own),
@@ -259,7 +259,7 @@ impl Query {
         }
     }
 
-    /// Returns all parameters in the order written.
+    /// Returns all parameters in the order in which they were written.
     pub fn pairs(&self) -> &[(String, String)] {
         &self.0
     }

@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 use super::ron_text::{Entries, Writer};
 use super::{Comparison, ProfileError};
 
-/// Profile of one kind of device, implemented by the device.
+/// A profile of one kind of device, implemented by the device.
 pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// Keyword for the kind of device on the command line and in profiles.
     const KIND: &'static str;
@@ -16,23 +16,23 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// Entry of the format in [`Formats`].
     const FORMAT: &'static dyn ProfileFormat = &FormatOf::<Self>(PhantomData);
 
-    /// The profile formats reduced to this kind, for callers that accept no other.
+    /// Profile formats restricted to this kind, for callers that accept no other kind.
     const FORMATS: Formats = Formats::new(&[Self::FORMAT]);
 
     /// Parses the profile from the entries of a document.
     ///
     /// # Errors
-    /// Names the invalid entry.
+    /// Returns an error that names the invalid entry.
     fn read(entries: &mut Entries) -> Result<Self, ProfileError>;
 
     /// Writes the entries of the profile to a document.
     fn write(&self, writer: &mut Writer);
 
-    /// Compares the profile with another one.
+    /// Compares this profile with another one.
     fn compare(&self, other: &Self) -> Comparison;
 }
 
-/// Parser for the profiles of one kind of device.
+/// A parser for the profiles of one kind of device.
 pub trait ProfileFormat: fmt::Debug + Sync {
     /// Returns the keyword for the kind of device.
     fn kind(&self) -> &'static str;
@@ -40,7 +40,7 @@ pub trait ProfileFormat: fmt::Debug + Sync {
     /// Parses a profile.
     ///
     /// # Errors
-    /// Names the invalid entry.
+    /// Returns an error that names the invalid entry.
     fn parse(&self, entries: &mut Entries) -> Result<Body, ProfileError>;
 }
 
@@ -52,13 +52,13 @@ pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
     /// Writes the entries of the profile to a document.
     fn emit(&self, writer: &mut Writer);
 
-    /// Returns a copy in a box.
+    /// Returns a boxed copy.
     fn boxed(&self) -> Box<dyn ProfileBody>;
 
-    /// Returns whether the body equals another one.
+    /// Returns whether this body equals another one.
     fn equals(&self, other: &dyn ProfileBody) -> bool;
 
-    /// Compares the body with another one, or returns `None` if that is of another kind of device.
+    /// Compares this body with another one, or returns `None` if the other is of a different kind of device.
     fn compared(&self, other: &dyn ProfileBody) -> Option<Comparison>;
 }
 
@@ -104,7 +104,7 @@ impl<P: Profile> ProfileFormat for FormatOf<P> {
     }
 }
 
-/// Content of a profile for any kind of device.
+/// The content of a profile for any kind of device.
 pub struct Body(Box<dyn ProfileBody>);
 
 impl Body {
@@ -122,7 +122,7 @@ impl Body {
         self.0.emit(writer);
     }
 
-    /// Compares the profile with another one.
+    /// Compares this profile with another one.
     ///
     /// # Errors
     /// [`ProfileError::OtherKind`].
@@ -135,7 +135,7 @@ impl Body {
         ProfileError::OtherKind { found: self.kind(), wanted }
     }
 
-    /// Returns the profile as `P`, or `None` if it is of another kind of device.
+    /// Returns the profile as `P`, or `None` if the profile is of another kind of device.
     pub fn get<P: Profile>(&self) -> Option<&P> {
         let any: &dyn Any = self.0.as_ref();
         any.downcast_ref()

@@ -4,8 +4,8 @@ use std::any::Any;
 use std::error::Error;
 use std::fmt;
 
-/// The device-specific reason why a profile entry is refused. It displays like the wrapped error and compares equal to
-/// it.
+/// The device-specific reason why a profile entry is refused. Displays like the wrapped error and compares equal to
+/// that error.
 pub struct Cause(Box<dyn BoxedFact>);
 
 trait BoxedFact: Any + Error + Send + Sync {

@@ -7,7 +7,7 @@ use std::ops::Range;
 pub struct Difference {
     /// Name of the item as accepted by `read`, such as `field:1@3+2`.
     pub item: String,
-    /// Value on the left side; bytes as upper-case hex.
+    /// Value on the left side, with bytes as upper-case hex.
     pub left: String,
     /// Value on the right side.
     pub right: String,
@@ -16,7 +16,7 @@ pub struct Difference {
 /// Result of a comparison.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Comparison {
-    /// The differences in the order of the device memory.
+    /// Differences in device memory order.
     pub differences: Vec<Difference>,
     /// Number of values compared. Each byte of a data field counts as one, and so does its status byte.
     pub compared: u64,
@@ -27,7 +27,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Compares an item that counts as one value, if both sides have it.
+    /// Compares an item that counts as one value if both sides have the item.
     pub fn add<V: PartialEq + ToString>(&mut self, item: String, left: Option<V>, right: Option<V>) {
         match (left, right) {
             (None, None) => {}
@@ -42,13 +42,13 @@ impl Comparison {
         }
     }
 
-    /// Returns the items that are present on one side only.
+    /// Returns the items that are present on only one side.
     pub fn missing(&self) -> Vec<String> {
         self.only_left.iter().chain(&self.only_right).cloned().collect()
     }
 }
 
-/// Returns the runs of differing bytes, up to the length of the shorter side.
+/// Returns the ranges of consecutive differing bytes, up to the length of the shorter side.
 pub(crate) fn runs(left: &[u8], right: &[u8]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (at, _) in left.iter().zip(right).enumerate().filter(|(_, (a, b))| a != b) {

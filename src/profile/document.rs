@@ -30,17 +30,17 @@ pub struct Document {
     pub unknown: Unknown,
     /// Schema version. A profile newer than [`SCHEMA`] can only be viewed, since saving would lose its unknown parts.
     pub schema: u32,
-    /// Paths of entries that the schema does not define; those of an older file are moved into `extra`.
+    /// Paths of entries that the schema does not define. Such entries in an older file are moved into `extra`.
     pub beyond: Vec<String>,
 }
 
 impl Document {
-    /// Creates a document with the given time of reading.
+    /// Creates a document with the given time at which the profile was read.
     pub fn new(saved: String, body: Body) -> Self {
         Document { saved: Some(saved), note: None, body, unknown: Unknown::new(), schema: SCHEMA, beyond: Vec::new() }
     }
 
-    /// Parses a profile of a kind of device with a format in `formats`.
+    /// Parses a profile using one of the formats in `formats`.
     ///
     /// # Errors
     /// Returns line and column if the file is not valid RON, otherwise the invalid entry.
@@ -85,13 +85,13 @@ impl Document {
         Ok(Document { saved, note, body, unknown, schema, beyond: reading.beyond() })
     }
 
-    /// Returns whether the schema is newer: the profile can be viewed and compared, but neither saved nor written to a
-    /// device.
+    /// Returns whether the schema is newer than supported. Such a profile can be viewed and compared, but neither saved
+    /// nor written to a device.
     pub fn is_newer(&self) -> bool {
         self.schema > SCHEMA
     }
 
-    /// Returns the document if its schema is known.
+    /// Returns the document if its schema is supported.
     ///
     /// # Errors
     /// [`ProfileError::Schema`] for a newer schema.

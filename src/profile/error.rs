@@ -29,7 +29,7 @@ pub enum ProfileError {
         /// Name of the missing entry.
         intended: String,
     },
-    /// The schema version is missing, or newer than supported where the whole profile must be understood.
+    /// The schema version is missing, or is newer than supported although the whole profile must be understood.
     #[error("schema {found}; this program knows schema 1 to {known}")]
     Schema {
         /// Version in the file.
@@ -37,7 +37,7 @@ pub enum ProfileError {
         /// Newest supported version.
         known: u32,
     },
-    /// This program has no profiles for the kind of device.
+    /// This program has no profiles for this kind of device.
     #[error("device {found:?}; this program knows {}", quoted(known))]
     Device {
         /// Kind of device in the file.
@@ -45,7 +45,7 @@ pub enum ProfileError {
         /// Known kinds of device.
         known: Vec<&'static str>,
     },
-    /// The profile is for another kind of device than required.
+    /// The profile is for a different kind of device than required.
     #[error("a profile of a {found} device where one of a {wanted} device is needed")]
     OtherKind {
         /// Kind of device in the file.
@@ -85,7 +85,7 @@ pub enum ProfileError {
     },
 }
 
-/// A violation of the RON syntax, or of its use in profiles.
+/// A violation of the RON syntax or of the rules for RON in profiles.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SyntaxProblem {
     /// Structures are nested too deeply.

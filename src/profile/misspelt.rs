@@ -7,10 +7,10 @@ use super::{ProfileError, SCHEMA};
 /// State shared by the structures of a file while it is being read.
 #[derive(Default)]
 pub(super) struct Reading {
-    /// Schema of the file if it is newer than the supported one; unknown entries are kept in that case.
+    /// Schema of the file if newer than supported, in which case unknown entries are kept.
     newer: Cell<Option<u32>>,
     beyond: RefCell<Vec<String>>,
-    /// A misspelt name in place of a missing entry, which explains an error about that entry.
+    /// A misspelt name found where an entry is missing, which explains an error about that entry.
     slip: RefCell<Option<Misspelling>>,
 }
 
@@ -32,7 +32,7 @@ impl Misspelling {
 }
 
 impl Reading {
-    /// Notes that the file uses the given newer schema.
+    /// Records that the file uses the given newer schema.
     pub(super) fn set_newer_schema(&self, schema: u32) {
         self.newer.set(Some(schema));
     }
@@ -41,12 +41,12 @@ impl Reading {
         self.newer.get().is_some()
     }
 
-    /// Notes that the entry at this path is not part of the known schema.
+    /// Records that the entry at this path is not part of the known schema.
     pub(super) fn is_beyond(&self, path: String) {
         self.beyond.borrow_mut().push(path);
     }
 
-    /// Returns the paths of the entries beyond the known schema, in reading order.
+    /// Returns the paths of the entries that are not part of the known schema, in reading order.
     pub(super) fn beyond(&self) -> Vec<String> {
         self.beyond.borrow().clone()
     }
@@ -56,9 +56,9 @@ impl Reading {
         self.slip.borrow_mut().get_or_insert(slip);
     }
 
-    /// Returns the error to report, which is the misspelt name if that is the cause. An error about another entry is
-    /// attributed to a misspelt name only if no more than one letter differs. For a file with a newer schema, the
-    /// schema is the error.
+    /// Returns the error to report, which is the misspelt name if that is the cause, or the schema if the file has a
+    /// newer schema. An error about another entry is attributed to a misspelt name only if no more than one letter
+    /// differs.
     pub(super) fn reported_error(&self, error: ProfileError) -> ProfileError {
         if let Some(found) = self.newer.get() {
             return ProfileError::Schema { found, known: SCHEMA };
@@ -73,8 +73,9 @@ impl Reading {
     }
 }
 
-/// Returns how many letters differ between a name and the intended one if that looks like a typing error: only a few
-/// letters differ, or one name is a prefix of the other. Case, hyphens and underscores are ignored.
+/// Returns how many letters differ between a name and the intended one if the difference looks like a typing error,
+/// which means that only a few letters differ or one name is a prefix of the other. Case, hyphens and underscores are
+/// ignored.
 pub(super) fn edit_distance(name: &str, intended: &str) -> Option<usize> {
     let plain = |text: &str| -> Vec<char> {
         text.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()

@@ -9,7 +9,7 @@ use crate::expected::Expected;
 /// A mark on a value that is valid for one device on one machine only.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MountingMark<Item> {
-    /// Marked item, which is writable.
+    /// The marked item, which is writable.
     pub item: Item,
     /// Meaning of the item.
     pub meaning: String,
@@ -20,8 +20,8 @@ pub struct MountingMark<Item> {
 const ENTRY: &str = "mounting";
 
 impl<Item> MountingMark<Item> {
-    /// Reads all marks of a profile. `item` parses a marked item or returns why the item is invalid; `expected`
-    /// describes the form of an item.
+    /// Reads all marks of a profile. `item` parses a marked item or returns the reason why it is invalid, and
+    /// `expected` describes the form of an item.
     pub(crate) fn read_all<E: Error + Clone + Eq + Send + Sync + 'static>(
         entries: &mut Entries,
         expected: Expected,
@@ -44,7 +44,7 @@ impl<Item> MountingMark<Item> {
 }
 
 impl<Item: ToString> MountingMark<Item> {
-    /// Writes all marks of a profile, with a comment on their purpose; writes nothing if the list is empty.
+    /// Writes all marks of a profile with a comment on their purpose, or nothing if the list is empty.
     pub(crate) fn write_all(marks: &[Self], comment: &str, writer: &mut Writer) {
         if marks.is_empty() {
             return;

@@ -5,8 +5,8 @@ use std::fmt;
 use ron::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-/// Returns the line and column of an entry's name, counted from 1, or `None` if the path (such as `fields[2].status`)
-/// leads to no entry.
+/// Returns the line and column of an entry's name, counted from 1, or `None` if there is no entry at the path (such
+/// as `fields[2].status`).
 pub(super) fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
     let sought = EntrySearch { path: String::new(), wanted: path };
     let found = ron::Options::default().from_str_seed(text, sought).err()?;

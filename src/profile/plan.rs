@@ -2,7 +2,7 @@
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// A planned write for review by the user. Only its operations are carried out.
+/// A planned write for review by the user. Only the operations in the plan are carried out.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Plan<Base, Op> {
     /// The values on which the plan is based. They are read again before the first operation and must be unchanged.
@@ -13,16 +13,16 @@ pub struct Plan<Base, Op> {
 
 /// An operation of a plan.
 pub trait Operation {
-    /// Returns the number of persistent writes that the operation costs if nothing is repeated.
+    /// Returns the number of persistent writes that the operation requires if nothing is repeated.
     fn write_cycles(&self) -> u64;
 }
 
-/// Identification of the plan to which a consent applies.
+/// The identifier of a plan, to which a consent applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanId(u64);
 
 impl<Base: Hash, Op: Hash> Plan<Base, Op> {
-    /// Returns the id of the plan. Plans with another base or other operations have another id.
+    /// Returns the ID of the plan, which depends on its base and operations.
     pub fn id(&self) -> PlanId {
         let mut hasher = DefaultHasher::new();
         self.hash(&mut hasher);
@@ -38,18 +38,18 @@ impl<Base, Op> Plan<Base, Op> {
 }
 
 impl<Base, Op: Operation> Plan<Base, Op> {
-    /// Returns the number of persistent writes that the plan costs if nothing is repeated.
+    /// Returns the number of persistent writes that the plan requires if nothing is repeated.
     pub fn write_cycles(&self) -> u64 {
         self.ops.iter().map(Operation::write_cycles).sum()
     }
 }
 
-/// The user's consent to a plan. Only the window and the command line create one.
+/// A user's consent to a plan. Only the window and the command line create one.
 #[derive(Clone, Copy, Debug)]
 pub struct Consent(PlanId);
 
 impl Consent {
-    /// Creates the consent of a user who has seen the plan with this id and agreed.
+    /// Creates the consent of a user who has seen and approved the plan with this ID.
     pub fn to(plan: PlanId) -> Self {
         Consent(plan)
     }

@@ -11,7 +11,7 @@ pub struct RestoreOptions {
     pub with_mounting: bool,
 }
 
-/// Result of planning a restore.
+/// The result of planning a restore.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Restore<Plan, Item, Missing = String> {
     /// Planned operations.
@@ -22,6 +22,6 @@ pub struct Restore<Plan, Item, Missing = String> {
     pub missing: Vec<Missing>,
     /// Differing mounting values that are left unchanged.
     pub mounting_left: Vec<Item>,
-    /// Mounting values of another device that are written and must be adjusted again.
+    /// Mounting values of another device that are written and must be readjusted.
     pub mounting_written: Vec<Item>,
 }

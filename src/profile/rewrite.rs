@@ -4,8 +4,8 @@ use super::source::{Carried, Change, applied, carry, changes, lost};
 use super::{Document, Formats, ProfileError};
 
 impl Document {
-    /// Returns `text` with the content of the document. Unchanged entries remain as written, with comments, order and
-    /// line endings.
+    /// Returns `text` updated to the content of the document. Unchanged entries remain as written, with comments, order
+    /// and line endings.
     pub fn emit_over(&self, text: &str, formats: Formats) -> Carried {
         let own = self.emit();
         let before = Document::parse(text, formats).map(|before| before.emit());
@@ -29,13 +29,13 @@ impl Document {
     /// Applies changes to the document.
     ///
     /// # Errors
-    /// The result is not a valid profile; `None` if a change does not apply.
+    /// Returns the error if the result is not a valid profile, or `None` if a change does not apply.
     pub fn changed(&self, changes: &[Change], formats: Formats) -> Result<Document, Option<ProfileError>> {
         Document::parse(&applied(&self.emit(), changes).ok_or(None)?, formats).map_err(Some)
     }
 }
 
-/// The side that has changed an entry since both had the same profile.
+/// The side that has changed an entry since both sides had the same profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Changed {
     /// Only the other side.

@@ -13,17 +13,17 @@ use super::misspelt::{Misspelling, Reading, edit_distance};
 use crate::bits::{HexError, parse_hex};
 use crate::expected::Expected;
 
-/// Unknown entries by name: the user's own, or those of a newer schema.
+/// Unknown entries by name, which are either the user's own or part of a newer schema.
 pub type Unknown = BTreeMap<String, Value>;
 
 /// Name of the structure that holds the user's own entries.
 const EXTRA: &str = "extra";
 
-/// The entries of a structure, which are taken out one by one. The remaining ones are the user's own, or misspelt.
+/// The entries of a structure, which are taken out one by one. Those that remain are the user's own or misspelt.
 pub struct Entries {
     path: String,
     entries: BTreeMap<String, Value>,
-    /// Requested names that do not exist.
+    /// Requested names for which there is no entry.
     missed: Vec<String>,
     reading: Rc<Reading>,
 }
@@ -82,7 +82,7 @@ impl Entries {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// Takes a plain value, or `None` if it is missing.
+    /// Takes a plain value, or returns `None` if the value is missing.
     pub fn optional<T: DeserializeOwned>(&mut self, name: &str, expected: Expected) -> Result<Option<T>, ProfileError> {
         let Some(value) = self.take(name) else { return Ok(None) };
         if matches!(value, Value::Option(None)) {
@@ -106,7 +106,7 @@ impl Entries {
         Entries::open(&path, value, &self.reading)
     }
 
-    /// Takes a structure, or `None` if it is missing.
+    /// Takes a structure, or returns `None` if the structure is missing.
     pub fn optional_structure(&mut self, name: &str) -> Result<Option<Entries>, ProfileError> {
         let path = self.path_of(name);
         match self.take(name) {
@@ -115,7 +115,7 @@ impl Entries {
         }
     }
 
-    /// Takes bytes, given as a list of hex strings or a single one.
+    /// Takes bytes, given as one hex string or a list of hex strings.
     pub fn bytes(&mut self, name: &str) -> Result<Option<Vec<u8>>, ProfileError> {
         let path = self.path_of(name);
         let Some(value) = self.optional::<Value>(name, Expected::HexLines)? else { return Ok(None) };
@@ -138,7 +138,7 @@ impl Entries {
         self.structures(name)
     }
 
-    /// Takes a list of structures, which is empty if missing.
+    /// Takes a list of structures, or returns an empty list if the entry is missing.
     pub fn structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         let path = self.path_of(name);
         match self.take(name).map(unwrap_value) {
@@ -152,7 +152,7 @@ impl Entries {
         }
     }
 
-    /// Takes a map with arbitrary keys in their order, which is empty if missing.
+    /// Takes a map with arbitrary keys, preserving their order, or returns an empty map if the entry is missing.
     pub fn map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
         match self.take(name).map(unwrap_value) {
             None | Some(Value::Unit) => Ok(Vec::new()),
@@ -161,8 +161,8 @@ impl Entries {
         }
     }
 
-    /// Returns the entries that have not been taken: the user's own, which belong in `extra`, or unknown ones of a
-    /// newer schema. Entries outside `extra` are moved into it, because older files have them there.
+    /// Returns the entries that have not been taken, which are the user's own or unknown ones of a newer schema.
+    /// Entries outside `extra`, where older files have them, are moved into `extra`.
     ///
     /// # Errors
     /// [`ProfileError::Misspelt`] if one of them is the misspelt name of a missing entry.
@@ -207,7 +207,7 @@ impl Drop for Entries {
     }
 }
 
-/// Parses bytes of two digits each, so that a digit lost in an editor does not yield a different byte.
+/// Parses bytes of two hex digits each, so that a digit lost in an editor does not yield a different byte.
 fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     match line.split_whitespace().find(|group| group.len() == 1) {
         Some(digit) => Err(HexError::Odd(digit.to_owned())),
@@ -215,7 +215,7 @@ fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     }
 }
 
-/// Returns `x` for `Some(x)`, which is allowed as well, and any other value unchanged.
+/// Returns `x` for `Some(x)`, which is also allowed, and any other value unchanged.
 fn unwrap_value(value: Value) -> Value {
     match value {
         Value::Option(Some(inner)) => *inner,
@@ -236,13 +236,13 @@ impl Writer {
         self.line(&format!("// {text}"));
     }
 
-    /// Writes `name: value,` with the value as given, followed by a comment.
+    /// Writes `name: value,` with the value verbatim, followed by a comment.
     pub fn entry(&mut self, name: &str, value: &str, comment: &str) {
         let behind = if comment.is_empty() { String::new() } else { format!(" // {comment}") };
         self.line(&format!("{name}: {value},{behind}"));
     }
 
-    /// Writes a list element as given.
+    /// Writes a list element verbatim.
     pub fn entry_in_list(&mut self, value: &str) {
         self.line(&format!("{value},"));
     }
@@ -270,7 +270,7 @@ impl Writer {
         }
     }
 
-    /// Begins a structure or list; the name is empty within a list and at the top level.
+    /// Begins a structure or list. The name is empty within a list and at the top level.
     pub fn open(&mut self, name: &str, bracket: char) {
         let head = if name.is_empty() { bracket.to_string() } else { format!("{name}: {bracket}") };
         self.line(&head);
@@ -298,7 +298,8 @@ pub(crate) fn quoted(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
-/// Formats the user's own entries to follow the known entries of a single-line structure: `, extra: {…}`.
+/// Formats the user's own entries so that they follow the known entries of a single-line structure, as in
+/// `, extra: {…}`.
 pub(crate) fn entries_text(unknown: &Unknown) -> String {
     if unknown.is_empty() { String::new() } else { format!(", {EXTRA}: {}", extra_text(unknown)) }
 }

@@ -2,7 +2,7 @@
 
 use super::{Carried, Document, Profile};
 
-/// Edits a profile and its note, and saves the profile over the text from which it was read.
+/// Edits a profile and its note, and saves the profile over the text from which the profile was read.
 pub(crate) fn edited<P: Profile>(text: &str, edit: impl FnOnce(&mut Option<String>, &mut P)) -> (Document, Carried) {
     let mut document = Document::parse(text, P::FORMATS).unwrap();
     edit(&mut document.note, document.body.get_mut().unwrap());

@@ -8,10 +8,10 @@ use std::fmt;
 use ron::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-/// Visitor for any RON document that rejects duplicate names in a structure; the content is discarded.
+/// A visitor for any RON document that rejects duplicate names in a structure and discards the content.
 #[derive(Clone, Copy)]
 pub(super) struct UniqueNames<'t> {
-    /// The first duplicate name, if any.
+    /// First duplicate name, if any.
     pub(super) twice: &'t RefCell<Option<String>>,
 }
 

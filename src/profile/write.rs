@@ -7,15 +7,15 @@ use std::hash::Hash;
 
 use super::{Consent, Operation, Plan, WriteRecord};
 
-/// The device to which a plan is written: the parts that differ between kinds.
+/// A device to which a plan is written, with the operations that differ between device kinds.
 pub trait Write {
-    /// Device values that a plan is based on.
+    /// Device values on which a plan is based.
     type Base: Hash;
     /// An operation of a plan.
     type Op: Operation + Clone + Hash;
-    /// The reason why an operation failed.
+    /// Reason why an operation failed.
     type Error: OperationError;
-    /// Record of the write that the profile was the backup of.
+    /// Record of a write.
     type Written: WriteRecord;
     /// State in which an interrupted write left the device.
     type EndState;
@@ -30,15 +30,15 @@ pub trait Write {
     /// Prepares the device for the first operation.
     ///
     /// # Errors
-    /// Preparation failed; no operation has begun.
+    /// Preparation failed, and no operation has begun.
     fn begin(&mut self) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// Carries out an operation, reads it back if possible, and counts it.
+    /// Carries out an operation, reads back the result if possible, and counts the operation.
     ///
     /// # Errors
-    /// The operation failed; subsequent operations do not begin.
+    /// The operation failed, and subsequent operations do not begin.
     fn apply(
         &mut self,
         op: &Self::Op,
@@ -61,7 +61,7 @@ pub trait Write {
     /// Returns the device to a safe state, however the operations ended.
     ///
     /// # Errors
-    /// The reason why the operations ended early, or why the mode of the device cannot be restored.
+    /// Returns the reason why the operations ended early, or why the mode of the device cannot be restored.
     fn lead_back(
         &mut self,
         _confirmed: &Confirmed<'_, Self::Base, Self::Op>,
@@ -77,7 +77,7 @@ pub trait Write {
 
 /// The reason why an operation of a plan ended early.
 pub trait OperationError: fmt::Display {
-    /// The error type of the device and its connection.
+    /// Error type of the device and its connection.
     type Device;
 
     /// Returns the error of the device or its connection, or `None` for other causes.
@@ -110,12 +110,12 @@ impl<E: DeviceError> OperationError for E {
     }
 }
 
-/// A plan with the user's consent and an unchanged base. Operations require one.
+/// A plan with the user's consent and an unchanged base, required for every operation.
 pub struct Confirmed<'p, Base, Op> {
     plan: &'p Plan<Base, Op>,
 }
 
-/// Progress of an interrupted write, and its cause.
+/// The progress and cause of an interrupted write.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interrupted<Op, E, Done, Left> {
     /// Changes that were written before the interruption.
@@ -133,8 +133,8 @@ pub(crate) type InterruptedWrite<W> =
     Interrupted<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::EndState>;
 
 impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
-    /// Checks the consent and has the device read the plan's base values again. Returns `None` if the consent was given
-    /// for another plan.
+    /// Checks the consent and makes the device read the plan's base values again. Returns `None` if the consent was
+    /// given for another plan.
     pub(crate) fn confirm<W: Write<Base = Base, Op = Op>>(
         plan: &'p Plan<Base, Op>,
         consent: Consent,
@@ -148,7 +148,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
         self.plan
     }
 
-    /// Executes the plan. Each operation is reported, with its index from 0, before it begins.
+    /// Executes the plan. Each operation is reported with its index, starting at 0, before it begins.
     ///
     /// # Errors
     /// Returns the progress of the interrupted write.
@@ -175,7 +175,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
 }
 
 impl<Op, E: OperationError, Done: WriteRecord, Left> Interrupted<Op, E, Done, Left> {
-    /// Returns the cause for the logbook, or `None` if the user cancelled.
+    /// Returns the cause to record in the logbook, or `None` if the user cancelled.
     pub(crate) fn reason(&self) -> Option<String> {
         (!self.cause.is_only_cancelled()).then(|| self.cause.to_string())
     }

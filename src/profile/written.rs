@@ -9,15 +9,15 @@ pub struct Written {
     pub written: u64,
     /// Number of values that were read back and are correct.
     pub verified: u64,
-    /// Number of persistent writes spent, or possibly spent, including repetitions.
+    /// Number of persistent writes performed or possibly performed, including repetitions.
     pub write_cycles: u64,
 }
 
-/// The record of a write, as kept by a kind of device.
+/// The record of a write kept by a kind of device.
 pub trait WriteRecord: Default {
     /// Returns the number of operations of the plan that were carried out.
     fn ops(&self) -> usize;
-    /// Returns the number of persistent writes spent, or possibly spent.
+    /// Returns the number of persistent writes performed or possibly performed.
     fn write_cycles(&self) -> u64;
 }
 
@@ -32,7 +32,7 @@ impl WriteRecord for Written {
 }
 
 impl Written {
-    /// Counts an operation that was carried out, and the number of values that it changed.
+    /// Counts an operation that was carried out, and the number of values it changed.
     pub fn carried_out(&mut self, changed: u64) {
         self.ops += 1;
         self.written += changed;

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use fastrand::Rng;
 
-/// Faults of a virtual device; none by default.
+/// Faults of a virtual device. The default is no faults.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Faults {
     drop: f64,
@@ -20,7 +20,7 @@ pub struct Faults {
 /// Valid values of a fault setting.
 pub const FAULTS: FaultList = FaultList;
 
-/// Parser for faults; see [`FAULTS`].
+/// A parser for faults. See [`FAULTS`].
 #[derive(Clone, Copy, Debug)]
 pub struct FaultList;
 
@@ -47,7 +47,7 @@ impl FaultList {
 /// The reason why a fault specification is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FaultError {
-    /// The fault is unknown, or lacks its value.
+    /// The fault is unknown or its value is missing.
     #[error(
         "`{item}` is not a fault; valid faults are drop:P, flip:P, garbage:P, delay:MS, silent-after:N and \
          die-in-store:N, separated by commas"
@@ -74,12 +74,12 @@ pub enum FaultError {
     },
 }
 
-/// The passage of a byte over a noisy line.
+/// The result of passing a byte over a noisy line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BytePassage {
-    /// Noise byte inserted before it, if any.
+    /// Noise byte inserted before the byte, if any.
     pub inserted: Option<u8>,
-    /// The byte itself, or `None` if it was lost.
+    /// The transmitted byte, or `None` if it was lost.
     pub carried: Option<Carried>,
 }
 
@@ -105,7 +105,7 @@ impl Faults {
         self.silent_after
     }
 
-    /// Returns the number of the store, starting at 1, during which power is lost.
+    /// Returns the number of the store operation, starting at 1, during which power is lost.
     pub fn die_in_store(&self) -> Option<u32> {
         self.die_in_store
     }
@@ -129,8 +129,8 @@ fn happens(probability: f64, rng: &mut Rng) -> bool {
 impl FromStr for Faults {
     type Err = FaultError;
 
-    /// Parses a list such as `drop:0.01,delay:5`. If an item is given twice, the last one counts; an empty string means
-    /// no fault.
+    /// Parses a list such as `drop:0.01,delay:5`. If an item is given twice, the last one counts, and an empty string
+    /// means no fault.
     fn from_str(text: &str) -> Result<Self, FaultError> {
         let mut faults = Faults::default();
         for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {

@@ -30,7 +30,7 @@ impl<T> Queue<T> {
         self.0.len()
     }
 
-    /// Returns when the next event is due.
+    /// Returns the time at which the next item is due.
     pub(crate) fn due(&self) -> Option<Moment> {
         self.0.front().map(|(at, _)| *at)
     }
@@ -60,12 +60,12 @@ pub(crate) struct Character {
 
 pub(crate) struct Sent {
     pub(crate) heard: Vec<Character>,
-    /// The characters as sent: an echoing converter returns them without line noise.
+    /// Characters as sent. An echoing converter returns them without line noise.
     pub(crate) own: Vec<Character>,
     pub(crate) end: Moment,
 }
 
-/// The parts common to all lines, created with a device's settings.
+/// Components common to all lines, created with a device's settings.
 #[derive(Clone)]
 pub(crate) struct Wires {
     pub(crate) faults: Faults,
@@ -92,8 +92,8 @@ impl Wires {
         }
     }
 
-    /// Number of bytes that a UART buffers, as in a device server; further bytes are lost. No request of the simulated
-    /// protocols is longer, and at 9600 bit/s it takes half a second to send.
+    /// Number of bytes that a UART buffers, as in a device server. Further bytes are lost, but no request of the
+    /// simulated protocols is longer, and sending 512 bytes at 9600 bit/s takes half a second.
     const BUFFER: usize = 512;
 
     /// Returns how many more bytes the host's UART can accept.
@@ -103,7 +103,7 @@ impl Wires {
         Self::BUFFER.saturating_sub(self.sending.iter().map(|(_, count)| count).sum())
     }
 
-    /// Sends bytes over the noisy line from `start` on, each taking one character time.
+    /// Sends bytes over the noisy line, starting at `start`. Each byte takes one character time.
     pub(crate) fn send(&mut self, start: Moment, character: Duration, bytes: &[u8]) -> Sent {
         let mut sent = Sent { heard: Vec::new(), own: Vec::new(), end: start };
         for byte in bytes {
@@ -125,7 +125,7 @@ impl Wires {
 
 /// A line with its devices. Implementing this trait makes the line a [`ByteDevice`].
 pub(crate) trait VirtualLine: Send {
-    /// An event on the line; of simultaneous events, the smallest comes first.
+    /// Event on the line. Of simultaneous events, the smallest comes first.
     type Event;
 
     fn wires(&self) -> &Wires;
@@ -136,13 +136,13 @@ pub(crate) trait VirtualLine: Send {
 
     fn schedule_event(&mut self, at: Moment, event: Self::Event);
 
-    /// Transmits bytes of the host from `start` on; returns when the last one has been sent.
+    /// Transmits bytes of the host, starting at `start`, and returns the time at which the last byte has been sent.
     fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment;
 
     /// Restores the power of every device that has lost it.
     fn supply_power(&mut self, now: Moment);
 
-    /// Processes all events due by `to`.
+    /// Processes all events that are due up to and including `to`.
     fn advance(&mut self, to: Moment) {
         while let Some((at, event)) = self.next_event().filter(|(at, _)| *at <= to) {
             self.wires_mut().now = self.wires().now.max(at);

@@ -20,25 +20,25 @@ use std::net::SocketAddrV4;
 
 use crate::units::{CharacterFormat, Moment};
 
-/// A virtual device on a serial line. Its owner (a link in this process, a pseudo-terminal, a TCP server) passes bytes
-/// in and fetches bytes; moments never run backwards, an earlier one counts as the latest known.
+/// A virtual device on a serial line, driven by its owner, such as a link in this process, a pseudo-terminal or a TCP
+/// server. Moments never run backwards; an earlier moment counts as the latest known.
 pub trait ByteDevice: Send {
-    /// Receives bytes that the host has passed to its UART at `now`. They are transmitted one character time each,
-    /// after the bytes still in transmission.
+    /// Receives bytes that the host has passed to its UART at `now`. They are transmitted at one character time each,
+    /// after any bytes still in transmission.
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]);
 
     /// Returns the bytes that have completely arrived at the host by `now` and have not been fetched yet.
     fn poll(&mut self, now: Moment) -> Vec<u8>;
 
-    /// Returns when [`poll`](Self::poll) should be called next, or `None` if nothing is scheduled.
+    /// Returns the time at which to call [`poll`](Self::poll) next, or `None` if nothing is scheduled.
     fn poll_at(&self) -> Option<Moment>;
 
-    /// Sets the character format of the host's UART. If it differs from the setting of the device, bytes arrive garbled
-    /// in both directions, and no valid frame results. A device without a serial line has no such setting.
+    /// Sets the character format of the host's UART. If the format differs from the setting of the device, bytes arrive
+    /// garbled in both directions and no valid frame results. A device without a serial line has no such setting.
     fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
 
-    /// Opens or reopens the connection of the host: bytes that arrived before are discarded, and a device without power
-    /// is powered again.
+    /// Opens or reopens the connection of the host. Bytes that arrived before are discarded, and a device that has lost
+    /// power is powered again.
     fn connect(&mut self, now: Moment);
 }
 
@@ -47,9 +47,10 @@ pub trait DatagramDevice: Send {
     /// Handles a packet received at `now`.
     fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]);
 
-    /// Returns the packets sent by `now` and not fetched yet, with their targets.
+    /// Returns the packets sent by `now` that have not been fetched yet, with their destinations.
     fn poll_datagrams(&mut self, now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)>;
 
-    /// Returns when [`poll_datagrams`](Self::poll_datagrams) should be called next, or `None` if nothing is scheduled.
+    /// Returns the time at which to call [`poll_datagrams`](Self::poll_datagrams) next, or `None` if nothing is
+    /// scheduled.
     fn poll_datagrams_at(&self) -> Option<Moment>;
 }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The motor of a virtual encoder, shared by its clones.
+/// The motor of a virtual encoder, shared by all clones.
 #[derive(Clone, Debug)]
 pub struct Motor(Arc<AtomicU64>);
 
@@ -21,7 +21,7 @@ impl Motor {
         f64::from_bits(self.0.load(Ordering::SeqCst))
     }
 
-    /// Sets the speed, limited to [`MAX_RPM`](Self::MAX_RPM); NaN is ignored.
+    /// Sets the speed, clamped to [`MAX_RPM`](Self::MAX_RPM). NaN is ignored.
     pub fn set_rpm(&self, rpm: f64) {
         if !rpm.is_nan() {
             self.0.store(rpm.clamp(-Self::MAX_RPM, Self::MAX_RPM).to_bits(), Ordering::SeqCst);

@@ -18,7 +18,7 @@ pub enum ConfigError {
         /// Known keys.
         known: String,
     },
-    /// The value is not allowed for its key.
+    /// The value is not allowed for this key.
     #[error("`{key}={value}` is not valid (allowed: {allowed})")]
     Value {
         /// Name of the key.
@@ -39,19 +39,19 @@ pub enum VirtualDevice {
     /// An encoder.
     #[error("a virtual encoder")]
     Encoder,
-    /// An encoder of this kind.
+    /// An encoder of the given kind.
     #[error("a virtual {0} encoder")]
     EncoderOf(&'static str),
     /// The adapter for clocked buses.
     #[error("a virtual adapter")]
     Adapter,
-    /// A device of this name.
+    /// A device with the given name.
     #[error("a virtual {0}")]
     Device(&'static str),
 }
 
 impl ConfigError {
-    /// Creates the error for an unknown setting of `device`; `known` lists the existing keys.
+    /// Creates the error for an unknown setting of `device`. `known` lists the existing keys.
     pub fn unknown(device: VirtualDevice, key: &str, known: &[&str]) -> Self {
         ConfigError::Key { device, key: key.to_owned(), known: known.join(", ") }
     }
@@ -63,8 +63,10 @@ impl From<Refused> for ConfigError {
     }
 }
 
-/// Parses the percent-decoded settings of `device`. If a key occurs twice, its last value counts.⎏⎏# Errors⎏Names the
-/// key and the allowed values.
+/// Parses the percent-decoded settings of `device`. If a key occurs twice, its last value counts.
+///
+/// # Errors
+/// Returns an error that names the key and the allowed values.
 pub fn read<P: Parameters<Error = ConfigError>>(
     device: VirtualDevice,
     pairs: &[(String, String)],
@@ -78,13 +80,13 @@ pub fn read<P: Parameters<Error = ConfigError>>(
     Ok(own)
 }
 
-/// Seed of the noise; any number.
+/// Seed of the noise, which can be any number.
 pub const SEED: Checked<u64> = Checked(Expected::Whole, number);
 
 /// Speed in revolutions per minute, in either direction.
 pub const RPM: Rpm = Rpm;
 
-/// Values of a speed setting; see [`RPM`].
+/// The values of a speed setting. See [`RPM`].
 #[derive(Clone, Copy, Debug)]
 pub struct Rpm;
 

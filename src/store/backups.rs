@@ -12,11 +12,11 @@ use super::file_error::{FileError, FileProblem, FileTask};
 use super::file_names::{Case, safe_name};
 use super::files::{create_folder, write_new};
 
-/// Time format in file names: UTC, without the colons that Windows forbids.
+/// Time format in file names: UTC without colons, which Windows forbids.
 const TIME: &str = "%Y-%m-%dT%H-%M-%SZ";
 const EXTENSION: &str = "ron";
 
-/// Maximum number of backups of one device within a second. More would indicate a runaway loop.
+/// Maximum number of backups of a device within a second. More would indicate a runaway loop.
 const MOST_IN_A_SECOND: u32 = 1000;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl Backups {
     }
 
     /// Writes a backup, `<device>/<serial number>/2026-11-21T12-14-47Z.ron`, and returns its path. If a backup from
-    /// that second exists, `-2`, `-3` … follows the time.
+    /// the same second exists, `-2`, `-3` … is added to the time.
     ///
     /// # Errors
     /// Returns an error if the folder cannot be created or the file cannot be written; no file is left behind.
@@ -53,7 +53,7 @@ impl Backups {
         Err(FileProblem::Exists.of(FileTask::Write, &folder.join(file_name(&time, MOST_IN_A_SECOND))))
     }
 
-    /// Returns the backups of a device, newest first. Files whose names do not match are not considered backups.
+    /// Returns the backups of a device, newest first. Files whose names do not match the backup format are ignored.
     ///
     /// # Errors
     /// Returns an error if the folder exists but cannot be read.
@@ -90,7 +90,7 @@ fn file_name(time: &str, number: u32) -> String {
     }
 }
 
-/// Parses the time and number in a backup's file name; returns `None` for any name that [`file_name`] does not create.
+/// Parses the time and number in a backup's file name. Returns `None` for any name that [`file_name`] does not create.
 fn parse_file_name(path: &Path) -> Option<(Timestamp, u32)> {
     let name = path.file_name()?.to_str()?;
     let (time, number) = name.strip_suffix(EXTENSION)?.strip_suffix('.')?.split_once('Z')?;

@@ -19,10 +19,10 @@ pub enum ReadCaptureError {
     Cancelled,
 }
 
-/// Callback that receives the number of bytes read and the total, which is 0 for a file without a length (a pipe).
+/// Callback that receives the number of bytes read and the total. The total is 0 for a file without a length (a pipe).
 pub type OnProgress<'a> = &'a mut dyn FnMut(u64, u64);
 
-/// Bytes read at a time. Between two reads, progress is reported and cancellation is checked.
+/// Number of bytes read at a time. Progress is reported and cancellation is checked after each read.
 const PIECE: usize = 1 << 20;
 
 /// Reads a capture and returns how its table was interpreted.
@@ -69,8 +69,8 @@ pub fn read_capture(
     }
 }
 
-/// Returns the first [`HEAD`] bytes of a file, or all bytes of a shorter file. Nothing is read from a pipe, since it
-/// can be read only once.
+/// Returns the first [`HEAD`] bytes of a file, or all bytes of a shorter file. Nothing is read from a pipe, because its
+/// data can be read only once.
 ///
 /// # Errors
 /// Returns a [`FileError`] if the file cannot be read.

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use super::file_error::{FileError, FileProblem, FileTask};
 use super::files::read_file;
 
-/// Returns the contents of a folder's files with the given extension, in order of name, with their paths as used in
-/// errors, and the errors of unreadable files. A missing folder yields no files.
+/// Returns the paths and contents of a folder's files with the given extension, ordered by name, and the errors of
+/// unreadable files. A missing folder yields no files.
 pub fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<FileError>) {
     let (mut texts, mut errors) = (Vec::new(), Vec::new());
     match list(folder, ending) {

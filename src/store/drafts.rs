@@ -11,7 +11,8 @@ use super::files::{create_folder, read_text, write_atomically};
 
 const EXTENSION: &str = "ron";
 
-/// The exclusive right to keep a draft while the value lives; the system releases the claim when the program ends.
+/// Exclusive right to keep a draft, held until the value is dropped. The system releases the claim when the program
+/// ends.
 #[derive(Debug)]
 pub struct Claim {
     _lock: FileLock,

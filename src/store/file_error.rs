@@ -59,10 +59,10 @@ pub enum FileProblem {
     /// The disk is full, or the user's quota is exhausted.
     #[error("the disk is full")]
     DiskFull,
-    /// Another program has kept the file locked for seconds.
+    /// Another program has kept the file locked for several seconds.
     #[error("another program keeps it locked")]
     InUse,
-    /// The file is larger than any file the program writes.
+    /// The file is larger than any file that the program writes.
     #[error("it is larger than {limit} bytes")]
     TooLarge {
         /// Maximum size in bytes.
@@ -99,7 +99,8 @@ impl FileProblem {
         FileError { path: path.to_owned(), task, problem: self }
     }
 
-    /// Returns the problem with creating a new file, in which case the file itself cannot be what is missing.
+    /// Returns the problem for a failure to create a new file. The new file cannot be missing, so a missing folder is
+    /// reported instead.
     pub(super) fn while_creating(error: io::Error) -> Self {
         match error.into() {
             FileProblem::NotFound => FileProblem::NoFolder,

@@ -9,18 +9,18 @@ use std::time::{Duration, Instant};
 use super::file_error::{FileError, FileProblem, FileTask};
 use super::files::{create_folder, read_text, write_atomically};
 
-/// Maximum time to wait for another program to read and write a file.
+/// Maximum time to wait for another program that is reading and writing a file.
 const PATIENCE: Duration = Duration::from_secs(2);
 const RETRY: Duration = Duration::from_millis(5);
 
-/// A lock that excludes all other programs while the value lives.
+/// A lock that excludes all other programs until it is dropped.
 #[derive(Debug)]
 pub(super) struct FileLock {
     _locked: File,
 }
 
 impl FileLock {
-    /// Acquires a lock file, which is created if missing; returns `None` if the lock is held by this or another
+    /// Acquires a lock file, creating it if missing. Returns `None` if the lock is held by this or another
     /// program.
     pub(super) fn try_at(path: &Path) -> Result<Option<Self>, FileError> {
         let failed = |error: io::Error| FileProblem::from(error).of(FileTask::Write, path);
@@ -80,7 +80,7 @@ fn wait_for(path: &Path) -> Result<FileLock, FileError> {
     }
 }
 
-/// Returns the path of the lock file, which is separate because the file itself is replaced by each write.
+/// Returns the path of the lock file. The lock is a separate file, because each write replaces the file itself.
 fn lock_path(path: &Path) -> PathBuf {
     let mut beside = path.to_owned().into_os_string();
     beside.push(".lock");

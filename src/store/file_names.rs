@@ -1,16 +1,16 @@
 //! Folder and file names derived from external strings such as serial numbers and item names.
 
-/// How a name records letter case, which file names on Windows and macOS do not distinguish.
+/// Handling of letter case in file names, which Windows and macOS do not distinguish by case.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Case {
-    /// Case is not recorded: no two names differ only in case.
+    /// Case is not recorded, because no two names differ only in case.
     Kept,
-    /// Case is part of the name: names may differ only in case.
+    /// Case is encoded in the name, because names may differ only in case.
     Told,
 }
 
-/// Returns a file name without extension (or folder name) for any text, valid on every system and different for
-/// different texts: letters, digits, `.`, `_` and `-` are unchanged, every other byte becomes `%XX`. With
+/// Returns a file or folder name without extension for any text. The name is valid on every system and differs for
+/// different texts: letters, digits, `.`, `_` and `-` are unchanged, and every other byte becomes `%XX`. With
 /// [`Case::Told`], lower-case letters add `%` and an `l` or a `u` for each letter.
 pub(super) fn safe_name(text: &str, case: Case) -> String {
     if text.is_empty() {
@@ -43,7 +43,7 @@ pub(super) fn safe_name(text: &str, case: Case) -> String {
     name
 }
 
-/// Returns whether Windows reserves the name for a device, with any extension.
+/// Returns whether Windows reserves the name for a device, regardless of extension.
 fn is_reserved(text: &str) -> bool {
     let stem = text.split('.').next().unwrap_or(text).to_ascii_uppercase();
     match stem.as_str() {
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Returns the text of a name, read without regard to case.
+    /// Decodes the original text of a file name without regard to the name's case.
     fn read_back(name: &str) -> Vec<u8> {
         let name = name.to_ascii_uppercase();
         if name == "%NONE" {

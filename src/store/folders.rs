@@ -12,7 +12,7 @@ pub struct Folders {
 }
 
 impl Folders {
-    /// Returns the working directory in which the program was started and the user's home.
+    /// Returns the working directory in which the program was started and the user's home folder.
     pub fn of_user() -> Self {
         let home = UserDirs::new().map(|own| own.home_dir().to_owned());
         Folders { working: std::env::current_dir().ok(), home }
@@ -22,18 +22,18 @@ impl Folders {
         Folders { working: Some(working.to_owned()), home: Some(home.to_owned()) }
     }
 
-    /// Returns the folder from which relative paths start, or `None` if the system does not report one.
+    /// Returns the folder that relative paths start from, or `None` if the system does not report it.
     pub fn working(&self) -> Option<&Path> {
         self.working.as_deref()
     }
 
-    /// Returns the user's home, or `None` if the system does not report one.
+    /// Returns the user's home folder, or `None` if the system does not report it.
     pub fn home(&self) -> Option<&Path> {
         self.home.as_deref()
     }
 
-    /// Returns an absolute path to the given file: a leading `~` is the user's home, and any other relative path starts
-    /// from the folder in which the program was started.
+    /// Returns an absolute path to the given file. A leading `~` is the user's home folder, and other relative paths
+    /// start from the folder in which the program was started.
     pub fn absolute(&self, path: &Path) -> PathBuf {
         let mut parts = path.components();
         let from_home = parts.next() == Some(Component::Normal(OsStr::new("~")));
@@ -50,7 +50,7 @@ impl Folders {
 mod tests {
     use super::*;
 
-    /// Issue 22.24: one rule applies to every path from the user.
+    /// The same rule applies to every path from the user (issue 22.24).
     #[test]
     fn paths_resolve_the_same_everywhere() {
         let root = std::env::temp_dir();

@@ -16,7 +16,7 @@ use tracing_subscriber::filter::Targets;
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::{fmt, registry};
 
-/// Size in bytes from which a new file is begun.
+/// Size in bytes above which a new log file is started.
 const LARGE: u64 = 1 << 20;
 
 /// Maximum number of lines waiting to be written.
@@ -25,7 +25,7 @@ const QUEUE: usize = 1024;
 /// Maximum time that the program waits for the last lines when it ends.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// A handle that accepts lines for the log file without ever blocking. Clones write to the same file.
+/// A handle that accepts lines for the log file without ever blocking. All clones write to the same file.
 #[derive(Clone, Debug)]
 pub struct LogFile {
     queue: Sender<Order>,
@@ -35,7 +35,7 @@ pub struct LogFile {
 #[derive(Debug)]
 enum Order {
     Line(Vec<u8>),
-    /// A request to report when everything before it has been written.
+    /// Requests a report once everything queued before it has been written.
     Flush(Sender<()>),
 }
 
@@ -75,7 +75,7 @@ impl LogFile {
         }
     }
 
-    /// Waits until everything has been written to the file, but gives up if the disk hangs.
+    /// Waits until everything has been written to the file. Gives up if the disk hangs.
     pub fn wait(&self) {
         let (done, waited) = bounded(1);
         if self.queue.send_timeout(Order::Flush(done), PATIENCE).is_ok() {
@@ -106,7 +106,7 @@ fn write_all(mut file: impl Write, orders: &Receiver<Order>, dropped: &AtomicU64
     }
 }
 
-/// Queues one line per write.
+/// Each write queues one line.
 impl Write for LogFile {
     fn write(&mut self, line: &[u8]) -> io::Result<usize> {
         self.add(line);
@@ -118,7 +118,7 @@ impl Write for LogFile {
     }
 }
 
-/// A file that starts over once it has grown large.
+/// A file that is started over once it has grown large.
 struct RotatingFile {
     path: PathBuf,
     large: u64,
@@ -136,7 +136,7 @@ impl RotatingFile {
         Ok(RotatingFile { path: path.to_owned(), large, file, length })
     }
 
-    fn begin_anew(&mut self) -> io::Result<()> {
+    fn start_new_logbook(&mut self) -> io::Result<()> {
         fs::rename(&self.path, self.path.with_extension("old.log"))?;
         *self = Self::open(&self.path, self.large)?;
         Ok(())
@@ -146,7 +146,7 @@ impl RotatingFile {
 impl Write for RotatingFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let full = self.length > 0 && self.length.saturating_add(bytes.len() as u64) > self.large;
-        if full && self.begin_anew().is_err() {
+        if full && self.start_new_logbook().is_err() {
             // On some systems renaming fails while another window has it open: it grows until the next try.
             self.length = 0;
         }
@@ -198,7 +198,7 @@ mod tests {
         assert_eq!(fs::read_to_string(&path).unwrap(), "four\n");
     }
 
-    /// A disk that hangs until it is released.
+    /// A simulated disk that hangs until it is released.
     struct Hanging {
         lock: Receiver<()>,
         written: Arc<Mutex<Vec<u8>>>,

@@ -11,21 +11,21 @@ use crate::app::{Action, AnyDevice, DeviceCommand};
 use crate::store::{Entry, Outcome};
 
 pub fn page_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
-    profile(ui, theme, device, actions);
+    profile_ui(ui, theme, device, actions);
     if *device.phase() == Phase::Offline {
         return;
     }
     theme.gap(ui);
-    backups(ui, theme, device, actions);
+    backups_ui(ui, theme, device, actions);
     theme.gap(ui);
-    writes(ui, theme, device);
+    writes_ui(ui, theme, device);
     if !device.statuses().is_empty() {
         theme.gap(ui);
-        statuses(ui, theme, device);
+        statuses_ui(ui, theme, device);
     }
 }
 
-fn profile(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
+fn profile_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     let savable = device.is_savable();
     card(ui, theme, "profile_card.title", |ui| {
         paragraph(ui, theme.label(theme.say("profile_card.words")));
@@ -43,7 +43,7 @@ fn profile(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Act
     });
 }
 
-fn backups(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
+fn backups_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     card(ui, theme, "backups_card.title", |ui| match device.backups() {
         None => {
             empty(ui, theme, &theme.say("backups_card.none"), None);
@@ -79,7 +79,7 @@ fn backups(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Act
     });
 }
 
-fn writes(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
+fn writes_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     card(ui, theme, "writes_card.title", |ui| match device.writes() {
         None => {
             ui.label(theme.label(theme.say("writes_card.none")));
@@ -98,7 +98,7 @@ fn writes(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     });
 }
 
-fn statuses(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
+fn statuses_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     card(ui, theme, "statuses_card.title", |ui| {
         for status in device.statuses() {
             ui.horizontal(|ui| {

@@ -51,8 +51,7 @@ pub(crate) fn disclosure(ui: &mut Ui, heading: RichText, is_open: &mut bool) -> 
 }
 
 /// Draws a card with reference information. In a low window, only the heading is drawn until the card is opened with a
-/// click; the card then stays open until the
-/// program ends.
+/// click; the card then stays open until the program ends.
 pub(crate) fn folding_card(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui)) {
     folding_card_with(ui, theme, title, |_| {}, content);
 }

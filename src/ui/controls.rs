@@ -36,8 +36,7 @@ pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::T
 }
 
 /// Draws the reason why entries are invalid, below them. The space is always reserved, so that nothing further down
-/// moves when
-/// a message appears.
+/// moves when a message appears.
 pub(crate) fn problem_below(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
@@ -100,8 +99,7 @@ pub(super) fn modal<R>(
 }
 
 /// Draws the buttons at the end of a dialog, right-aligned with the first one at the far right, on a line as high as a
-/// button. Buttons
-/// centred in the remaining space would keep the dialog from shrinking.
+/// button. Buttons centred in the remaining space would keep the dialog from shrinking.
 pub(super) fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
@@ -302,8 +300,7 @@ pub(crate) fn two_columns<C>(
 }
 
 /// Draws an encoder's page, with its identity and check beside its readings. The page of a profile has only the
-/// identity and the
-/// wiring.
+/// identity and the wiring.
 pub(crate) fn encoder_page<C>(
     ui: &mut Ui,
     theme: &Theme,

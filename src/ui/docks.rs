@@ -71,8 +71,7 @@ impl Docks {
     }
 
     /// Resizes the Live panel when its plot appears or disappears. Without the plot, the panel is as wide as its
-    /// values; with the plot, it regains
-    /// its previous width.
+    /// values; with the plot, it regains its previous width.
     fn fit_live(&mut self, alone: bool, width: f32) {
         if self.alone.replace(alone).is_none_or(|before| before == alone) {
             return;

@@ -47,7 +47,7 @@ pub fn edit_bar_ui(
                 if primary(ui, theme, dirty, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
                     actions.push(Action::Save(device.id()));
                 }
-                write_into(ui, theme, studio, device, actions);
+                write_into_ui(ui, theme, studio, device, actions);
             } else {
                 let word = theme.say("memory.review");
                 let write = primary(ui, theme, dirty && device.is_ready(), icons::DOWNLOAD_SIMPLE, &word);
@@ -68,14 +68,14 @@ pub fn edit_bar_ui(
                     (Source::File { .. } | Source::New { .. }, _, EditKind::Values) => "values.unsaved",
                 })
                 .with("count", count);
-                edits(ui, theme, count, &theme.words(&text));
+                edits_ui(ui, theme, count, &theme.words(&text));
             }
         });
     });
 }
 
 /// Draws the number of edits, omitting the label if it does not fit.
-fn edits(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
+fn edits_ui(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     let color = theme.palette.staged;
     let font = egui::TextStyle::Body.resolve(ui.style());
     let has_room = ui.painter().layout_no_wrap(words.to_owned(), font, color.into()).size().x <= ui.available_width();
@@ -86,7 +86,7 @@ fn edits(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
 }
 
 /// Draws the list of connected devices of the matching kind to which the profile can be written.
-fn write_into(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+fn write_into_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();
     let word = theme.say("memory.write_into");

@@ -1,5 +1,5 @@
-//! The end of the program that does not come from the window: a signal, or a lost display. Drives are stopped and released
-//! before, from whichever thread can do it.
+//! The end of the program that does not come from the window: a signal, or a lost display. Drives are stopped and
+//! released before, from whichever thread can do it.
 
 use std::cell::OnceCell;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,8 +23,7 @@ impl Drop for ReleaseOnDrop {
 
 thread_local! {
     /// Guard in the window's thread that releases the drives when the display is lost. The display library then ends
-    /// the program itself, but
-    /// thread-local values are still dropped.
+    /// the program itself, but thread-local values are still dropped.
     static LAST: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
 }
 

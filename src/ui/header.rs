@@ -14,10 +14,10 @@ const STOP: f32 = 72.0;
 
 pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
-        sessions(ui, theme, studio, actions);
+        sessions_ui(ui, theme, studio, actions);
         if let Some(device) = studio.selected_device() {
             let motion = views.tabs.device(device.tab()).and_then(|view| view.motion(device));
-            status(ui, theme, device, motion);
+            status_ui(ui, theme, device, motion);
         }
         // Drawn from left to right, in the order of the keyboard; its width is known from the previous frame.
         let width_id = ui.scope_id().with("tools");
@@ -29,7 +29,7 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
             |ui| {
                 ui.set_min_width((room - ui.spacing().item_spacing.x).max(0.0));
                 if room > 80.0 {
-                    link(ui, theme, studio);
+                    link_ui(ui, theme, studio);
                 }
             },
         );
@@ -101,7 +101,7 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
 }
 
 /// Draws the session menu, which opens from the name of the selected session.
-fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
+fn sessions_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let shown = studio.selected_device().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
     let most = if ui.ctx().content_rect().width() < 1200.0 { 21 } else { 28 };
     let text = RichText::new(format!("{}  {}", shortened(&shown, most), icons::CARET_DOWN))
@@ -111,7 +111,7 @@ fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Actio
         ui.label(theme.caption(theme.say("shell.sessions")));
         for device in studio.devices() {
             ui.horizontal(|ui| {
-                phase_dot(ui, theme, device.as_ref());
+                phase_dot_ui(ui, theme, device.as_ref());
                 let is_shown = studio.selected_device().is_some_and(|own| own.id() == device.id());
                 if ui.selectable_label(is_shown, device.name()).clicked() {
                     actions.push(Action::Select(device.id()));
@@ -168,7 +168,7 @@ fn shortened(name: &str, most: usize) -> String {
     }
 }
 
-fn phase_dot(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
+fn phase_dot_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     let palette = theme.palette;
     let (filled, colour) = match device.phase() {
         Phase::Connected => (true, palette.good),
@@ -180,12 +180,12 @@ fn phase_dot(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
 }
 
 /// Draws the status as one word: *virtual*, *offline*, *connected*, *moving* or *lost*.
-fn status(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text>) {
+fn status_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text>) {
     let palette = theme.palette;
     if device.is_virtual() {
         badge(ui, theme, &theme.say("shell.virtual"), palette.warn);
     }
-    phase_dot(ui, theme, device);
+    phase_dot_ui(ui, theme, device);
     let (text, colour) = match (device.phase(), motion) {
         (Phase::Connected, Some(motion)) => (motion, palette.bad),
         (Phase::Connected, None) if device.is_writing() => (Text::new("shell.writing"), palette.accent),
@@ -204,7 +204,7 @@ fn is_read_only(device: &AnyDevice) -> bool {
     matches!(device.source(), Source::File { document, .. } if document.is_newer())
 }
 
-fn link(ui: &mut Ui, theme: &Theme, studio: &Studio) {
+fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     let Some(device) = studio.selected_device() else { return };
     let words = device.place();
     let label = egui::Label::new(theme.mono(&words).color(theme.palette.muted)).truncate().sense(egui::Sense::click());
@@ -218,7 +218,7 @@ fn link(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 /// while a drive moves; while this window moves a drive, it acts on press rather than release and ends only motion.
 fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     // Motion by another master cannot be stopped from here: that is no reason to let a job continue.
-    let (moves, by_hand) = (studio.moves(), studio.moves_by_hand());
+    let (moves, by_hand) = (studio.moves(), studio.is_turned_by_hand());
     let active = moves || studio.can_stop() || studio.is_in_control();
     // Live values alone are nothing to be alarmed about.
     let is_alarming = moves || studio.is_working() || studio.is_in_control();

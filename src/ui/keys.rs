@@ -1,5 +1,5 @@
-//! Keys before any widget sees them: a key that repeats, or follows immediately after another, presses nothing; Space stops
-//! a motion, and so does every key while the pointer holds a drive. A key that holds a drive is handled by
+//! Keys before any widget sees them: a key that repeats, or follows immediately after another, presses nothing; Space
+//! stops a motion, and so does every key while the pointer holds a drive. A key that holds a drive is handled by
 //! [`HoldState`](crate::app::HoldState).
 
 use egui::{Context, Event, Key};
@@ -21,8 +21,7 @@ impl Keys {
 
     /// Removes the events that no widget may see from the current frame and returns whether all motion must stop.
     /// `moves` states whether this window is moving a drive. `asks` states whether consent is requested, which only a
-    /// key seen released since
-    /// then can give.
+    /// key seen released since then can give.
     pub(super) fn take(&mut self, ctx: &Context, moves: bool, asks: bool) -> bool {
         if asks && !std::mem::replace(&mut self.asked, asks) {
             self.fresh.forget();

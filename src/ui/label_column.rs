@@ -1,4 +1,5 @@
-//! Rows of a label and a value or an entry. The labels of a card have a column that is as wide as its longest label needs.
+//! Rows of a label and a value or an entry. The labels of a card have a column that is as wide as its longest label
+//! needs.
 
 use egui::{Id, RichText, Ui, vec2};
 

@@ -21,12 +21,12 @@ pub(super) fn navigation_ui(
     for tab in views.tabs.tabs() {
         let word = views.tabs.title(theme, tab);
         let text = egui::RichText::new(&word).font(theme.strong(theme.sizes.body));
-        if entry(ui, false, text, &word).clicked() {
+        if entry_ui(ui, false, text, &word).clicked() {
             views.plot.restore_size();
             actions.push(Action::ShowTab(tab));
         }
         if tab == studio.settings.tab {
-            open_pages(ui, theme, studio, views);
+            open_pages_ui(ui, theme, studio, views);
         }
     }
     // At the bottom, so that it is drawn wherever the rest ends.
@@ -38,7 +38,7 @@ pub(super) fn navigation_ui(
 }
 
 /// Draws the page entries of the open tab, if the tab has any content.
-fn open_pages(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
+fn open_pages_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     let tab = studio.settings.tab;
     let pages = views.tabs.pages(tab);
     let pressed = if let Some(tool) = views.tool(tab) {
@@ -71,14 +71,14 @@ fn pages_ui(
         if edited(at) {
             text = text.color(theme.palette.staged);
         }
-        if entry(ui, shown == at, text, &word).clicked() {
+        if entry_ui(ui, shown == at, text, &word).clicked() {
             pressed = Some(at);
         }
     }
     pressed
 }
 
-fn entry(ui: &mut Ui, is_shown: bool, text: egui::RichText, word: &str) -> egui::Response {
+fn entry_ui(ui: &mut Ui, is_shown: bool, text: egui::RichText, word: &str) -> egui::Response {
     let size = egui::vec2(ui.available_width(), 32.0);
     let button = egui::Button::selectable(is_shown, (text, egui::Atom::grow())).frame_when_inactive(false);
     name(ui.add(button.min_size(size)), true, word)

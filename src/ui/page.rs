@@ -8,13 +8,13 @@ const NARROW: f32 = 720.0;
 /// Space above a page, and the maximum space below.
 const ABOVE: i8 = 16;
 
-pub(crate) fn sides(ui: &Ui, theme: &Theme) -> i8 {
+pub(crate) fn side_margin(ui: &Ui, theme: &Theme) -> i8 {
     let narrow = ui.available_width() < NARROW;
     (if narrow { theme.space.groups } else { theme.space.around }) as i8
 }
 
 pub(crate) fn around(ui: &Ui, theme: &Theme) -> Margin {
-    let sides = sides(ui, theme);
+    let sides = side_margin(ui, theme);
     Margin { left: sides, right: sides, top: ABOVE, bottom: sides.min(ABOVE) }
 }
 

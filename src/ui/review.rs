@@ -1,5 +1,5 @@
-//! The review of a write, for any device: every operation old → new, its costs and requirements, the consent, the progress,
-//! and the result.
+//! The review of a write, for any device: every operation old → new, its costs and requirements, the consent, the
+//! progress, and the result.
 
 use std::sync::Arc;
 
@@ -24,11 +24,11 @@ pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, 
         ui.add_space(theme.space.between);
         // The keyboard focus does not pass from a button of one stage to the next: a key that cancels there must not write
         // here.
-        apart(ui, std::mem::discriminant(&sheet.stage), |ui| content(ui, theme, device, (&sheet, room), actions));
+        apart(ui, std::mem::discriminant(&sheet.stage), |ui| content_ui(ui, theme, device, (&sheet, room), actions));
     });
 }
 
-fn content(
+fn content_ui(
     ui: &mut Ui,
     theme: &Theme,
     device: &AnyDevice,
@@ -41,7 +41,7 @@ fn content(
                 spinner(ui, theme);
                 ui.label(theme.label(theme.say("review.planning")));
             });
-            buttons(ui, theme, device, actions, "review.cancel", |_, _| {});
+            buttons_ui(ui, theme, device, actions, "review.cancel", |_, _| {});
         }
         Stage::Nothing => {
             ui.horizontal(|ui| {
@@ -54,16 +54,16 @@ fn content(
                 ui.label(RichText::new(icon).color(colour));
                 ui.label(theme.say(words));
             });
-            remarks(ui, theme, sheet);
-            options(ui, theme, device, sheet, actions);
-            buttons(ui, theme, device, actions, "review.close", |_, _| {});
+            remarks_ui(ui, theme, sheet);
+            options_ui(ui, theme, device, sheet, actions);
+            buttons_ui(ui, theme, device, actions, "review.close", |_, _| {});
         }
         Stage::Ready(plan) => {
-            operations(ui, theme, (&sheet.lines, room), None);
-            remarks(ui, theme, sheet);
-            options(ui, theme, device, sheet, actions);
+            operations_ui(ui, theme, (&sheet.lines, room), None);
+            remarks_ui(ui, theme, sheet);
+            options_ui(ui, theme, device, sheet, actions);
             ui.label(theme.label(theme.say(sheet.execution_mode.summary_id())));
-            buttons(ui, theme, device, actions, "review.cancel", |ui, actions| {
+            buttons_ui(ui, theme, device, actions, "review.cancel", |ui, actions| {
                 let icon =
                     if sheet.execution_mode == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
                 // Without the permission it would be refused.
@@ -76,10 +76,10 @@ fn content(
             });
         }
         Stage::Writing(done) => {
-            operations(ui, theme, (&sheet.lines, room), Some(*done));
+            operations_ui(ui, theme, (&sheet.lines, room), Some(*done));
             let part = *done as f32 / sheet.lines.len().max(1) as f32;
             ui.add(egui::ProgressBar::new(part).desired_height(4.0));
-            redo(ui, theme, sheet);
+            redo_ui(ui, theme, sheet);
             let stopping = device.running().is_some_and(|running| running.stopping);
             at_the_right(ui, |ui| {
                 let word = theme.say(if stopping { "shell.stopping" } else { "shell.cancel" });
@@ -92,23 +92,23 @@ fn content(
             });
         }
         Stage::Done { verified, backup, logbook } => {
-            operations(ui, theme, (&sheet.lines, room), Some(usize::MAX));
+            operations_ui(ui, theme, (&sheet.lines, room), Some(usize::MAX));
             ui.horizontal(|ui| {
                 ui.label(RichText::new(icons::CHECK_CIRCLE).size(theme.sizes.section).color(theme.palette.good));
                 ui.label(theme.words(verified));
             });
-            redo(ui, theme, sheet);
+            redo_ui(ui, theme, sheet);
             if let Some(backup) = backup {
                 row(ui, theme, &theme.say("review.backup"), theme.mono(backup.display().to_string()));
             }
             if let Some(why) = logbook {
-                remark(ui, icons::WARNING, theme.palette.warn, &theme.words(why));
+                remark_ui(ui, icons::WARNING, theme.palette.warn, &theme.words(why));
             }
-            buttons(ui, theme, device, actions, "review.close", |_, _| {});
+            buttons_ui(ui, theme, device, actions, "review.close", |_, _| {});
         }
         Stage::Failed { texts, begun, done } => {
             if !sheet.lines.is_empty() {
-                operations(ui, theme, (&sheet.lines, room), Some(*done));
+                operations_ui(ui, theme, (&sheet.lines, room), Some(*done));
             }
             let (icon, colour) =
                 if *begun { (icons::WARNING, theme.palette.warn) } else { (icons::X_CIRCLE, theme.palette.bad) };
@@ -123,14 +123,14 @@ fn content(
                     ui.add(egui::Label::new(theme.words(text)).wrap().selectable(true));
                 });
             }
-            redo(ui, theme, sheet);
-            options(ui, theme, device, sheet, actions);
-            buttons(ui, theme, device, actions, "review.close", |_, _| {});
+            redo_ui(ui, theme, sheet);
+            options_ui(ui, theme, device, sheet, actions);
+            buttons_ui(ui, theme, device, actions, "review.close", |_, _| {});
         }
     }
 }
 
-fn buttons(
+fn buttons_ui(
     ui: &mut Ui,
     theme: &Theme,
     device: &AnyDevice,
@@ -148,7 +148,7 @@ fn buttons(
 }
 
 /// Draws the operations and, during a write, the number of completed operations. Values are never truncated.
-fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], f32), done: Option<usize>) {
+fn operations_ui(ui: &mut Ui, theme: &Theme, (lines, room): (&[OperationTexts], f32), done: Option<usize>) {
     let palette = theme.palette;
     theme.sunken().show(ui, |ui| {
         ScrollArea::vertical().id_salt("operations").max_height(room).auto_shrink([false, true]).show(ui, |ui| {
@@ -238,22 +238,22 @@ const ICON: f32 = 24.0;
 /// Width of the column for the "old" and "new" labels.
 const HEADS: f32 = 56.0;
 
-fn remarks(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
+fn remarks_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let palette = theme.palette;
-    redo(ui, theme, sheet);
+    redo_ui(ui, theme, sheet);
     for text in &sheet.warnings {
-        remark(ui, icons::WARNING, palette.warn, &theme.words(text));
+        remark_ui(ui, icons::WARNING, palette.warn, &theme.words(text));
     }
     for text in &sheet.needs {
-        remark(ui, icons::INFO, palette.accent, &theme.words(text));
+        remark_ui(ui, icons::INFO, palette.accent, &theme.words(text));
     }
     if let Some(cost) = &sheet.cost {
-        remark(ui, icons::MEMORY, palette.muted, &theme.words(cost));
+        remark_ui(ui, icons::MEMORY, palette.muted, &theme.words(cost));
     }
 }
 
 /// Draws a red notice above the operations, listing the values that must be set up again.
-fn redo(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
+fn redo_ui(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let Some(text) = &sheet.redo else { return };
     let colour = theme.palette.bad;
     ui.horizontal_top(|ui| {
@@ -262,7 +262,7 @@ fn redo(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     });
 }
 
-fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
+fn remark_ui(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
         paragraph(ui, words);
@@ -270,7 +270,7 @@ fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
 }
 
 fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Question, actions: &mut Vec<Action>) {
-    remark(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.title));
+    remark_ui(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.title));
     ui.horizontal(|ui| {
         ui.add_space(ICON);
         for (is_on, word) in [(false, &question.no), (true, &question.yes)] {
@@ -282,7 +282,7 @@ fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Questi
 }
 
 /// Draws the permits and the option to write to a worn device.
-fn options(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewSheet, actions: &mut Vec<Action>) {
+fn options_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewSheet, actions: &mut Vec<Action>) {
     if !sheet.toggles.is_empty() {
         ui.add_space(theme.space.inside);
     }

@@ -1,5 +1,6 @@
-//! The line at the bottom of the window, whose place is reserved, so that nothing moves when a message comes: the notice, why
-//! there is no connection, the job that runs, or else the last frame or message; and what opens the lower panel.
+//! The line at the bottom of the window, whose place is reserved, so that nothing moves when a message comes: the
+//! notice, why there is no connection, the job that runs, or else the last frame or message; and what opens the lower
+//! panel.
 
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, Color32, Layout, Panel, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
@@ -31,7 +32,7 @@ pub(super) fn status_line_ui(
         let whole = UiBuilder::new().sense(Sense::click());
         let response = ui.scope_builder(whole, |ui| {
             ui.horizontal_centered(|ui| {
-                chevron(ui, theme, studio, actions);
+                chevron_ui(ui, theme, studio, actions);
                 let size = vec2(ui.available_width(), ui.available_height());
                 ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
                     line_ui(ui, theme, studio, views, actions);
@@ -52,7 +53,7 @@ pub(super) fn status_line_ui(
     }
 }
 
-fn chevron(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
+fn chevron_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let open = studio.settings.lower_open;
     let (icon, word) =
         if open { (icons::CARET_DOWN, "status_line.close") } else { (icons::CARET_RIGHT, "status_line.open") };
@@ -87,7 +88,7 @@ fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actio
                 }
             });
         } else if let Some((device, _)) = lost {
-            reconnect_buttons(ui, theme, device, actions);
+            reconnect_buttons_ui(ui, theme, device, actions);
         }
     });
     ui.with_layout(Layout::left_to_right(Align::Center), |ui| match (notice, lost) {
@@ -120,7 +121,7 @@ fn lost_of(device: &AnyDevice) -> Option<(&AnyDevice, &crate::app::Text)> {
 }
 
 /// Draws the buttons for reconnecting, in reverse order.
-fn reconnect_buttons(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
+fn reconnect_buttons_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
         actions.push(Action::Connect(connect::ConnectAction::Open));
     }
@@ -184,8 +185,7 @@ fn latest_message_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 }
 
 /// Returns the last reply if it is one of the last two frames, so that the status line does not flicker between
-/// requests and
-/// replies. Otherwise, returns the last frame.
+/// requests and replies. Otherwise, returns the last frame.
 fn last_frame_line(trace: &TraceLog) -> Option<&TraceLine> {
     let mut newest = trace.lines().iter().rev().take(2);
     let is_reply = |line: &&TraceLine| line.direction == Direction::Received;

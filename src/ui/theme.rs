@@ -1,5 +1,5 @@
-//! The theme of the window applied to egui: fonts, colours, sizes and distances from `assets/theme.ron`, and the texts of
-//! one language. Every view gets a [`Theme`]; no view defines colours, sizes or fonts of its own.
+//! The theme of the window applied to egui: fonts, colours, sizes and distances from `assets/theme.ron`, and the texts
+//! of one language. Every view gets a [`Theme`]; no view defines colours, sizes or fonts of its own.
 
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
@@ -48,8 +48,7 @@ impl Theme {
     }
 
     /// Formats a number with as many decimals as needed, up to twelve significant digits. Further digits would only
-    /// show rounding
-    /// errors.
+    /// show rounding errors.
     pub fn plain(&self, value: f64) -> String {
         const DIGITS: i32 = 12;
         let before = if value == 0.0 { 1 } else { (value.abs().log10().floor() as i32).saturating_add(1) };
@@ -146,6 +145,8 @@ impl Theme {
             style.wrap_mode = Some(egui::TextWrapMode::Extend);
             style.interaction.selectable_labels = false;
             style.animation_time = 0.1;
+            // A picture is drawn when something changes, not because a cursor blinks.
+            style.visuals.text_cursor.blink = false;
             self.colour(&mut style.visuals);
         });
     }

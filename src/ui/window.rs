@@ -102,8 +102,8 @@ impl Window {
             .exact_size(48.0)
             .frame(flat(palette.raised).inner_margin(egui::Margin::symmetric(12, 0)))
             .show(ui, |ui| header::header_ui(ui, theme, studio, views, actions));
-        writing_bar(ui, theme, studio);
-        moving_edge(ui, theme, studio);
+        writing_bar_ui(ui, theme, studio);
+        moving_edge_ui(ui, theme, studio);
         self.status_line(ui, theme, actions);
         let Window { studio, views, docks, .. } = self;
         Panel::left("navigation")
@@ -174,8 +174,7 @@ impl Window {
     }
 
     /// Handles requests to close the window even if nothing is drawn, since a minimised window must still be closable.
-    /// This never keeps a
-    /// motion going.
+    /// This never keeps a motion going.
     pub fn logic(&mut self, ctx: &egui::Context) {
         self.handle_close_request(ctx);
         // Drawing must know about it in this frame.
@@ -192,7 +191,7 @@ impl Window {
             return;
         }
         self.studio.poll();
-        if self.studio.may_close() {
+        if self.studio.can_close() {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         ctx.request_repaint_after(Duration::from_millis(30));
@@ -204,7 +203,7 @@ impl Window {
             let viewport = input.raw.viewport();
             (viewport.close_requested(), viewport.minimized == Some(true))
         });
-        if !asked || self.studio.may_close() {
+        if !asked || self.studio.can_close() {
             return;
         }
         ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
@@ -221,7 +220,7 @@ impl Window {
         }
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         actions.extend(dropped.iter().map(|file| Action::Open(file.path().to_owned())));
-        let (moves, asks) = (self.studio.moves_by_hand(), self.is_asking());
+        let (moves, asks) = (self.studio.is_turned_by_hand(), self.is_asking());
         if self.keys.take(ctx, moves, asks) {
             actions.push(Action::StopMotion);
         }
@@ -304,7 +303,7 @@ impl Window {
     /// pointer takes precedence, such as a half-typed byte, an open menu or a field being dragged.
     fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
         // Pressed while this window moves a drive, it applies to the motion, whatever else is open or dragged.
-        let moves = self.studio.moves_by_hand();
+        let moves = self.studio.is_turned_by_hand();
         let goes_down = stop_debounce::escape_goes_down(ctx);
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         if !is_pressed && goes_down && moves {
@@ -342,7 +341,7 @@ impl Window {
         if self.studio.settings.size != Some(size) {
             self.studio.act(Action::KeepSize(size.0, size.1));
         }
-        if self.studio.may_close() {
+        if self.studio.can_close() {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         self.views.forget_closed(&self.studio);
@@ -357,7 +356,7 @@ impl Window {
 }
 
 /// Draws a red edge on the header while a drive moves.
-fn moving_edge(ui: &mut Ui, theme: &Theme, studio: &Studio) {
+fn moving_edge_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     if studio.moves() {
         let screen = ui.ctx().content_rect();
         let edge = egui::Rect::from_min_size(screen.min + egui::vec2(0.0, 45.0), egui::vec2(screen.width(), 3.0));
@@ -366,7 +365,7 @@ fn moving_edge(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 }
 
 /// Draws an animated bar along the top edge during a write.
-fn writing_bar(ui: &mut Ui, theme: &Theme, studio: &Studio) {
+fn writing_bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     if !studio.devices().iter().any(|device| device.is_writing()) {
         return;
     }

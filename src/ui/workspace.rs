@@ -28,14 +28,14 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
         return;
     }
     let Some(device) = device_in_tab(studio, tab) else {
-        return nothing(ui, theme, views.tabs.device(tab), actions);
+        return nothing_ui(ui, theme, views.tabs.device(tab), actions);
     };
     let Some(session) = views.session(device) else { return };
     apart(ui, "page", |ui| session.page_ui(ui, theme, (studio, device), actions));
 }
 
 /// Draws the options for opening a device, shown while no device is open.
-fn nothing(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
+fn nothing_ui(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
     ui.add_space((ui.available_height() * ABOVE_NOTHING).round());
     ui.vertical_centered(|ui| {
         if let Some(view) = view {

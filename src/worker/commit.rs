@@ -16,18 +16,18 @@ use crate::profile::{
 };
 use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
 
-/// A plan that a user consented to, with the values read for it.
+/// A plan approved by the user, with the values read for the plan.
 #[derive(Clone, Debug)]
 pub struct ApprovedPlan<P> {
     /// The plan as shown.
     pub prepared: P,
     /// The consent to it.
     pub consent: Consent,
-    /// Whether to write although the device counts as worn, or its write cycles are not known.
+    /// Whether to write even if the device counts as worn or its write cycles are unknown.
     pub force_wear: bool,
 }
 
-/// A write whose before-image is kept, and which the logbook has recorded.
+/// A write whose before-image has been kept and which has been recorded in the logbook.
 struct WriteIntent {
     backup: PathBuf,
     entry: Result<(Logbook, EntryId), LogbookError>,
@@ -36,11 +36,11 @@ struct WriteIntent {
 /// The result of a commit.
 #[derive(Clone, Debug, Default)]
 pub struct Committed<W> {
-    /// The result of the write, as counted by the kind of device.
+    /// Result of the write, as counted by the kind of device.
     pub written: W,
-    /// The before-image; `None` if there was nothing to write.
+    /// Path of the before-image, or `None` if there was nothing to write.
     pub backup: Option<PathBuf>,
-    /// The error of the logbook after the write, which itself is complete.
+    /// Logbook error after the write. The write itself is complete.
     pub logbook_warning: Option<LogbookError>,
 }
 
@@ -53,7 +53,7 @@ pub enum NotBegun {
     /// The number of earlier write cycles cannot be read, or the new ones cannot be counted.
     #[error("the write cycles so far are not known, {cost} more would not be counted")]
     WearUnknown {
-        /// Write cycles of the plan.
+        /// Number of write cycles required by the plan.
         cost: u64,
     },
     /// The device counts as worn.
@@ -61,35 +61,35 @@ pub enum NotBegun {
     Worn {
         /// Seen so far.
         seen: u64,
-        /// Write cycles of the plan.
+        /// Number of write cycles required by the plan.
         cost: u64,
         /// The limit.
         limit: u64,
     },
-    /// The before-image cannot be kept.
+    /// The before-image cannot be saved.
     #[error(transparent)]
     NotKept(FileError),
 }
 
-/// A plan that a job has made, with the values read for it: the data that a write needs in addition to the connection.
+/// A plan made by a job, with all the data that a write needs in addition to the connection.
 pub trait Planned {
-    /// The values that the plan is based on.
+    /// Values on which the plan is based.
     type Base: Hash;
     /// A single operation of the plan.
     type Op: Operation + Clone + Hash;
-    /// Kinds of change that differ in how an interrupted one is completed.
+    /// Kind of change, which determines how an interrupted write is completed.
     type Kind;
 
-    /// Returns the plan, what it is for, and the wear of the device.
+    /// Returns the plan, its purpose and the wear of the device.
     fn head(&self) -> PlanHead<'_, Self>;
 
-    /// Returns how backups and the logbook know the device.
+    /// Returns the key that identifies the device in backups and the logbook.
     fn device(&self, is_virtual: bool) -> DeviceKey;
 
-    /// Returns the change of an operation, as a text for the logbook.
+    /// Returns a description of an operation's change for the logbook.
     fn note(&self, op: &Self::Op) -> String;
 
-    /// Returns a restorable text of the previous values that the plan changes.
+    /// Returns the previous values that the plan changes, in a restorable text format.
     fn before_image(&self) -> String;
 
     /// Returns the plan to write.
@@ -102,36 +102,36 @@ pub trait Planned {
         self.head().kind
     }
 
-    /// Returns the write cycles that the logbook of this computer has recorded for the device; `None` if the logbook cannot
-    /// be read.
+    /// Returns the write cycles recorded for the device in the logbook of this computer, or `None` if the logbook
+    /// cannot be read.
     fn cycles_seen(&self) -> Option<u64> {
         self.head().cycles_seen
     }
 
-    /// Returns the write cycles beyond which the device counts as worn.
+    /// Returns the number of write cycles beyond which the device counts as worn.
     fn wear_limit(&self) -> u64 {
         self.head().wear_limit
     }
 }
 
-/// A plan, what it is for, and the wear of the device.
+/// A plan with its purpose and the wear of the device.
 pub struct PlanHead<'p, P: Planned + ?Sized> {
     /// What would be written.
     pub plan: &'p Plan<P::Base, P::Op>,
-    /// The kind of change that it is for.
+    /// Kind of change that the plan makes.
     pub kind: P::Kind,
-    /// Write cycles that this computer has seen the device take; `None` where the logbook does not tell.
+    /// Write cycles recorded for the device on this computer, or `None` if the logbook does not provide them.
     pub cycles_seen: Option<u64>,
     /// Write cycles beyond which the device counts as worn.
     pub wear_limit: u64,
 }
 
-/// The error of a write that did not begin or was interrupted; if the base has changed, it is the device's error.
+/// The error of a write that did not begin or was interrupted. If the base has changed, this is the device's error.
 type Unfinished<P, W, E> =
     JobError<<<W as Write>::Error as OperationError>::Device, E, InterruptedWrite<W>, <P as Planned>::Kind>;
 
-/// Writes a plan that a user consented to: the one way to write, for every kind of device. Each operation is reported
-/// before it begins. A plan without operations succeeds.
+/// Writes a plan that a user consented to, for every kind of device. Each operation is reported before it begins, and a
+/// plan without operations succeeds.
 ///
 /// # Errors
 /// See [`JobError`].
@@ -175,26 +175,26 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
     }
 }
 
-/// Creates the profile to keep before a write.
+/// Creates the profile to be saved before a write.
 pub fn backup_of(body: Body) -> Document {
     let mut document = Document::new(Timestamp::now().to_string(), body);
     document.note = Some("before-image of a write".to_owned());
     document
 }
 
-/// Returns the write cycles that a device will have taken at least after `cost` more, if the user should be told of the
-/// limit: from `warning` on.
+/// Returns the minimum total of write cycles of a device after `cost` more, if the total is at least `warning` and the
+/// user should be told of the limit.
 pub(crate) fn wear(seen: Option<u64>, cost: u64, warning: u64) -> Option<u64> {
     let after = seen.unwrap_or(0).saturating_add(cost);
     (cost > 0 && after >= warning).then_some(after)
 }
 
-/// Returns whether a write costs cycles of a device whose earlier cycles are not known.
+/// Returns whether a write costs cycles on a device whose earlier write cycles are unknown.
 pub const fn is_uncounted(seen: Option<u64>, cost: u64) -> bool {
     seen.is_none() && cost > 0
 }
 
-/// Returns the write cycles that the logbook of this computer has recorded for a device; `None` if the logbook cannot be
+/// Returns the write cycles recorded for a device in the logbook of this computer, or `None` if the logbook cannot be
 /// read.
 pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     let path = store.logbook_path();
@@ -210,7 +210,7 @@ pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     }
 }
 
-/// Returns whether a write of this cost may begin, as far as the earlier write cycles are known.
+/// Checks whether a write of this cost may begin, as far as the earlier write cycles are known.
 ///
 /// # Errors
 /// [`NotBegun::WearUnknown`], [`NotBegun::Worn`].
@@ -224,7 +224,7 @@ pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bo
 }
 
 impl WriteIntent {
-    /// Keeps the before-image and records the intent in the logbook.
+    /// Saves the before-image and records the intended write in the logbook.
     fn note(store: &Store, device: &DeviceKey, items: &str, cost: u64, before: &str) -> Result<Self, FileError> {
         let backup = store.backups().save(&device.kind, &device.serial_number, Timestamp::now(), before)?;
         let intend = |mut logbook: Logbook| {
@@ -235,7 +235,7 @@ impl WriteIntent {
         Ok(WriteIntent { backup, entry })
     }
 
-    /// Records the end of the write; returns the before-image, and the error of the logbook.
+    /// Records the end of the write. Returns the path of the before-image and any logbook error.
     fn conclude(self, outcome: Outcome, spent: u64) -> (PathBuf, Option<LogbookError>) {
         let warning = match self.entry {
             Ok((mut logbook, id)) => logbook.conclude(id, Timestamp::now(), outcome, spent).err(),

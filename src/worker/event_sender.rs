@@ -7,10 +7,10 @@ use crossbeam_channel::{Sender, TrySendError};
 
 use super::{Device, Event};
 
-/// Maximum number of unread events; progress counts once.
+/// Maximum number of unread events, with progress counted once.
 pub(super) const CAPACITY: usize = 64;
 
-/// Queue of outgoing events. Events that do not fit into the channel wait in the queue, which never holds more than one
+/// A sender of events with a queue for events that do not fit into the channel. The queue never holds more than one
 /// job's events, because the next job does not start while the channel is full.
 pub(super) struct EventSender<D: Device> {
     sender: Sender<Event<D>>,
@@ -64,7 +64,7 @@ impl<D: Device> EventSender<D> {
         }
     }
 
-    /// Sends the events that had to wait, and wakes the reader.
+    /// Sends the waiting events and wakes the reader.
     pub(super) fn flush_late(&mut self) {
         if !self.is_empty() {
             self.flush();

@@ -10,7 +10,7 @@ pub trait JobInterruption {
     /// Returns whether the user cancelled the job.
     fn is_cancelled(&self) -> bool;
 
-    /// Returns the number of operations carried out before the end, or `None` if no write had begun.
+    /// Returns the number of operations carried out before the job ended, or `None` if no write had begun.
     fn done(&self) -> Option<usize> {
         None
     }
@@ -28,16 +28,16 @@ pub enum JobError<E, P, I, K> {
     /// The device or its connection failed.
     #[error(transparent)]
     Device(E),
-    /// The plan is impossible; nothing was written.
+    /// The plan is impossible. Nothing was written.
     #[error(transparent)]
     Plan(P),
-    /// The device has reached its limit of write cycles, or its backup cannot be stored; nothing was written.
+    /// The device has reached its limit of write cycles, or its backup cannot be stored. Nothing was written.
     #[error(transparent)]
     NotBegun(#[from] NotBegun),
     /// The write was begun but not finished.
     #[error("{interrupted}; before-image: {}", backup.display())]
     Interrupted {
-        /// Changes written, cause, and state in which the device was left.
+        /// Changes that were written, the cause, and the state in which the device was left.
         interrupted: Box<I>,
         /// Path of the backup.
         backup: PathBuf,

@@ -8,15 +8,15 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use crate::link::Cancel;
 
-/// Maximum interval; longer intervals are shortened to it.
+/// Maximum interval. Longer intervals are shortened to this value.
 const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// Live requests of a session. Clones share the requests.
+/// The live requests of a session, shared by all clones.
 #[derive(Clone)]
 pub(super) struct Live {
     requests: Arc<Mutex<PollRequests>>,
     sampling: Cancel,
-    /// Wakes the thread; a full channel means that the thread is about to wake.
+    /// Channel that wakes the thread. If the channel is full, a wake-up is already pending.
     changed: Sender<()>,
 }
 
@@ -24,12 +24,12 @@ struct PollRequests {
     /// Cancellation token of the running job, or of the last one.
     job: Cancel,
     interval: Option<Duration>,
-    /// Number of the polling request, so that a failure ends only the request it belongs to.
+    /// Number of the polling request, so that a failure ends only the request to which it belongs.
     number: u64,
 }
 
 impl Live {
-    /// Creates an empty request list, and the receiver on which the thread is told of changes.
+    /// Creates an empty request list and the receiver that notifies the thread of changes.
     pub(super) fn new() -> (Self, Receiver<()>) {
         let (changed, changes) = bounded(1);
         let requests = Arc::new(Mutex::new(PollRequests { job: Cancel::default(), interval: None, number: 0 }));
@@ -77,8 +77,8 @@ impl Live {
         }
     }
 
-    /// Interrupts a running sample. Make the request first: the thread resets the token and then reads the requests, so
-    /// that no request is missed.
+    /// Interrupts a running sample. The request must be made first, because the thread resets the token before it reads
+    /// the requests.
     pub(super) fn interrupt_sample(&self) {
         self.sampling.request();
     }
@@ -101,7 +101,7 @@ impl Live {
     }
 }
 
-/// Values watched between samples while polling. Clones share the values.
+/// Values watched between samples while polling, shared by all clones.
 pub(super) struct Watches<W> {
     list: Arc<Mutex<List<W>>>,
     live: Live,
@@ -115,17 +115,17 @@ struct List<W> {
 struct Entry<W> {
     value: W,
     interval: Duration,
-    /// Whether the device lacks the value, which is then not requested again while it stays in the list.
+    /// Whether the device lacks the value, which is then not requested again while it remains in the list.
     refused: bool,
 }
 
 impl<W: Clone + PartialEq> Watches<W> {
-    /// Creates an empty watch list; the thread is notified of changes through `live`.
+    /// Creates an empty watch list. The thread is notified of changes through `live`.
     pub(super) fn new(live: Live) -> Self {
         Watches { list: Arc::new(Mutex::new(List { entries: Vec::new(), number: 0 })), live }
     }
 
-    /// Sets the values to watch, each once; the first of several equal values counts.
+    /// Sets the values to watch. If a value is listed more than once, the first entry counts.
     pub(super) fn set_entries(&self, watched: Vec<(W, Duration)>) {
         let mut list = self.lock();
         let mut entries: Vec<Entry<W>> = Vec::with_capacity(watched.len());
@@ -151,7 +151,7 @@ impl<W: Clone + PartialEq> Watches<W> {
         changed.then(|| list.asked_for())
     }
 
-    /// Returns the watched values and their intervals, except those that the device refused.
+    /// Returns the watched values and their intervals, except those that the device has refused.
     pub(super) fn asked_for(&self) -> Vec<(W, Duration)> {
         self.lock().asked_for()
     }
@@ -183,12 +183,12 @@ impl<W> Clone for Watches<W> {
     }
 }
 
-/// A handle that stops a worker from code that does not own it, shared by its clones.
+/// A handle that stops a worker from code that does not own the worker. Clones stop the same worker.
 #[derive(Clone)]
 pub struct Stopper(Live);
 
 impl Stopper {
-    /// Ends polling, and the running job at the next possible point. Jobs submitted later are not affected.
+    /// Ends polling and stops the running job at the next possible point. Jobs submitted later are not affected.
     pub fn stop(&self) {
         self.0.stop();
     }

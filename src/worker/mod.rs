@@ -42,27 +42,27 @@ use thread::{Bench, Never, Order};
 
 use crate::link::{Cancel, LinkError};
 
-/// A kind of device in a session: its connection, its known data, and its jobs.
+/// A kind of device in a session, with its connection, known data and jobs.
 pub trait Device: Send + 'static {
-    /// A request to the device.
+    /// Request to the device.
     type Job: Send + fmt::Debug;
-    /// The result of a job.
+    /// Result of a job.
     type Output: Send + fmt::Debug;
-    /// The reason why a job ends early.
+    /// Reason why a job ended early.
     type Error: JobInterruption + Send + fmt::Debug;
-    /// A message that the device sends along with any reply.
+    /// Message that the device sends in addition to a reply.
     type DeviceMessage: Send + fmt::Debug;
-    /// One polled sample; samples of watched values identify themselves.
+    /// A polled sample. Samples of watched values identify themselves.
     type Sample: Send + fmt::Debug + 'static;
-    /// A value that can be watched: requested between two samples.
+    /// Value that can be watched, which means that it is requested between two samples.
     type Watch: Clone + PartialEq + Send + fmt::Debug + 'static;
-    /// The steps that its jobs report.
+    /// Steps reported by jobs.
     type JobStep: Clone + Send + fmt::Debug;
 
     /// Carries out a job.
     ///
     /// # Errors
-    /// The reason why it ended early.
+    /// Returns the reason why the job ended early.
     fn run(
         &mut self,
         context: &mut SessionContext,
@@ -70,24 +70,25 @@ pub trait Device: Send + 'static {
         tell: &mut dyn FnMut(JobReport<Self::DeviceMessage, Self::JobStep>),
     ) -> Result<Self::Output, Self::Error>;
 
-    /// Sets the interval of samples from now on, or none: data that the device sends without request begin with the next
-    /// sample and end here.
+    /// Sets the interval of subsequent samples, or `None` for no sampling. Data that the device sends without request
+    /// begin with the next sample and end on `None`.
     fn pace(&mut self, _desk: &mut SessionContext, _interval: Option<Duration>) {}
 
-    /// Takes one sample with as few exchanges as possible. Messages of the device meanwhile belong to the sample.
+    /// Takes one sample with as few exchanges as possible. Messages that the device sends meanwhile belong to the
+    /// sample.
     ///
     /// # Errors
-    /// Returns an error if there is no sample: polling ends.
+    /// Returns an error if there is no sample, which ends polling.
     fn sample(&mut self, context: &mut SessionContext) -> Result<Self::Sample, Self::Error>;
 
-    /// Requests a watched value. Messages of the device meanwhile belong to the sample.
+    /// Requests a watched value. Messages that the device sends meanwhile belong to the sample.
     ///
     /// # Errors
-    /// Returns an error if it does not answer: polling ends. A refusal is an answer.
+    /// Returns an error if the device does not answer, which ends polling. A refusal counts as an answer.
     fn watch(&mut self, context: &mut SessionContext, what: &Self::Watch)
     -> Result<Watched<Self::Sample>, Self::Error>;
 
-    /// Takes the message of the device since the last call, if there is one.
+    /// Takes the message that the device has sent since the last call, if any.
     fn take_remark(&mut self) -> Option<Self::DeviceMessage> {
         None
     }
@@ -95,7 +96,7 @@ pub trait Device: Send + 'static {
     /// Checks that the connection still exists.
     ///
     /// # Errors
-    /// Returns an error if it is lost.
+    /// Returns an error if the connection is lost.
     fn check(&mut self) -> Result<(), LinkError>;
 
     /// Returns how often an idle worker checks the device and its wire.
@@ -103,7 +104,7 @@ pub trait Device: Send + 'static {
         IDLE
     }
 
-    /// Maintains the session while there is no job, and returns a message if there is one.
+    /// Maintains the session while no job is running, and returns a device message if there is one.
     fn idle(&mut self, _desk: &mut SessionContext) -> Option<Self::DeviceMessage> {
         None
     }
@@ -113,19 +114,19 @@ pub trait Device: Send + 'static {
         false
     }
 
-    /// Restores, at the end of the session, any state that must not remain.
+    /// Restores any device state that must not persist, at the end of the session.
     fn leave(&mut self, _desk: &mut SessionContext) {}
 }
 
-/// How often an idle worker checks a device that has no work in progress.
+/// Interval at which an idle worker checks a device that has no work in progress.
 pub(crate) const IDLE: Duration = Duration::from_millis(500);
 
 /// The reply to a request for a watched value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Watched<S> {
-    /// The value, or why there is none at the moment.
+    /// The value, or the reason why there is none at the moment.
     Sample(S),
-    /// The device does not have the value, and is not asked again; with the sample that reports it.
+    /// The device does not have the value and is not asked again. Contains the sample that reports the refusal.
     Refused(S),
 }
 
@@ -145,7 +146,7 @@ pub struct Progress<W> {
 }
 
 impl<W> Progress<W> {
-    /// Returns the same progress, with the step converted.
+    /// Returns the progress with its step converted.
     pub fn map<T>(self, terms: impl FnOnce(W) -> T) -> Progress<T> {
         Progress { done: self.done, total: self.total, step: terms(self.step) }
     }
@@ -156,7 +157,7 @@ impl<W> Progress<W> {
 pub enum JobReport<R, W> {
     /// Progress of the job.
     Progress(Progress<W>),
-    /// A message of the device; each is passed on.
+    /// A message from the device. Every message is passed on.
     Remark(R),
 }
 
@@ -167,15 +168,15 @@ pub enum Event<D: Device> {
     Started(JobId),
     /// Progress of a job.
     Progress(JobId, Progress<D::JobStep>),
-    /// A message of the device, during a job or at its end.
+    /// A message from the device during a job or at its end.
     Remark(D::DeviceMessage),
     /// The job is done.
     Finished(JobId, Box<D::Output>),
     /// The job failed.
     Failed(JobId, Box<D::Error>),
-    /// The job ended because the user cancelled it; a writing job includes what was written before.
+    /// The job ended because the user cancelled it. For a writing job, the error includes what was written before.
     Cancelled(JobId, Box<D::Error>),
-    /// A sample failed, and polling is off.
+    /// A sample failed, and polling has stopped.
     PollFailed(Box<D::Error>),
     /// The connection was lost while no job was running.
     Lost(LinkError),
@@ -184,10 +185,10 @@ pub enum Event<D: Device> {
 /// The reason why a job cannot be accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SubmitError {
-    /// A job is running; jobs do not queue.
+    /// A job is already running. Jobs are not queued.
     #[error("busy with another job")]
     Busy,
-    /// The channel is full of unread events, which have to be read first.
+    /// The channel is full of unread events, which must be read first.
     #[error("what was told is not read")]
     Unread,
     /// The worker has ended.
@@ -195,7 +196,7 @@ pub enum SubmitError {
     Ended,
 }
 
-/// A session's thread, used from outside. Dropping it stops the running work and ends the thread, and does not wait for it.
+/// A handle to the thread of a session. Dropping it stops the running work and ends the thread without waiting.
 pub struct Worker<D: Device> {
     orders: Sender<Order<D>>,
     events: Receiver<Event<D>>,
@@ -207,14 +208,14 @@ pub struct Worker<D: Device> {
     next: u64,
 }
 
-/// Samples that wait to be taken, at most.
+/// Maximum number of samples waiting to be taken.
 const SAMPLES: usize = 4096;
 
 impl<D: Device> Worker<D> {
-    /// Starts a thread for a session. `wake` is called after each event, and not for samples.
+    /// Starts a thread for a session. `wake` is called after each event, but not for samples.
     ///
     /// # Errors
-    /// Returns an error if the system has no free thread.
+    /// Returns an error if the system cannot create a thread.
     pub fn spawn(session: Session<D>, wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
         let (orders, incoming) = bounded(1);
         let (outgoing, events) = bounded(CAPACITY);
@@ -237,7 +238,7 @@ impl<D: Device> Worker<D> {
         Ok(Worker { orders, events, samples, live, watches, busy, ended, next: 0 })
     }
 
-    /// Submits a job. It takes precedence over sampling, and waits only for the running exchange.
+    /// Submits a job, which takes precedence over sampling and waits only for the running exchange.
     ///
     /// # Errors
     /// See [`SubmitError`].
@@ -261,7 +262,7 @@ impl<D: Device> Worker<D> {
         Ok(id)
     }
 
-    /// Ends polling, and the running job at the next point at which it can end.
+    /// Ends polling and stops the running job at the next point at which the job can end.
     pub fn stop(&self) {
         self.live.stop();
     }
@@ -271,42 +272,41 @@ impl<D: Device> Worker<D> {
         self.live.stopper()
     }
 
-    /// Requests samples, one each `interval` from start to start while no job runs, back to back with zero; or none. The
-    /// latest request counts, from now on.
+    /// Requests samples at the given `interval` from start to start while no job is running. Zero means back to back,
+    /// `None` stops sampling, and the latest request takes effect immediately.
     pub fn poll(&self, interval: Option<Duration>) {
         self.live.poll(interval);
     }
 
-    /// Returns the current request: `None` also after a sample failed or a stop.
+    /// Returns the current polling interval, or `None` if there is none, also after a failed sample or a stop.
     pub fn polling(&self) -> Option<Duration> {
         self.live.polling()
     }
 
-    /// Requests that these values are watched, each interval from start to start: while the device is polled, between two
-    /// samples and at most one of them there, so that none is requested more often than samples. Each has one interval: the
-    /// first counts if a value is listed twice. A value that the device does not have is requested once, as long as it
-    /// stays in the list. The latest request counts, from now on; it continues after polling ends, and watching resumes
-    /// when polling does.
+    /// Sets the values to watch, each with an interval from start to start; a duplicate is ignored, and a new list
+    /// replaces the previous one. While the device is polled, at most one value is requested between two samples, and a
+    /// value that the device does not have is requested only once. The list is kept when polling ends, and watching
+    /// resumes with polling.
     pub fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
         self.watches.set_entries(watched);
     }
 
-    /// Returns the watched values in the requested order, without those that the device refused.
+    /// Returns the watched values in the requested order, without those that the device has refused.
     pub fn watching(&self) -> Vec<(D::Watch, Duration)> {
         self.watches.asked_for()
     }
 
-    /// Returns the samples, at most 4096 of them; a new sample does not call `wake`.
+    /// Returns the buffer of at most 4096 samples. A new sample does not call `wake`.
     pub fn samples(&self) -> &Ring<D::Sample> {
         &self.samples
     }
 
-    /// Returns whether a job runs.
+    /// Returns whether a job is running.
     pub fn is_busy(&self) -> bool {
         self.busy.load(Ordering::SeqCst)
     }
 
-    /// Returns the events. The channel ends with the worker.
+    /// Returns the event channel, which closes when the worker ends.
     pub fn events(&self) -> &Receiver<Event<D>> {
         &self.events
     }
@@ -316,14 +316,14 @@ impl<D: Device> Worker<D> {
         has_ended(&self.ended)
     }
 
-    /// Cancels the running work and lets the thread end, without waiting for it.
+    /// Cancels the running work and lets the thread end, without waiting for the thread.
     pub fn end(self) -> Ending<D> {
         // Dropping the worker does both.
         Ending { events: self.events.clone(), ended: self.ended.clone() }
     }
 
-    /// Does the same as [`end`](Self::end) without taking the worker: no further jobs are accepted. Waits at most
-    /// `patience`; returns true when the thread has ended and the connection is free.
+    /// Ends the worker like [`end`](Self::end) but without consuming it, so that no further jobs are accepted. Waits at
+    /// most `patience` and returns true when the thread has ended and the connection is free.
     pub fn finish(&mut self, patience: Duration) -> bool {
         self.live.stop();
         // The thread ends when no more orders can arrive.
@@ -331,8 +331,8 @@ impl<D: Device> Worker<D> {
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
 
-    /// Calls [`end`](Self::end) and waits at most `patience`; returns true when the thread has ended and the connection is
-    /// free.
+    /// Calls [`end`](Self::end) and waits at most `patience`. Returns true when the thread has ended and the connection
+    /// is free.
     pub fn close(self, patience: Duration) -> bool {
         self.end().wait(patience)
     }
@@ -344,14 +344,14 @@ impl<D: Device> Drop for Worker<D> {
     }
 }
 
-/// A worker that was released: its thread ends as soon as the running work has ended.
+/// A worker that was released. Its thread ends as soon as the running work has ended.
 pub struct Ending<D: Device> {
     events: Receiver<Event<D>>,
     ended: Receiver<Never>,
 }
 
 impl<D: Device> Ending<D> {
-    /// Returns the remaining events: how the last job ended.
+    /// Returns the channel of remaining events, which report how the last job ended.
     pub fn events(&self) -> &Receiver<Event<D>> {
         &self.events
     }
@@ -361,7 +361,7 @@ impl<D: Device> Ending<D> {
         has_ended(&self.ended)
     }
 
-    /// Waits at most `patience` for the end; returns true when the thread has ended.
+    /// Waits at most `patience` for the thread to end and returns true when it has ended.
     pub fn wait(&self, patience: Duration) -> bool {
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }

@@ -40,8 +40,8 @@ pub enum OpenError {
     Store(#[from] StoreError),
 }
 
-/// Returns the allowed reply delay beyond the protocol's worst case for a kind of connection: USB adapters deliver in
-/// packets, device servers reply over a network, and even a thread has to be woken up.
+/// Returns the reply delay to allow beyond the protocol's worst case for a kind of connection. USB adapters deliver
+/// data in packets, device servers reply over a network, and even a thread has to be woken up.
 pub(crate) const fn margin(scheme: Scheme) -> Duration {
     match scheme {
         Scheme::Serial => Duration::from_millis(50),
@@ -50,7 +50,7 @@ pub(crate) const fn margin(scheme: Scheme) -> Duration {
     }
 }
 
-/// Opens a byte stream; `simulated` creates the virtual device.
+/// Opens a byte stream. `simulated` creates the virtual device.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
@@ -76,12 +76,12 @@ pub fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
 
-/// Creates the error for links that do not lead to a device; `known` lists those that do.
+/// Creates the error for a link whose scheme does not lead to a device. `known` lists the schemes that do.
 pub fn wrong_target_error(scheme: Scheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.word(), known }.into()
 }
 
-/// Returns a recorded trace.
+/// Reads a recorded trace.
 ///
 /// # Errors
 /// [`OpenError::File`], [`OpenError::Recording`].
@@ -90,7 +90,7 @@ pub(crate) fn read_recording(path: &str) -> Result<Vec<TraceEntry>, OpenError> {
     read_trace(&text).map_err(|cause| OpenError::Recording { path: path.to_owned(), cause })
 }
 
-/// Refuses parameters that are not listed in `known`.
+/// Checks that `query` contains only parameters listed in `known`.
 ///
 /// # Errors
 /// [`UrlError::Unknown`].
@@ -103,11 +103,11 @@ pub fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result
     }
 }
 
-/// Returns the settings of a link's virtual device: the link parameters except those of the `line`, or none for a real
-/// device.
+/// Returns the settings of a link's virtual device, which are the link parameters except those of the `line`, or
+/// nothing for a real device.
 ///
 /// # Errors
-/// [`UrlError::Unknown`], for a parameter that the line to a real device does not have.
+/// [`UrlError::Unknown`] for a parameter that the line to a real device does not have.
 pub(crate) fn simulated(url: &LinkUrl, line: &[&str], device: &[&str]) -> Result<Vec<(String, String)>, UrlError> {
     if url.scheme != Scheme::Sim {
         check_parameters(&url.query, url.scheme, line)?;

@@ -5,17 +5,17 @@ use std::time::{Duration, Instant};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DueRequest<W> {
-    /// The sample of the device.
+    /// A sample of the device.
     Sample,
     /// A watched value.
     Watch(W),
 }
 
-/// Schedule of the requests, each with its own pace.
+/// Schedule of requests, each with its own pace.
 pub(super) struct PollScheduler<W> {
     sample: Pace,
     watches: Vec<Watch<W>>,
-    /// Whether the last request was a sample, so that a watched value may come next.
+    /// Whether the last request was a sample, so that a watched value may be requested next.
     sample_was_last: bool,
 }
 
@@ -32,7 +32,7 @@ impl<W> Default for PollScheduler<W> {
 }
 
 impl<W: Clone + PartialEq> PollScheduler<W> {
-    /// Sets the values to watch; values already watched keep their pace.
+    /// Sets the values to watch. Values that are already watched keep their pace.
     pub(super) fn watch(&mut self, watched: Vec<(W, Duration)>) {
         let mut before = std::mem::take(&mut self.watches);
         for (what, interval) in watched {
@@ -41,8 +41,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         }
     }
 
-    /// Returns the next request and its time: the earliest request, or the sample if several are due. Watching pauses
-    /// while sampling is off; a new request is due at once.
+    /// Returns the next request and its time, which is the earliest request, or the sample if several are due. Watching
+    /// pauses while sampling is off, and a new request is due at once.
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, DueRequest<W>)> {
         let sample = self.sample.due(polling, now);
         let mut next: Option<(Instant, DueRequest<W>)> = None;
@@ -59,7 +59,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         next.filter(|(due, _)| *due < sample).or(Some((sample, DueRequest::Sample)))
     }
 
-    /// Records that the request was made and its reply arrived at `now`.
+    /// Records that the request was made and that its reply arrived at `now`.
     pub(super) fn taken(&mut self, due: &DueRequest<W>, now: Instant) {
         self.sample_was_last = *due == DueRequest::Sample;
         match due {
@@ -73,7 +73,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     }
 }
 
-/// Timing of a request: equal intervals from start to start, and never several requests at once after a late one.
+/// Timing of a request, with equal intervals from start to start. A late request is never followed by several at once.
 #[derive(Default)]
 struct Pace {
     interval: Option<Duration>,
@@ -81,7 +81,7 @@ struct Pace {
 }
 
 impl Pace {
-    /// Returns the next time for the current request; a new request is due at once.
+    /// Returns the time of the next request, which is immediate for a new request.
     fn due(&mut self, interval: Option<Duration>, now: Instant) -> Option<Instant> {
         if interval != self.interval {
             self.interval = interval;
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(pace.due(None, start + ms(530)), None);
     }
 
-    /// Returns the requests and the milliseconds at which they begin, up to `end`, when each takes 25 ms.
+    /// Returns the requests up to `end` and the milliseconds at which they begin, if each takes 25 ms.
     fn course(polling: u64, watches: &[(char, u64)], end: u64) -> String {
         let start = Instant::now();
         let mut agenda = PollScheduler::default();

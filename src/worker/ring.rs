@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A bounded ring, shared by its clones.
+/// A bounded ring buffer, shared by all clones.
 pub struct Ring<T>(Arc<Mutex<State<T>>>);
 
 struct State<T> {
@@ -28,13 +28,13 @@ impl<T> State<T> {
 }
 
 impl<T> Ring<T> {
-    /// Creates an empty ring for `capacity` entries, at least one.
+    /// Creates an empty ring for at least one and at most `capacity` entries.
     pub fn new(capacity: usize) -> Self {
         Ring::bounded(capacity, usize::MAX, |_| 0)
     }
 
-    /// Creates an empty ring that is also bounded to `most` bytes, as measured by `size_of`; the newest entry is kept
-    /// in any case.
+    /// Creates an empty ring that is also limited to `most` bytes, as measured by `size_of`. The newest entry is always
+    /// kept.
     pub fn bounded(capacity: usize, most: usize, size_of: fn(&T) -> usize) -> Self {
         let (items, capacity) = (VecDeque::new(), capacity.max(1));
         Ring(Arc::new(Mutex::new(State { items, capacity, most, size: 0, size_of, dropped: 0 })))
@@ -55,7 +55,7 @@ impl<T> Ring<T> {
         drop(oldest);
     }
 
-    /// Takes all entries, oldest first, and the number dropped since the previous call.
+    /// Takes all entries, oldest first, and returns them with the number of entries dropped since the previous call.
     pub fn drain(&self) -> (Vec<T>, u64) {
         let mut state = self.lock();
         let items = std::mem::take(&mut state.items);

@@ -7,7 +7,7 @@ use super::{Device, Event, JobId, JobInterruption as _, JobReport, Watched};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
-/// Context of a job for any kind of device: time, cancellation, trace and folders.
+/// The context of a job for any kind of device, with time, cancellation, trace and folders.
 pub struct SessionContext {
     /// Clock of the session.
     pub clock: Arc<dyn Clock>,
@@ -15,7 +15,7 @@ pub struct SessionContext {
     pub(super) trace: Trace,
     /// Folders for backups and the logbook.
     pub store: Store,
-    /// Whether the device is simulated in this process; its write cycles are counted separately.
+    /// Whether the device is simulated in this process. Its write cycles are then counted separately.
     pub is_virtual: bool,
 }
 
@@ -26,7 +26,7 @@ impl SessionContext {
     }
 }
 
-/// A connection from opening to closing. A test runs jobs on it inline; a worker runs them on its own thread.
+/// A connection from opening to closing. Tests run its jobs inline, while a worker runs them on its own thread.
 pub struct Session<D> {
     context: SessionContext,
     pub(crate) device: D,
@@ -49,7 +49,7 @@ impl<D: Device> Session<D> {
         self.context.cancel = cancel;
     }
 
-    /// Passes every subsequent frame to `watcher`.
+    /// Passes all subsequent frames to `watcher`.
     pub fn watch(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
         self.context.trace.watch(watcher);
     }
@@ -72,7 +72,7 @@ impl<D: Device> Session<D> {
         self.device.idle_interval()
     }
 
-    /// Maintains the session between jobs; returns a message of the device, if any.
+    /// Maintains the session between jobs and returns a device message, if any.
     pub fn idle(&mut self) -> Option<D::DeviceMessage> {
         self.device.idle(&mut self.context)
     }
@@ -124,7 +124,7 @@ impl<D: Device> Session<D> {
         self.device.watch(&mut self.context, what)
     }
 
-    /// Returns a device message received since the last call that no event carries.
+    /// Returns a device message received since the last call that is not part of an event.
     pub(super) fn take_remark(&mut self) -> Option<D::DeviceMessage> {
         self.device.take_remark()
     }
@@ -132,7 +132,7 @@ impl<D: Device> Session<D> {
     /// Runs a job on this thread, for callers that only need its result.
     ///
     /// # Errors
-    /// Errors of the job.
+    /// Returns the error of the job.
     pub fn run_inline(&mut self, job: D::Job) -> Result<D::Output, D::Error> {
         self.device.run(&mut self.context, job, &mut |_| {})
     }

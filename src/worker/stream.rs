@@ -22,60 +22,62 @@ use crate::analysis::Time;
 use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 
-/// The longest wait of a producer at once, and thus the longest delay until a stop or a change takes effect.
+/// Maximum duration of a single wait of a producer, and thus the longest delay until a stop or a change takes effect.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(20);
-/// Shortest interval between two calls that wake the window.
+/// Minimum interval between two calls that wake the window.
 const WAKE: Duration = Duration::from_millis(50);
 
-/// A stretch of samples at equal distances.
+/// A sequence of samples at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch<S> {
-    /// Number of its first sample, counted by the source from 0.
+    /// Number of the first sample, counted by the source from 0.
     pub first: u64,
-    /// Time at which that was taken.
+    /// Time at which the first sample was taken.
     pub time: Time,
-    /// Nanoseconds from one sample to the next.
+    /// Interval between samples in nanoseconds.
     pub period_ns: i64,
-    /// Number of samples lost between the previous batch and this one, at the source or because they were not read.
+    /// Number of samples lost between the previous batch and this one, either at the source or because they were not
+    /// read.
     pub lost: u64,
     /// The samples.
     pub samples: S,
 }
 
-/// Samples that can be counted.
+/// A collection of samples that can be counted.
 pub trait SampleCount: Send + 'static {
     /// Returns the number of samples.
     fn count(&self) -> usize;
 }
 
-/// A source of samples: a virtual one, or an adapter.
+/// A source of samples, which is either virtual or an adapter.
 pub trait Producer: Send + 'static {
-    /// A change while it runs.
+    /// Change of settings while the source is running.
     type Request: Send + 'static;
-    /// The samples of a batch.
+    /// Samples of a batch.
     type Samples: SampleCount;
-    /// The reason why the source ends without a request.
+    /// Reason why the source ended without being asked to.
     type Error: Send + 'static;
 
-    /// Applies this request from the next sample on.
+    /// Applies a change, starting with the next sample.
     fn change(&mut self, request: Self::Request);
 
-    /// Waits for samples, no longer than `patience`; `None` if none have come.
+    /// Waits for samples for at most `patience` and returns `None` if none have arrived.
     ///
     /// # Errors
-    /// Returns an error if there will be no more.
+    /// Returns an error if there will be no more samples.
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Self::Samples>>, Self::Error>;
 
-    /// Ends the stream at the source, which otherwise keeps sending.
+    /// Ends the stream at the source, which would otherwise keep sending.
     fn end(&mut self, _clock: &dyn Clock) {}
 }
 
-/// Signals the end of a stream to code that needs its resources.
+/// A signal for the end of a stream, for code that needs the resources of the stream.
 #[derive(Clone, Debug)]
 pub struct End(Receiver<Never>);
 
 impl End {
-    /// Waits at most `patience`; returns true when the thread has ended and its resources are free.
+    /// Waits at most `patience` for the thread to end. Returns true when the thread has ended and its resources are
+    /// free.
     pub fn wait(&self, patience: Duration) -> bool {
         matches!(self.0.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
@@ -86,7 +88,7 @@ impl End {
     }
 }
 
-/// A producer on its thread. Dropping it ends the thread, and does not wait for it.
+/// A producer running on its own thread. Dropping the stream ends the thread without waiting for it.
 pub struct Stream<P: Producer> {
     shared: Arc<Shared<P>>,
     ended: Receiver<Never>,
@@ -94,27 +96,27 @@ pub struct Stream<P: Producer> {
 
 struct Shared<P: Producer> {
     ring: Mutex<Ring<P::Samples>>,
-    /// The latest request, until it is taken.
+    /// Latest request that has not been taken yet.
     request: Mutex<Option<P::Request>>,
     error: Mutex<Option<P::Error>>,
     stop: AtomicBool,
 }
 
-/// Batches that wait to be read.
+/// Buffer of batches waiting to be read.
 struct Ring<S> {
     batches: VecDeque<Batch<S>>,
     held: usize,
     capacity: usize,
-    /// Samples lost since the beginning.
+    /// Number of samples lost since the start.
     lost: u64,
 }
 
 impl<P: Producer> Stream<P> {
-    /// Starts a thread for a producer. At most `capacity` samples wait to be read, or one batch if that has more. `wake` is
-    /// called when there is something to read, at most 20 times per second, and at the end.
+    /// Starts a thread for a producer. At most `capacity` samples, or one larger batch, are buffered, and `wake` is
+    /// called at most 20 times per second when there is data to read, and at the end.
     ///
     /// # Errors
-    /// Returns an error if the system has no free thread.
+    /// Returns an error if the system cannot create a thread.
     pub fn spawn(
         producer: P,
         capacity: usize,
@@ -133,12 +135,13 @@ impl<P: Producer> Stream<P> {
         Ok(Stream { shared, ended })
     }
 
-    /// Changes the request to the producer, from its next sample on. Of several changes the latest counts.
+    /// Changes the request to the producer, starting with its next sample. If there are several changes, the latest
+    /// counts.
     pub fn change(&self, request: P::Request) {
         *lock(&self.shared.request) = Some(request);
     }
 
-    /// Takes the batches received since the last call, the oldest first.
+    /// Takes the batches received since the last call, oldest first.
     pub fn take(&self) -> Vec<Batch<P::Samples>> {
         let mut ring = lock(&self.shared.ring);
         ring.held = 0;
@@ -147,17 +150,17 @@ impl<P: Producer> Stream<P> {
         batches.into()
     }
 
-    /// Returns the number of samples lost since the start, at the source or because they were not read in time.
+    /// Returns the number of samples lost since the start, either at the source or because they were not read in time.
     pub fn lost(&self) -> u64 {
         lock(&self.shared.ring).lost
     }
 
-    /// Returns the reason why it ended without a request; once.
+    /// Returns the reason why the stream ended without being asked to. Later calls return `None`.
     pub fn take_error(&self) -> Option<P::Error> {
         lock(&self.shared.error).take()
     }
 
-    /// Ends the thread. Received batches can still be taken.
+    /// Ends the thread. Batches already received can still be taken.
     pub fn stop(&self) {
         self.shared.stop.store(true, Ordering::SeqCst);
     }
@@ -167,7 +170,7 @@ impl<P: Producer> Stream<P> {
         has_ended(&self.ended)
     }
 
-    /// Returns its end, which can also be used after it was dropped.
+    /// Returns a signal for the end of the stream, which remains valid after the stream is dropped.
     pub fn end(&self) -> End {
         End(self.ended.clone())
     }
@@ -180,7 +183,7 @@ impl<P: Producer> Drop for Stream<P> {
 }
 
 impl<S: SampleCount> Ring<S> {
-    /// Adds a batch; returns the batches pushed out, to be dropped without the lock.
+    /// Adds a batch and returns the evicted batches, to be dropped after releasing the lock.
     fn push(&mut self, mut batch: Batch<S>) -> Vec<Batch<S>> {
         self.lost += batch.lost;
         self.held += batch.samples.count();

@@ -16,17 +16,17 @@ use crate::link::Cancel;
 /// Interval between attempts to send to a full channel.
 const RETRY: Duration = Duration::from_millis(5);
 
-/// Job on its way to the thread.
+/// A job being passed to the thread.
 pub(super) struct Order<D: Device> {
     pub(super) id: JobId,
     pub(super) job: D::Job,
     pub(super) cancel: Cancel,
 }
 
-/// Type without values: its channel only signals the end of the thread by closing.
+/// A type without values. Its channel only signals the end of the thread by closing.
 pub(super) enum Never {}
 
-/// Parts that a session's thread works with.
+/// Everything that the thread of a session works with.
 pub(super) struct Bench<D: Device> {
     pub(super) session: Session<D>,
     pub(super) orders: Receiver<Order<D>>,
@@ -38,7 +38,7 @@ pub(super) struct Bench<D: Device> {
     pub(super) busy: Arc<AtomicBool>,
 }
 
-/// Starts the thread; `alive` is dropped last, once the connection is free.
+/// Starts the thread. `alive` is dropped last, once the connection is free.
 ///
 /// # Errors
 /// Returns an error if the system cannot start another thread.
@@ -51,7 +51,7 @@ pub(super) fn start<D: Device>(bench: Bench<D>, alive: Sender<Never>) -> std::io
     Ok(())
 }
 
-/// Job slot of a thread, freed when the thread ends for any reason.
+/// The job slot of a thread, freed when the thread ends for any reason.
 struct Slot(Arc<AtomicBool>);
 
 impl Drop for Slot {
@@ -128,8 +128,8 @@ impl<D: Device> Bench<D> {
         self.events.send(end);
     }
 
-    /// Takes a due sample or watched value. Returns false if a job or another request interrupted it, in which case it
-    /// is still due.
+    /// Takes a due sample or watched value. Returns false if a job or another request interrupted the operation, which
+    /// is then still due.
     fn take(&mut self, due: &DueRequest<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling().clone());
         let request = self.live.number();
@@ -165,8 +165,8 @@ impl<D: Device> Bench<D> {
         }
     }
 
-    /// Waits until a job arrives, a request changes or `patience` has passed. A job stays in its channel for the loop
-    /// to take.
+    /// Waits until a job arrives, a request changes or `patience` has passed. A job remains in its channel for the main
+    /// loop to take.
     fn wait(&self, patience: Duration) {
         let mut ready = Select::new();
         ready.recv(&self.orders);

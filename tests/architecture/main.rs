@@ -1,5 +1,5 @@
-//! Architecture rules that the compiler does not check: layers use only lower ones, protocol code is pure, simulators use
-//! no procedures, consent is given by the user, and every text is in the table.
+//! Architecture rules that the compiler does not check: layers use only lower ones, protocol code is pure, simulators
+//! use no procedures, consent is given by the user, and every text is in the table.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
@@ -30,7 +30,8 @@ impl Source {
         self.without_tests().lines().enumerate().map(|(at, line)| (at + 1, line.split("//").next().unwrap_or_default()))
     }
 
-    /// Returns the text without a test module, which is at the end of its file; `#[cfg(test)] mod tests;` may be anywhere.
+    /// Returns the text without a test module, which is at the end of its file; `#[cfg(test)] mod tests;` may be
+    /// anywhere.
     fn without_tests(&self) -> &str {
         let end = self.text.find("\n#[cfg(test)]\nmod tests {").unwrap_or(self.text.len());
         &self.text[..end]
@@ -81,8 +82,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns whether a path is the list of devices at the virtual adapter, which opening an adapter requires. It is the only
-/// part of that list that a device, a bus's tests and Signals use.
+/// Returns whether a path is the list of devices at the virtual adapter, which opening an adapter requires. It is the
+/// only part of that list that a device, a bus's tests and Signals use.
 fn is_at_adapter(path: &[String]) -> bool {
     path == ["kinds", "at_adapter"]
 }
@@ -199,7 +200,8 @@ fn only_the_window_and_the_command_line_give_consent() {
     assert_eq!(found, ["src/app/session/memory.rs", "src/cli/consent.rs"]);
 }
 
-/// No operation is carried out without a confirmed plan; the one function that confirms it keeps the before-image as well.
+/// No operation is carried out without a confirmed plan; the one function that confirms it keeps the before-image as
+/// well.
 #[test]
 fn only_write_plan_confirms_a_plan() {
     let confirms = |source: &Source| source.code().any(|(_, code)| code.contains("Confirmed::confirm("));
@@ -297,8 +299,8 @@ fn only_the_window_draws() {
     }
 }
 
-/// The texts of the window come from the catalogues. A literal of a view may be the id of a text, or be invisible; a word
-/// has three letters or more that are not all capitals.
+/// The texts of the window come from the catalogues. A literal of a view may be the id of a text, or be invisible; a
+/// word has three letters or more that are not all capitals.
 #[test]
 fn no_view_contains_a_literal_text() {
     /// Code before a literal that is a name for egui, for a position in a text, for the system or the compiler.
@@ -370,7 +372,8 @@ fn every_used_text_is_in_the_table() {
     }
 }
 
-/// Returns whether it has three letters or more in a row that are not all capitals, outside the places of a format string.
+/// Returns whether it has three letters or more in a row that are not all capitals, outside the places of a format
+/// string.
 fn has_word(text: &str) -> bool {
     let mut bare = String::new();
     let mut rest = text;

@@ -1,5 +1,5 @@
-//! Words that must not be used: in the texts of the window and the command line (docs/terms.md has those to use), and in
-//! the comments of the code.
+//! Words that must not be used: in the texts of the window and the command line (docs/terms.md has those to use), and
+//! in the comments of the code.
 
 use std::fs;
 use std::path::{Path, PathBuf};

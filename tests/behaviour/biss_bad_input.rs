@@ -83,7 +83,7 @@ fn a_valid_link_is_required() {
         ("sim:?fault=drop:2", 2, &["drop:2"]),
         ("serial:/dev/ttyUSB99", 1, &["does not exist"]),
         ("bridge:/dev/null", 1, &["not a serial port"]),
-        ("bridge:tcp:127.0.0.1:1", 1, &["cannot be reached"]),
+        ("bridge:tcp:127.0.0.1:1", 1, &["Cannot reach"]),
     ];
     for command in commands {
         bench.run(&[command, &["--json"]].concat()).fails(2, &["--link"]);

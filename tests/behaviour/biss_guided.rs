@@ -101,8 +101,8 @@ fn a_failed_run_leads_back_to_operation() {
     }
 }
 
-/// Temperature → calibration → Wiegand test → preset → data, in one run. The motor stands still while the data are read,
-/// turns, and stops after the test.
+/// Temperature → calibration → Wiegand test → preset → data, in one run. The motor stands still while the data are
+/// read, turns, and stops after the test.
 #[test]
 fn a_mounting_run_performs_all_steps() {
     let bench = Bench::new();
@@ -139,8 +139,8 @@ fn invalid_mounting_steps_are_usage_errors() {
     bench.run(&["do", "biss", "mounting", "preset=16777216", "--yes", "--link", "sim:"]).fails(1, &["16777215"]);
 }
 
-/// The virtual encoder turns 515 times each way: 15.5 s at 2000 rpm. Issue 22.19: a failed test is no success; 5.2 V are
-/// less than 5.3 V (reference 4).
+/// The virtual encoder turns 515 times each way: 15.5 s at 2000 rpm. Issue 22.19: a failed test is no success; 5.2 V
+/// are less than 5.3 V (reference 4).
 #[test]
 fn the_virtual_encoder_passes_the_guided_procedures() {
     let bench = Bench::new();

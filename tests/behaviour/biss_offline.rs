@@ -147,8 +147,8 @@ fn two_profiles_are_compared_without_a_link() {
     bench.run(&["diff", &other, &left, "--json"]).fails(1, &["left.ron", "hiperface", "biss"]);
 }
 
-/// Issue 22.17: a misspelt name stops a restore and is reported with its position, and a newer schema is compared but not
-/// restored.
+/// Issue 22.17: a misspelt name stops a restore and is reported with its position, and a newer schema is compared but
+/// not restored.
 #[test]
 fn a_misspelt_name_is_reported_and_a_newer_schema_is_read_only() {
     let bench = Bench::new();

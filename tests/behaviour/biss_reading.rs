@@ -74,9 +74,9 @@ fn status_names_the_set_bits() {
     }
 }
 
-/// Issue 22.19: a Wiegand sensor whose test was never saved is not reported as good. One verdict per line: an encoder with
-/// factory settings, and one with the errors of reference 7 that is hotter than its data sheet allows (105 °C), at an
-/// adapter that measures its supply on a disturbed line.
+/// Issue 22.19: a Wiegand sensor whose test was never saved is not reported as good. One verdict per line: an encoder
+/// with factory settings, and one with the errors of reference 7 that is hotter than its data sheet allows (105 °C), at
+/// an adapter that measures its supply on a disturbed line.
 #[test]
 fn a_check_judges_the_encoders_own_diagnostics() {
     let bench = Bench::new();
@@ -260,7 +260,7 @@ fn reading_writes_nothing() {
 fn wire_and_adapter_faults_are_reported() {
     let bench = Bench::new();
     let cases: [(&[&str], &[&str]); 6] = [
-        (&["--line", "open"], &["acknowledges", "MA+"]),
+        (&["--line", "open"], &["acknowledged the request", "MA+"]),
         (&["--line", "low"], &["stays low", "SLO"]),
         (&["--line", "high"], &["stays high", "SLO"]),
         (&["--version", "2"], &["version 2", "version 1"]),

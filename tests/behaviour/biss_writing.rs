@@ -25,7 +25,8 @@ fn written(encoder: &Foreign) -> Vec<String> {
     encoder.registers_written().into_iter().filter(|line| !line.starts_with("0x40 ")).collect()
 }
 
-/// Reference 5.3: password and mode, open the OEM data, the registers, save, back to operation; and the password is reset.
+/// Reference 5.3: password and mode, open the OEM data, the registers, save, back to operation; and the password is
+/// reset.
 fn saved(registers: &[&str]) -> Vec<String> {
     let around = (["0x6B 2A", "0x6A 04", "0x00:0x1A 02"], ["0x00:0x1A 03", "0x6A 00", "0x6B 00"]);
     [&around.0[..], registers, &around.1].concat().into_iter().map(str::to_owned).collect()
@@ -301,8 +302,8 @@ fn a_link_lost_during_a_write_is_reported_with_the_backup() {
     }
 }
 
-/// Issue 22.15: registers that were written and never saved are reported, and no comparison takes them for the encoder's
-/// content. Only `lead-back` restores the mode.
+/// Issue 22.15: registers that were written and never saved are reported, and no comparison takes them for the
+/// encoder's content. Only `lead-back` restores the mode.
 #[test]
 fn unsaved_registers_of_a_killed_write_are_not_compared() {
     let bench = Bench::new();
@@ -365,8 +366,8 @@ fn an_encoder_left_in_a_mode_is_led_back() {
     }
 }
 
-/// Issue 22.15: restoring the mode discards unsaved changes: on a terminal the program asks, unless --yes answers it. It
-/// stores nothing, so that a script needs no --yes.
+/// Issue 22.15: restoring the mode discards unsaved changes: on a terminal the program asks, unless --yes answers it.
+/// It stores nothing, so that a script needs no --yes.
 #[test]
 fn on_a_terminal_leading_back_needs_confirmation() {
     let bench = Bench::new();

@@ -153,8 +153,8 @@ fn an_unknown_type_takes_periods_and_turns_from_the_link() {
     assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
 }
 
-/// Issue 22.12: a restore onto another encoder creates data fields; restoring its before-image deletes them again, except
-/// for a field that was changed meanwhile, which is named, and the fields before it.
+/// Issue 22.12: a restore onto another encoder creates data fields; restoring its before-image deletes them again,
+/// except for a field that was changed meanwhile, which is named, and the fields before it.
 #[test]
 fn undoing_a_restore_deletes_only_the_fields_it_created() {
     let bench = Bench::new();

@@ -73,8 +73,8 @@ fn the_parameters_of_the_reference_signal_are_recovered() {
     }
 }
 
-/// 2 mV rms of noise in 0.5 V: 1000 points per period, 7.25 periods. A parameter scatters by σ·√(2/n) = 33 µV; the limit is
-/// five of them.
+/// 2 mV rms of noise in 0.5 V: 1000 points per period, 7.25 periods. A parameter scatters by σ·√(2/n) = 33 µV; the
+/// limit is five of them.
 #[test]
 fn noise_moves_the_parameters_within_its_statistics() {
     let bench = Bench::new();
@@ -232,9 +232,10 @@ fn the_example_captures_are_judged_as_documented() {
     assert!(told["findings"].as_array().unwrap().len() >= 4, "{told}");
 }
 
-/// Made with Python: 5000 rows of 0.05 ms, `turn = 1.25·i/5000`, `true = turn + 120/1296000·sin(2π·turn)`, θ = 2π·16·true,
-/// cosine 0.49·cos θ + 0.010, sine 0.49·sin(θ − 2°)/1.04 − 0.015, 0.3 mV rms of noise from `random.Random(16).gauss`, four
-/// decimals; reference `360·turn mod 360`, absolute `floor(32·16·true − 0.5) mod 512`; decimal commas.
+/// Made with Python: 5000 rows of 0.05 ms, `turn = 1.25·i/5000`, `true = turn + 120/1296000·sin(2π·turn)`, θ =
+/// 2π·16·true, cosine 0.49·cos θ + 0.010, sine 0.49·sin(θ − 2°)/1.04 − 0.015, 0.3 mV rms of noise from
+/// `random.Random(16).gauss`, four decimals; reference `360·turn mod 360`, absolute `floor(32·16·true − 0.5) mod 512`;
+/// decimal commas.
 #[test]
 fn the_example_revolution_reveals_its_eccentricity() {
     let bench = Bench::new();
@@ -285,8 +286,8 @@ fn limits_are_those_of_the_named_family() {
     let weak = Signal { amplitude: 0.43, offset_cosine: 0.0, offset_sine: 0.0, ratio: 1.0, phase_deg: 0.0 };
     let file = bench.write("weak.csv", table("t,sin,cos\n", &rows(&weak, 400, 0.0, 3.0)));
     let verdict = |limits: &str| bench.run(&["analyse", &file, "--limits", limits]).out;
-    assert!(verdict("hiperface").contains("outside 0.9 … 1.1 V"));
-    assert!(verdict("ttk70").contains("outside 0.9 … 1.1 V"));
+    assert!(verdict("hiperface").contains("the permitted range is 0.9 to 1.1 V"));
+    assert!(verdict("ttk70").contains("the permitted range is 0.9 to 1.1 V"));
     assert!(verdict("afs-afm60").contains("within the limits of AFS/AFM60"));
 }
 
@@ -301,7 +302,7 @@ fn interference_and_a_broken_wire_are_reported() {
     near(&told["interference"][0], "frequency_hz", 8_000.0, 2.0);
     near(&told["interference"][0], "amplitude_v", 0.01, 1e-4);
     assert!(
-        told["findings"].to_string().contains("Interference of 10.0 mV (2.0 % of the amplitude) at 8000 Hz"),
+        told["findings"].to_string().contains("There is interference of 10.0 mV (2.0 % of the amplitude) at 8000 Hz"),
         "{told}"
     );
     // COS is at ground, its reference at 2.5 V.
@@ -329,7 +330,7 @@ fn the_frequency_is_reported_and_marked_if_uncertain() {
             "Samples are missing (gaps: 1, longest: 2.000 ms)",
         ),
         ("back", capture(2.5e-6, &mut (0..2_000).chain(0..2_000)), "Time goes backwards at sample 2001"),
-        ("coarse", capture(2.1e-4, &mut (0..2_000)), "With only about 2.4 samples per period (151° apart)"),
+        ("coarse", capture(2.1e-4, &mut (0..2_000)), "There are only about 2.4 samples per period (151° apart)"),
     ] {
         let file = bench.write("c.csv", text);
         let told = bench.run(&["analyse", &file, "--json"]).json();

@@ -227,7 +227,7 @@ fn an_invalid_port_is_reported() {
         (format!("serial:{file}"), "not a serial port"),
         (format!("serial:{}", bench.file("")), "not a serial port"),
         ("serial:/dev/null".to_owned(), "not a serial port"),
-        ("tcp:127.0.0.1:1".to_owned(), "cannot be reached"),
+        ("tcp:127.0.0.1:1".to_owned(), "Cannot reach"),
         ("tcp:no-such-host.invalid:4001".to_owned(), "not found on this network"),
     ];
     for (url, words) in cases {

@@ -80,7 +80,10 @@ fn mounting_values_are_not_copied_to_another_encoder_by_default() {
     let ran = bench.run(&[&restore[..], &["--with-mounting"]].concat());
     assert_eq!(ran.json()["written"], json!(16));
     assert_eq!(ran.json()["redo"], json!(["commutation", "field:0@0+16"]));
-    assert!(ran.err.contains("Set up these values again") && ran.err.contains("field:0@0+16"), "{ran:?}");
+    assert!(
+        ran.err.contains("Set them up again before the machine runs") && ran.err.contains("field:0@0+16"),
+        "{ran:?}"
+    );
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
     // For its own encoder no value is left out.
     source.host_address(&["40 4B 00 00 01 55 00"]);
@@ -103,8 +106,8 @@ fn two_writes_in_one_second_keep_two_backups() {
     }
 }
 
-/// Issue 22.28: an existing file is replaced on a terminal only after consent; without a terminal it is replaced, with a
-/// message.
+/// Issue 22.28: an existing file is replaced on a terminal only after consent; without a terminal it is replaced, with
+/// a message.
 #[test]
 fn on_a_terminal_save_asks_before_replacing_a_file() {
     let bench = Bench::new();
@@ -142,8 +145,8 @@ fn on_a_terminal_save_asks_before_replacing_a_file() {
     assert_eq!(bench.read("layout.ron"), written);
 }
 
-/// Issue 22.4: if the logbook cannot be read for the write cycles, a write is refused before the question for consent, for
-/// every kind of device.
+/// Issue 22.4: if the logbook cannot be read for the write cycles, a write is refused before the question for consent,
+/// for every kind of device.
 #[test]
 fn a_write_refused_for_unknown_wear_needs_no_confirmation() {
     if python("master.py").is_none() {

@@ -104,8 +104,8 @@ fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
     (path, rows)
 }
 
-/// Issue 22.22: `ssi find` as in the contract: the first layout of the list reads the frames as intended, and can be used
-/// unchanged.
+/// Issue 22.22: `ssi find` as in the contract: the first layout of the list reads the frames as intended, and can be
+/// used unchanged.
 #[test]
 fn layouts_of_recorded_frames_are_found() {
     let bench = Bench::new();

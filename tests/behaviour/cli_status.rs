@@ -62,8 +62,8 @@ fn codes_in_late_replies_are_not_lost() {
     }
 }
 
-/// Issue 22.10: for any data instead of a reply to 50h, including a repeated old one, each code is printed or reported as
-/// lost, and none is printed twice.
+/// Issue 22.10: for any data instead of a reply to 50h, including a repeated old one, each code is printed or reported
+/// as lost, and none is printed twice.
 #[test]
 fn each_code_is_reported_once_or_as_lost() {
     let bench = Bench::new();

@@ -1,5 +1,5 @@
-//! The host's side of EtherNet/IP against a foreign target with HIPERDRIVE parameters and all its possible faults. Its own
-//! log shows what was set and saved.
+//! The host's side of EtherNet/IP against a foreign target with HIPERDRIVE parameters and all its possible faults. Its
+//! own log shows what was set and saved.
 
 use std::net::SocketAddrV4;
 use std::sync::Arc;

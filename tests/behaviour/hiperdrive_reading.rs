@@ -94,8 +94,8 @@ fn writing_0_to_197_acknowledges_and_status_is_of_one_drive() {
     assert!(device.sets().is_empty());
 }
 
-/// Issue 22.9: restoring onto a device with the same serial number and another type, of the device or of its drive: named,
-/// and refused without explicit permission.
+/// Issue 22.9: restoring onto a device with the same serial number and another type, of the device or of its drive:
+/// named, and refused without explicit permission.
 #[test]
 fn a_profile_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -123,8 +123,8 @@ fn a_check_reports_each_fact_once() {
     assert_eq!(line.matches("good").count(), 1, "{line}");
 }
 
-/// Issue 21.10: a speed is in tenths of rpm only with the factory's scale (manual 6.2); nominal data may be tenths. A drive
-/// at standstill has speed 0 in any scale.
+/// Issue 21.10: a speed is in tenths of rpm only with the factory's scale (manual 6.2); nominal data may be tenths. A
+/// drive at standstill has speed 0 in any scale.
 #[test]
 fn units_are_those_of_the_manual() {
     let bench = Bench::new();

@@ -1,6 +1,6 @@
-//! Drives stop and remain stopped after any failure of the host, its connections or its window during motion. The drive is
-//! a separate process, and it is observed over a separate connection. The limits are those of safety, plus a second for a
-//! busy computer.
+//! Drives stop and remain stopped after any failure of the host, its connections or its window during motion. The drive
+//! is a separate process, and it is observed over a separate connection. The limits are those of safety, plus a second
+//! for a busy computer.
 
 mod watched;
 mod wires;
@@ -284,8 +284,8 @@ fn an_interrupt_stops_the_drive() {
     assert_eq!(drive.actual().status.word() & 0x000F, 0, "off, and no fault");
 }
 
-/// Issue 21.1: after any signal that ends a command, also twice, the drive is at standstill and off, and its watchdog does
-/// not report a fault.
+/// Issue 21.1: after any signal that ends a command, also twice, the drive is at standstill and off, and its watchdog
+/// does not report a fault.
 #[test]
 fn terminating_signals_stop_the_drive() {
     for (name, times) in [("TERM", 1), ("HUP", 1), ("TERM", 2), ("INT", 2)] {

@@ -45,7 +45,8 @@ fn volatile_parameters_are_not_saved() {
     assert_eq!(device.sets(), ["10 03 20 66 24 01 30 AA 64 00 00 00"]);
 }
 
-/// A spindle of 4 mm in steps of 0.01 mm: 400 steps per turn are 400/256 (reference 5); at 2.5 turns the drive is at 1000.
+/// A spindle of 4 mm in steps of 0.01 mm: 400 steps per turn are 400/256 (reference 5); at 2.5 turns the drive is at
+/// 1000.
 #[test]
 fn a_restore_writes_scale_then_limits_and_saves_once() {
     let bench = Bench::new();

@@ -1,5 +1,5 @@
-//! The host's side of the handshake against a foreign gateway and a foreign K3 encoder with all their possible faults. The
-//! encoder's own log shows what it stored.
+//! The host's side of the handshake against a foreign gateway and a foreign K3 encoder with all their possible faults.
+//! The encoder's own log shows what it stored.
 
 use encoder_studio::devices::interbus::jobs::{
     Change, Commit, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, open,
@@ -139,8 +139,8 @@ fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Int
     }
 }
 
-/// Issue 22.1: the processing word may carry any data, those sent or those of the word before, and a word that is replaced
-/// during processing is not accepted. Eight programs of eight cams are written with one store each.
+/// Issue 22.1: the processing word may carry any data, those sent or those of the word before, and a word that is
+/// replaced during processing is not accepted. Eight programs of eight cams are written with one store each.
 #[test]
 fn cam_0_is_written_through_a_busy_gateway() {
     let bench = Bench::new();
@@ -171,8 +171,8 @@ fn stale_echoes_are_skipped() {
     }
 }
 
-/// Issue 22.2: the cost of a gateway's lag is counted in changes of OUT, each of which takes the lag once. A parameter is
-/// set, stored, read back and left: four of them.
+/// Issue 22.2: the cost of a gateway's lag is counted in changes of OUT, each of which takes the lag once. A parameter
+/// is set, stored, read back and left: four of them.
 #[test]
 fn a_parameter_takes_four_times_the_lag() {
     let bench = Bench::new();

@@ -17,8 +17,8 @@ fn done(encoder: &Foreign) -> Vec<String> {
     encoder.requests().into_iter().filter(|line| line != "R").collect()
 }
 
-/// Checks that only read-outs (reference 3, 5), the selection of a program, run and normal running were sent, and nothing
-/// was stored.
+/// Checks that only read-outs (reference 3, 5), the selection of a program, run and normal running were sent, and
+/// nothing was stored.
 #[track_caller]
 fn only_read(encoder: &Foreign) {
     for line in done(encoder) {
@@ -199,8 +199,8 @@ fn the_virtual_encoder_is_read_directly_and_over_modbus() {
     port.end("INT");
 }
 
-/// Issue 22.31: reading cam programs switches live outputs. On a terminal the program asks first; without one it continues
-/// for the commands that name it in their help.
+/// Issue 22.31: reading cam programs switches live outputs. On a terminal the program asks first; without one it
+/// continues for the commands that name it in their help.
 #[test]
 fn reading_cam_programs_needs_confirmation() {
     let bench = Bench::new();

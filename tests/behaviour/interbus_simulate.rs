@@ -1,5 +1,5 @@
-//! `simulate interbus`, checked by a foreign master with the words of the reference; and the foreign encoder, which has to
-//! answer that master in the same way.
+//! `simulate interbus`, checked by a foreign master with the words of the reference; and the foreign encoder, which has
+//! to answer that master in the same way.
 
 use super::support::{Bench, Simulated, foreign_host, python};
 
@@ -20,8 +20,8 @@ const WORKED: [(&str, &str); 9] = [
     ("00000000", "00000000"),
 ];
 
-/// Reference 5, over 4096 steps per turn: position 2500 lies under the window, cam 3 from 21 to 531 is off there; then from
-/// 2001 on, past 531, which is over the end of the range.
+/// Reference 5, over 4096 steps per turn: position 2500 lies under the window, cam 3 from 21 to 531 is off there; then
+/// from 2001 on, past 531, which is over the end of the range.
 const CAMS: [(&str, &str); 21] = [
     ("20800001", "E0800001"),
     ("46000015", "C6000015"),

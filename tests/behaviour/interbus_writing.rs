@@ -23,7 +23,8 @@ fn edges(program: u32, cam: u32) -> (u32, u32) {
     (100 * cam + program, 100 * cam + program + 49)
 }
 
-/// Returns all 64 cams, except for those that `other` moves, for the foreign encoder and as a profile; every mask is FFh.
+/// Returns all 64 cams, except for those that `other` moves, for the foreign encoder and as a profile; every mask is
+/// FFh.
 fn cams(other: impl Fn(u32, u32) -> Option<(u32, u32)>) -> (String, String) {
     let (mut json, mut ron) = (String::new(), String::new());
     for program in 1..=8 {
@@ -195,8 +196,8 @@ fn leading_back_fails_if_the_encoder_sends_an_error() {
     assert_eq!(ask(&bench, &encoder, &["do", "interbus", "lead-back"]).json()["done"], json!("lead-back"));
 }
 
-/// Issue 22.9: a profile of a multiturn encoder for an encoder that counts no turns: named, and refused without explicit
-/// permission.
+/// Issue 22.9: a profile of a multiturn encoder for an encoder that counts no turns: named, and refused without
+/// explicit permission.
 #[test]
 fn an_encoder_of_another_type_needs_a_separate_permission() {
     let bench = Bench::new();
@@ -306,7 +307,8 @@ fn the_stores_of_an_eeprom_are_counted() {
     assert_eq!(Logbook::open(&log).unwrap().write_cycles(&device).unwrap(), 450);
 }
 
-/// At three points of the writing: the written values are reported, with the backup, within the time-out of a lost gateway.
+/// At three points of the writing: the written values are reported, with the backup, within the time-out of a lost
+/// gateway.
 #[test]
 fn a_gateway_lost_during_a_write_is_reported_with_the_backup() {
     let bench = Bench::new();

@@ -1,6 +1,6 @@
 //! The interface that scripts rely on: exit status and JSON of every command as in the recordings under
-//! `tests/fixtures/cli`, one file per kind of device. A recording is its own list of commands: `$` begins one, `=` gives
-//! its status, JSON follows. Text for users is not in it.
+//! `tests/fixtures/cli`, one file per kind of device. A recording is its own list of commands: `$` begins one, `=`
+//! gives its status, JSON follows. Text for users is not in it.
 //!
 //! With `ENCODER_STUDIO_RECORD=1` the files are written again: only if the contract is meant to grow.
 

@@ -1,4 +1,5 @@
-//! Exported decoders against the program's own: C is compiled and run, structured text is compared with a reviewed file.
+//! Exported decoders against the program's own: C is compiled and run, structured text is compared with a reviewed
+//! file.
 
 use std::io::Write;
 use std::process::{Command, Stdio};
@@ -30,8 +31,8 @@ fn family(text: &str) -> Layout {
     settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
 }
 
-/// Returns an unusual layout: Gray over everything, parity, both words of a repetition, exchanged wires, an error bit that
-/// is active at 0.
+/// Returns an unusual layout: Gray over everything, parity, both words of a repetition, exchanged wires, an error bit
+/// that is active at 0.
 fn unusual_step_cost() -> Layout {
     Layout::new(Descriptor {
         clocks: 51,
@@ -143,8 +144,8 @@ fn the_exported_structured_text_matches_the_reviewed_file() {
     assert_eq!(text, std::fs::read_to_string(path).unwrap());
 }
 
-/// Reference section 8: frames, and what they stand for as position, turns, steps and whether it may be used. The positions
-/// are the turns and steps of the table in one number.
+/// Reference section 8: frames, and what they stand for as position, turns, steps and whether it may be used. The
+/// positions are the turns and steps of the table in one number.
 const REFERENCE: [(&str, u64, &str); 12] = [
     ("ahs36", 0x54B6, "10843 0 10843 1"),
     ("ahs36,code=gray", 0x7EEC, "10843 0 10843 1"),
@@ -221,7 +222,8 @@ fn what_32_bits_cannot_hold_is_refused() {
     }
 }
 
-/// What TIA Portal asks of an external source: the name in quotes, a version, local variables with `#`, parameters by name.
+/// What TIA Portal asks of an external source: the name in quotes, a version, local variables with `#`, parameters by
+/// name.
 #[test]
 fn scl_has_the_form_of_an_external_source() {
     let text = scl(&family("afm60,code=gray"), "Zuführung\n(* 2 *)").unwrap();

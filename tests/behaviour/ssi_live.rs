@@ -133,7 +133,7 @@ fn an_unsuitable_adapter_is_reported() {
     ran.fails(1, &["does not respond"]);
     let mut gone = adapter(&bench, "12,13,gray,0", &[]).unwrap();
     gone.kill();
-    position(&bench, "atm60", &gone.url, &[]).fails(1, &["cannot be reached"]);
+    position(&bench, "atm60", &gone.url, &[]).fails(1, &["Cannot reach"]);
 }
 
 /// The cable is unplugged, or the user cancels, during the measurement: the counts so far are printed.
@@ -186,7 +186,7 @@ fn invalid_arguments_are_usage_errors() {
             ("atm60", "sim:?ssi=atm61", 2, &["ssi=atm61", "atm60,code=gray"]),
             ("atm60", "sim:?ssi-error=ERRDIG", 2, &["ssi-error=ERRDIG", "no error bits"]),
             ("atm60", "sim:?version=2", 1, &["version 2"]),
-            ("atm60", "bridge:tcp:127.0.0.1:1", 1, &["cannot be reached"]),
+            ("atm60", "bridge:tcp:127.0.0.1:1", 1, &["Cannot reach"]),
         ];
         for (layout, link, status, words) in cases {
             let ran = bench.run(&[command, "ssi", "--layout", layout, "--link", link, "--json"]);

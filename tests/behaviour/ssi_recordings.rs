@@ -1,5 +1,5 @@
-//! Recordings that become frames: the program's own table, and clock and data of logic analysers, which Python makes of the
-//! frames of `tests/vectors/ssi_find`.
+//! Recordings that become frames: the program's own table, and clock and data of logic analysers, which Python makes of
+//! the frames of `tests/vectors/ssi_find`.
 
 use std::io::Write;
 use std::process::Stdio;

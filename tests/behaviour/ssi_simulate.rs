@@ -40,8 +40,8 @@ fn words_are_served_on_a_pseudoterminal_and_a_tcp_port() {
     assert!(!bench.path("adapter").is_symlink());
 }
 
-/// 20 000 words per second: none is missing, and each has its time, and its position on a shaft that turns ten times per
-/// second: 81 920 steps per second are 4.096 per word.
+/// 20 000 words per second: none is missing, and each has its time, and its position on a shaft that turns ten times
+/// per second: 81 920 steps per second are 4.096 per word.
 #[test]
 fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     let bench = Bench::new();

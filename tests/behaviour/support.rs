@@ -250,8 +250,8 @@ pub(crate) struct Foreign {
 }
 
 impl Foreign {
-    /// Returns the requests since the last call, a line each: for HIPERFACE the frames in hex, for BiSS the registers, for
-    /// INTERBUS the words.
+    /// Returns the requests since the last call, a line each: for HIPERFACE the frames in hex, for BiSS the registers,
+    /// for INTERBUS the words.
     pub(crate) fn requests(&self) -> Vec<String> {
         let text = fs::read_to_string(&self.log).unwrap_or_default();
         fs::write(&self.log, "").unwrap();
@@ -269,8 +269,8 @@ impl Foreign {
         self.requests().into_iter().filter(|frame| !reads.contains(&frame.get(3..5).unwrap_or_default())).collect()
     }
 
-    /// Waits longer for its replies, because the computer may be busy: a reply to a request that removes data must not come
-    /// too late.
+    /// Waits longer for its replies, because the computer may be busy: a reply to a request that removes data must not
+    /// come too late.
     pub(crate) fn waited_for(mut self) -> Self {
         self.url.push_str("?margin=1500");
         self

@@ -1,5 +1,6 @@
-//! Recordings of SSI encoders with many kinds of frames, made from bits: nothing of the program's own decoding is used. The
-//! same seed gives the same recording. The intended position is next to each frame, so that a layout can be checked.
+//! Recordings of SSI encoders with many kinds of frames, made from bits: nothing of the program's own decoding is used.
+//! The same seed gives the same recording. The intended position is next to each frame, so that a layout can be
+//! checked.
 
 use fastrand::Rng;
 
@@ -169,8 +170,8 @@ fn behind(rng: &mut Rng) -> Behind {
     }
 }
 
-/// Returns steps of a shaft without the wrap at the end of the range: slow or fast, even or not, steady, swinging, or to
-/// and fro.
+/// Returns steps of a shaft without the wrap at the end of the range: slow or fast, even or not, steady, swinging, or
+/// to and fro.
 fn shaft(rng: &mut Rng, count: usize, positions: u64) -> Vec<i128> {
     let most = positions as f64 / 3.0;
     let fastest = if rng.u8(..3) == 0 { most } else { most.min(40.0) };

@@ -106,7 +106,8 @@ fn a_power_cycle_opens_the_factory_settings_window() {
     }
 }
 
-/// A device server has its own speed, which the program cannot change: other speeds would find the same encoder 21 times.
+/// A device server has its own speed, which the program cannot change: other speeds would find the same encoder 21
+/// times.
 #[test]
 fn through_a_device_server_each_encoder_is_found_once() {
     let mut desk = Desk::new("address=0x43&encoders=2");

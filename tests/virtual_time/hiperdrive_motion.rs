@@ -183,7 +183,8 @@ fn invalid_requests_are_refused() {
     assert_eq!(words(&mut bench), "0400 0401 0409 1439 1479");
 }
 
-/// A fault ends the motion. Nothing moves until the user has acknowledged it, and the acknowledgement alone moves nothing.
+/// A fault ends the motion. Nothing moves until the user has acknowledged it, and the acknowledgement alone moves
+/// nothing.
 #[test]
 fn a_fault_is_acknowledged_before_anything_moves() {
     let mut bench = Bench::new();

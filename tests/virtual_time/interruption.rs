@@ -1,5 +1,5 @@
-//! A restore that is cancelled, cut off, or interrupted by a power loss at every single transaction: the report describes
-//! the content of the encoder, nothing else has changed, and a second run completes it.
+//! A restore that is cancelled, cut off, or interrupted by a power loss at every single transaction: the report
+//! describes the content of the encoder, nothing else has changed, and a second run completes it.
 
 use encoder_studio::devices::hiperface::jobs::{Change, Committed, JobError, Prepared};
 use encoder_studio::devices::hiperface::procedures::Error;
@@ -10,8 +10,8 @@ use encoder_studio::link::Cancel;
 
 use crate::support::{Desk, Fields, backup, bytes, restore_of};
 
-/// Returns an encoder with a write-protected field guarded by its own code, and the target profile: several runs in field
-/// 0, the protected field, a plain one, and a new one that is to be protected.
+/// Returns an encoder with a write-protected field guarded by its own code, and the target profile: several runs in
+/// field 0, the protected field, a plain one, and a new one that is to be protected.
 fn scene() -> (Desk, HiperfaceProfile) {
     let mut desk = Desk::new("codes=2:66");
     desk.remember_code(2, 0x66);
@@ -99,7 +99,8 @@ struct Ending<'a> {
 }
 
 impl Ending<'_> {
-    /// Checks after a cancellation: exactly the counted operations were carried out, and the protected fields are locked.
+    /// Checks after a cancellation: exactly the counted operations were carried out, and the protected fields are
+    /// locked.
     fn assert_cancelled_cleanly(&self, interrupted: &Interrupted) {
         let Ending { context, .. } = self;
         assert_eq!(interrupted.cause, Error::Cancelled, "{context}");
@@ -109,8 +110,8 @@ impl Ending<'_> {
         assert_eq!(interrupted.done.write_cycles, self.desk.wear() - self.worn_before, "{context}");
     }
 
-    /// Checks after a lost connection: the counted operations were carried out, the one in progress was or was not, and a
-    /// field that remains unlocked is named.
+    /// Checks after a lost connection: the counted operations were carried out, the one in progress was or was not, and
+    /// a field that remains unlocked is named.
     fn assert_cut_off_and_reported(&self, interrupted: &Interrupted) {
         let Ending { context, .. } = self;
         let ops = &self.prepared.plan.ops;

@@ -149,8 +149,8 @@ fn a_silent_encoder_times_out_within_ten_seconds() {
     }
 }
 
-/// Issue 22.10: 50h removes a code in the encoder: whichever reply is lost, each code is returned or counted as possibly
-/// lost.
+/// Issue 22.10: 50h removes a code in the encoder: whichever reply is lost, each code is returned or counted as
+/// possibly lost.
 #[test]
 fn lost_status_codes_are_reported() {
     let queue = [StatusCode::TEMPERATURE, StatusCode::TOO_FAST, StatusCode::COUNTER_OVERFLOW];

@@ -1,5 +1,5 @@
-//! Test support in virtual time: a session on a virtual line, a link in between with configurable faults, and a record of
-//! its data.
+//! Test support in virtual time: a session on a virtual line, a link in between with configurable faults, and a record
+//! of its data.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -330,8 +330,8 @@ fn places_of_codes(command: u8) -> &'static [usize] {
     }
 }
 
-/// Checks that a request with a code is shown without code and checksum, but otherwise completely, and that a shown answer
-/// is not the request itself.
+/// Checks that a request with a code is shown without code and checksum, but otherwise completely, and that a shown
+/// answer is not the request itself.
 fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
     let shown = entry.bytes.to_string();
     let words: Vec<&str> = shown.split(' ').collect();

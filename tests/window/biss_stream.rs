@@ -30,8 +30,8 @@ fn recorded(encoder: &Encoder) -> (Vec<(i64, i64)>, usize) {
     (samples.iter().map(|own| (own.time.nanoseconds(), own.value.to_f64() as i64)).collect(), breaks)
 }
 
-/// Checks that all are 50 µs apart and follow the shaft: 655 360 steps per second are 32.768 per frame. Between two packets
-/// the time follows our clock slightly.
+/// Checks that all are 50 µs apart and follow the shaft: 655 360 steps per second are 32.768 per frame. Between two
+/// packets the time follows our clock slightly.
 #[track_caller]
 fn check(encoder: &Encoder, seconds: f64) {
     let (samples, breaks) = recorded(encoder);

@@ -41,7 +41,7 @@ fn a_hanging_link_blocks_nothing() {
     assert_eq!(desk.studio.devices().len(), 1);
     assert_eq!(desk.studio.settings.links(crate::tabs::HIPERFACE), [format!("serial:{PORT}")]);
     desk.act(Action::Close);
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
 }
 
 #[test]
@@ -116,9 +116,9 @@ fn a_hanging_disk_does_not_keep_the_window_open() {
     pipe(&settings);
     desk.act(Action::SetTheme(ColorScheme::Light));
     desk.act(Action::Close);
-    assert!(!desk.studio.may_close());
+    assert!(!desk.studio.can_close());
     let before = desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst);
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
     assert!(desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst) > before, "the window is told to look");
 }
 
@@ -133,8 +133,8 @@ fn a_hanging_draft_does_not_keep_the_window_open() {
     desk.put(0, 0, b"X");
     desk.write();
     desk.act(Action::Close);
-    assert!(desk.studio.question.is_none() && !desk.studio.may_close());
-    desk.until("it may close", |studio| studio.may_close());
+    assert!(desk.studio.question.is_none() && !desk.studio.can_close());
+    desk.until("it may close", |studio| studio.can_close());
 }
 
 #[cfg(unix)]

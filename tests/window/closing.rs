@@ -11,11 +11,11 @@ use crate::support::Desk;
 #[test]
 fn the_window_closes_if_nothing_would_be_lost() {
     let mut desk = Desk::new_form("");
-    assert!(!desk.studio.may_close());
+    assert!(!desk.studio.can_close());
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::from_millis(5))));
     desk.act(Action::Close);
     assert!(desk.studio.question.is_none());
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
 }
 
 #[test]
@@ -32,9 +32,9 @@ fn a_write_ends_at_a_safe_point_before_closing() {
     assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.busy");
     desk.act(Action::Confirm);
     desk.settle();
-    assert!(!desk.studio.may_close(), "it still writes");
+    assert!(!desk.studio.can_close(), "it still writes");
     desk.wire().release();
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
     assert_eq!(desk.wire().field(0)[..3], *b"XMD");
     let logbook = Logbook::open(&desk.outside.store().logbook_path()).unwrap();
     let key = DeviceKey {
@@ -116,5 +116,5 @@ fn closing_a_reading_session_ends_its_job() {
     assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
     desk.wire().release();
     desk.act(Action::Close);
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
 }

@@ -1,5 +1,5 @@
-//! The commutation assistant: requirements, readings, the offset, both ways to store it, and failures. Numbers are those of
-//! section 5 of the sine/cosine reference, or calculated separately.
+//! The commutation assistant: requirements, readings, the offset, both ways to store it, and failures. Numbers are
+//! those of section 5 of the sine/cosine reference, or calculated separately.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::analysis::quality::Verdict;
@@ -15,7 +15,8 @@ use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, Re
 use crate::support::Desk;
 use crate::texts;
 
-/// The virtual SKM36 a hundred and three quarter periods from its zero: 128 periods, sine and cosine counts 409 and 511.
+/// The virtual SKM36 a hundred and three quarter periods from its zero: 128 periods, sine and cosine counts 409 and
+/// 511.
 const AT_REST: &str = "position=3224";
 
 impl Desk {

@@ -30,8 +30,8 @@ fn edit(desk: &mut Desk, change: impl FnOnce(&mut LinkForm)) {
     desk.connect(Connect::edit(form));
 }
 
-/// Issue 22.30: before the first byte on a serial line the program asks whether a drive is on it, which may be silent since
-/// it read the encoder at power-up. After "yes" or "not sure" nothing is opened, searched or polled.
+/// Issue 22.30: before the first byte on a serial line the program asks whether a drive is on it, which may be silent
+/// since it read the encoder at power-up. After "yes" or "not sure" nothing is opened, searched or polled.
 #[test]
 fn the_user_must_rule_out_a_drive_before_the_first_byte() {
     let links = [format!("serial:{PORT}"), format!("tcp:{}", SERVERS[0].0)];
@@ -65,7 +65,8 @@ fn the_user_must_rule_out_a_drive_before_the_first_byte() {
     desk.until_read();
 }
 
-/// Issue 22.30: a search asks before its first byte as well. An encoder that it finds is opened without another question.
+/// Issue 22.30: a search asks before its first byte as well. An encoder that it finds is opened without another
+/// question.
 #[test]
 fn a_search_asks_about_a_drive_before_its_first_byte() {
     let mut desk = Desk::fresh("");

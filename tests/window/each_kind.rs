@@ -1,5 +1,5 @@
-//! The common behaviour of every kind of device, with the same words for all: edits are kept, writes end before anything
-//! closes, and every link that the connection dialog accepts leads to its device.
+//! The common behaviour of every kind of device, with the same words for all: edits are kept, writes end before
+//! anything closes, and every link that the connection dialog accepts leads to its device.
 
 use crate::tabs::Tabs as _;
 use std::path::Path;
@@ -355,7 +355,7 @@ fn closing_with_edits_asks_first() {
         desk.act(Action::Close);
         assert_eq!(asked(&desk), "question.edits");
         desk.act(Action::Escape);
-        assert!(desk.studio.question.is_none() && !desk.studio.may_close());
+        assert!(desk.studio.question.is_none() && !desk.studio.can_close());
         let id = shown(&desk.studio).unwrap().id();
         desk.act(Action::CloseSession(id));
         assert_eq!(asked(&desk), "question.session_edits");
@@ -365,7 +365,7 @@ fn closing_with_edits_asks_first() {
         desk.until("the edits are back", |studio| shown(studio).unwrap().edits() == 1);
         desk.act(Action::Close);
         desk.act(Action::Confirm);
-        desk.until("it may close", |studio| studio.may_close());
+        desk.until("it may close", |studio| studio.can_close());
     }
 }
 
@@ -380,9 +380,9 @@ fn a_write_ends_at_a_safe_point_before_the_window_closes() {
         assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.busy");
         desk.act(Action::Confirm);
         desk.settle();
-        assert!(!desk.studio.may_close(), "it still writes");
+        assert!(!desk.studio.can_close(), "it still writes");
         wire.release();
-        desk.until("it may close", |studio| studio.may_close());
+        desk.until("it may close", |studio| studio.can_close());
         let ends: Vec<&JobEnd> = desk.studio.services.jobs().map(|job| &job.end).collect();
         assert!(matches!(ends.last().unwrap(), JobEnd::Cancelled | JobEnd::Done), "{ends:?}");
     }
@@ -493,8 +493,8 @@ fn another_type_of_device_needs_a_separate_permission() {
     }
 }
 
-/// Issue 22.14: data that were read can be saved after the connection is lost, for every kind. A profile needs all of them:
-/// missing data are named, and nothing is saved.
+/// Issue 22.14: data that were read can be saved after the connection is lost, for every kind. A profile needs all of
+/// them: missing data are named, and nothing is saved.
 #[test]
 fn read_values_can_be_saved_after_the_line_is_lost() {
     for case in CASES {

@@ -1,6 +1,6 @@
-//! Acts that move a drive, repeated as a user would if the computer has delayed them. A window that is not updated for 250
-//! ms stops its motion on purpose, and so does a test whose thread is delayed by a busy computer. Any other end of an act
-//! fails the test.
+//! Acts that move a drive, repeated as a user would if the computer has delayed them. A window that is not updated for
+//! 250 ms stops its motion on purpose, and so does a test whose thread is delayed by a busy computer. Any other end of
+//! an act fails the test.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -38,8 +38,8 @@ pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     }
 }
 
-/// Repeats a request until a condition holds. A window that is not updated for 250 ms stops its motion, and so does a test
-/// on a busy computer: then the request is repeated, as a user would. After any other end it is not.
+/// Repeats a request until a condition holds. A window that is not updated for 250 ms stops its motion, and so does a
+/// test on a busy computer: then the request is repeated, as a user would. After any other end it is not.
 #[track_caller]
 pub(crate) fn drive_until(
     desk: &mut Desk,
@@ -122,8 +122,8 @@ pub(crate) fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) 
     }
 }
 
-/// Holds a pad until a condition holds. If a busy computer has delayed the refresh for 250 ms, which ends a jog, the pad is
-/// released and pressed again, after `prepare`; any other end is a failure.
+/// Holds a pad until a condition holds. If a busy computer has delayed the refresh for 250 ms, which ends a jog, the
+/// pad is released and pressed again, after `prepare`; any other end is a failure.
 #[track_caller]
 pub(crate) fn hold_pad_until(
     desk: &mut Desk,

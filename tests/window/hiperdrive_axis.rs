@@ -1,5 +1,5 @@
-//! The set-up of an axis as one run, by actions with a virtual drive: from a drive that was never requested to limits in
-//! millimetres that have survived a power cycle; the locks on the way; and the state after a cancellation.
+//! The set-up of an axis as one run, by actions with a virtual drive: from a drive that was never requested to limits
+//! in millimetres that have survived a power cycle; the locks on the way; and the state after a cancellation.
 
 mod bench;
 mod foreign;
@@ -94,7 +94,7 @@ fn limits_changed_since_they_were_shown_are_not_confirmed() {
         own.session.is_ready() && own.limits(DriveNumber::FIRST) == Some((-204_400, 1000))
     });
     let axis = axis(&desk);
-    assert_eq!(axis.may_go_on(&seen(&desk)).unwrap_err().id(), "hd_axis.needs_confirm");
+    assert_eq!(axis.check_can_continue(&seen(&desk)).unwrap_err().id(), "hd_axis.needs_confirm");
     run(&mut desk, Run::Press(Button::Confirm));
     next(&mut desk, AxisStep::Jog);
 }
@@ -115,7 +115,7 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     let turned = 33_488_896;
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 256, 1, -turned, turned]);
     assert_eq!(unit(&desk).session.cycles, Some(0));
-    let told = words::returned(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
+    let told = words::write_back_text(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
     assert!(
         told.contains("5 of 5 parameters have their previous values") && words::differences(&seen(&desk)).is_none(),
         "{told}"
@@ -124,7 +124,8 @@ fn cancelling_stops_the_drive_and_saves_nothing() {
     assert!(report.contains("The set-up was cancelled") && !report.contains("Nothing was written"), "{report}");
 }
 
-/// Issue 21.6 (d): 47 = −2 is only about the adapter; scale and limits of the drive remain, and no text claims otherwise.
+/// Issue 21.6 (d): 47 = −2 is only about the adapter; scale and limits of the drive remain, and no text claims
+/// otherwise.
 #[test]
 fn a_recall_does_not_change_the_drive() {
     let mut desk = confirmed();
@@ -132,7 +133,7 @@ fn a_recall_does_not_change_the_drive() {
     write(&mut desk);
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 400, 256, -204_400, 204_400]);
     let told = words::differences(&seen(&desk)).unwrap().words(Language::English);
-    assert!(told.contains("154 is 400 instead of 256") && !told.contains("152"), "{told}");
+    assert!(told.contains("parameter 154 is 400 instead of 256") && !told.contains("152"), "{told}");
     // The request is lost: the shown step remains, and names the one that has to be repeated.
     assert_eq!((axis(&desk).step(), axis(&desk).invalidated_text()), (AxisStep::Jog, Some(AxisStep::Request)));
 }
@@ -188,7 +189,10 @@ fn a_new_run_lists_changes_left_by_an_aborted_one() {
     let mut desk = until_jog();
     let differences = |desk: &Desk| words::differences(&seen(desk)).map(|own| own.words(Language::English));
     let told = differences(&desk).unwrap();
-    assert!(told.contains("154 is 400 instead of 256") && told.contains("152 is 1 instead of 0"), "{told}");
+    assert!(
+        told.contains("parameter 154 is 400 instead of 256") && told.contains("parameter 152 is 1 instead of 0"),
+        "{told}"
+    );
     run(&mut desk, Run::Begin);
     assert_eq!(differences(&desk), Some(told.clone()));
     // The same drive, in a restarted program.
@@ -205,7 +209,8 @@ fn a_new_run_lists_changes_left_by_an_aborted_one() {
     assert_eq!(differences(&desk), None);
 }
 
-/// Issue 21.6 (e): closing and opening a connection is no restart; a value that was changed and is never saved proves it.
+/// Issue 21.6 (e): closing and opening a connection is no restart; a value that was changed and is never saved proves
+/// it.
 #[test]
 fn a_reconnection_is_not_a_power_cycle() {
     let mut desk = until_saved("sim:?requested=0&timeout=250", 1);
@@ -229,7 +234,7 @@ fn a_reconnection_is_not_a_power_cycle() {
         own.session.is_ready() && matches!(own.axis().unwrap().power(), Some(Power::Back { .. }))
     });
     assert!(!axis(&desk).survived());
-    assert_eq!(axis(&desk).may_go_on(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis(&desk).check_can_continue(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     // A power cycle without the program noticing, as with a real one; no request is made meanwhile.
     target.power_cycle();
     command(&mut desk, DeviceCommand::Read);
@@ -293,11 +298,12 @@ fn the_result_is_saved_as_a_report() {
         studio.services.log.notices().any(|own| own.texts.iter().any(|text| text.id() == "report.saved"))
     });
     let text = std::fs::read_to_string(&path).unwrap();
-    assert!(text.contains("The drive's limits are -2044.00 mm … 2044.00 mm."), "{text}");
+    assert!(text.contains("The drive's limits are -2044.00 mm to 2044.00 mm."), "{text}");
     assert_eq!(desk.notice_ids(Severity::Good).last(), Some(&"report.saved"));
 }
 
-/// Issue 21.6: the complete run on a drive of a hub; in each write a refusal first, then a connection lost in the middle.
+/// Issue 21.6: the complete run on a drive of a hub; in each write a refusal first, then a connection lost in the
+/// middle.
 #[test]
 fn a_hub_drive_is_set_up_despite_refusals_and_lost_lines() {
     let desk = until_saved_with("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3, true);
@@ -317,7 +323,7 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
     step_with_writes(&mut desk, 182, true);
     // The connection was lost after the write had arrived: it is read, and no restart can be claimed.
     assert_eq!((read(&desk, 382), read(&desk, 182)), (1001, 1000));
-    assert_eq!(axis(&desk).may_go_on(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis(&desk).check_can_continue(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(axis(&desk).ask(Button::Restarted, &seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     unit(&desk).target.clone().unwrap().power_cycle();
     command(&mut desk, DeviceCommand::Read);
@@ -333,13 +339,13 @@ fn a_power_cycle_of_a_hub_is_checked_despite_a_refusal_and_a_lost_line() {
     for part in [
         "drive 3 (",
         "10. Power-cycle check: done",
-        "The restart was detected",
+        "The drive has restarted",
         "All values that can be saved are saved",
     ] {
         assert!(has(part), "{part}: {report}");
     }
     assert!(
-        !has("ended early") && !has("differ from the saved values") && !has("while the drive was not read"),
+        !has("did not complete") && !has("differ from the saved values") && !has("while the drive was not being read"),
         "{report}"
     );
     assert_eq!([352, 354, 356, 382].map(|own| read(&desk, own)), [1, 400, 256, 1000]);

@@ -1,5 +1,5 @@
-//! The window closes, or the system ends the program, while a drive moves: the drive stops first and is switched off, and
-//! its connection is closed; questions come after that (issue 21.1). The state is read from the drive itself.
+//! The window closes, or the system ends the program, while a drive moves: the drive stops first and is switched off,
+//! and its connection is closed; questions come after that (issue 21.1). The state is read from the drive itself.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -48,9 +48,9 @@ fn a_closing_window_releases_the_drives_first() {
         let mut desk = moving();
         desk.act(action);
         assert!(desk.studio.question.is_none() && desk.studio.is_closing(), "{closes}");
-        assert!(!desk.studio.may_close(), "{closes}: the drive is in hand");
+        assert!(!desk.studio.can_close(), "{closes}: the drive is in hand");
         drive(&mut desk, Motor::Move { target: 1 });
-        desk.until("it may close", |studio| studio.may_close());
+        desk.until("it may close", |studio| studio.can_close());
         until_let_go(&desk);
         assert!(!unit(&desk).moves.motion().unwrap().is_connected(), "{closes}");
         drive(&mut desk, Motor::Lead(Goal::Enabled));
@@ -72,7 +72,7 @@ fn the_close_question_follows_the_stop_and_nothing_resumes() {
         assert!(began.elapsed() < LONG, "it moves under the question");
         std::thread::sleep(Duration::from_millis(1));
     }
-    desk.until("the window knows it", |studio| !studio.moves_by_hand());
+    desk.until("the window knows it", |studio| !studio.is_turned_by_hand());
     desk.act(Action::Escape);
     assert!(desk.studio.question.is_none());
     for _ in 0..300 {
@@ -83,7 +83,7 @@ fn the_close_question_follows_the_stop_and_nothing_resumes() {
     assert_eq!((state, stands, open), (State::Enabled, true, true), "as it was stopped");
     desk.act(Action::Close);
     desk.act(Action::Confirm);
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
     until_let_go(&desk);
 }
 
@@ -96,7 +96,7 @@ fn a_signal_closes_without_asking() {
     assert!(desk.studio.question.is_some());
     desk.act(Action::Quit);
     assert!(desk.studio.question.is_none());
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
     until_let_go(&desk);
 }
 
@@ -112,8 +112,8 @@ fn drives_are_released_without_the_window() {
     assert!(!brakes.wait_for_window(Duration::ZERO));
 }
 
-/// Issue 21.1: a closed session stops its own drive before it asks; an endless run of another one stops because its page is
-/// not shown, and closing the window waits for a closed session.
+/// Issue 21.1: a closed session stops its own drive before it asks; an endless run of another one stops because its
+/// page is not shown, and closing the window waits for a closed session.
 #[test]
 fn closing_a_session_stops_its_motion() {
     let mut desk = in_control("sim:");
@@ -132,7 +132,7 @@ fn closing_a_session_stops_its_motion() {
     }
     desk.act(Action::CloseSession(id));
     desk.act(Action::Close);
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
     let (status, open) = target.with(|station| {
         (station.drive(ONE).unwrap().actual(Moment::default()).status, station.is_open(Moment::default()))
     });
@@ -150,5 +150,5 @@ fn a_window_without_control_closes_immediately() {
     });
     desk.act(Action::Close);
     assert!(desk.studio.brakes().is_done());
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
 }

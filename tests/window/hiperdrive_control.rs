@@ -1,5 +1,5 @@
-//! Control of HIPERDRIVE drives, by actions: its loss and the messages about it, and parameters that another master changes
-//! meanwhile.
+//! Control of HIPERDRIVE drives, by actions: its loss and the messages about it, and parameters that another master
+//! changes meanwhile.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -129,11 +129,11 @@ fn a_scale_set_by_another_master_locks_motion_until_limits_are_confirmed() {
 fn a_scale_found_changed_by_a_save_locks_motion() {
     let mut desk = read("sim:");
     set(&desk, 154, 100);
-    assert!(unit(&desk).moves.unconfirmed().is_empty());
+    assert!(unit(&desk).moves.unconfirmed_drives().is_empty());
     let path = desk.outside.path("drive.ron");
     act(&mut desk, Hiperdrive::Save(path.clone()));
     desk.until("it is saved", |_| path.exists());
-    assert!(unit(&desk).moves.unconfirmed().contains(&ONE));
+    assert!(unit(&desk).moves.unconfirmed_drives().contains(&ONE));
 }
 
 #[test]
@@ -147,8 +147,8 @@ fn nothing_moves_until_everything_is_read_again_under_control() {
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
 }
 
-/// 4096 steps are a sixteenth of a turn (reference 4); such a move ends with 3E37 (reference 9), or the same with another
-/// acknowledge bit.
+/// 4096 steps are a sixteenth of a turn (reference 4); such a move ends with 3E37 (reference 9), or the same with
+/// another acknowledge bit.
 #[test]
 fn the_table_shows_live_values_of_the_drive() {
     let mut desk = in_control("sim:");

@@ -62,7 +62,8 @@ fn what_is_needed(screen: &Screen) -> Rect {
     [pads, states].into_iter().flatten().fold(travel(screen).rect(), Rect::union)
 }
 
-/// Issue 26.2: pads, state and travel are seen at 1280 × 800 beside an open trace, and at 1024 × 640 behind one scroll at most.
+/// Issue 26.2: pads, state and travel are seen at 1280 × 800 beside an open trace, and at 1024 × 640 behind one scroll
+/// at most.
 #[test]
 fn pads_state_and_travel_are_seen_together() {
     let needed = what_is_needed(&in_control_on_screen("sim:", [1280.0, 800.0]));
@@ -72,7 +73,8 @@ fn pads_state_and_travel_are_seen_together() {
     assert!(needed.bottom() <= ABOVE + 2.0 * page, "{needed:?}");
 }
 
-/// Issue 26.2: a preset sets the speed and begins nothing; it also replaces what was typed, even where that is no percentage.
+/// Issue 26.2: a preset sets the speed and begins nothing; it also replaces what was typed, even where that is no
+/// percentage.
 #[test]
 fn a_preset_sets_the_speed_and_begins_nothing() {
     let mut screen = in_control_on_screen("sim:", [1280.0, 900.0]);

@@ -1,5 +1,5 @@
-//! Keys and drives: keys that are held, keys that stop, and repeated keys, which begin nothing (issue 21.2). The events are
-//! those of the window system; egui calls the first repetition after a change of the window a first press.
+//! Keys and drives: keys that are held, keys that stop, and repeated keys, which begin nothing (issue 21.2). The events
+//! are those of the window system; egui calls the first repetition after a change of the window a first press.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;

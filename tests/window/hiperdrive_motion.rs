@@ -285,8 +285,8 @@ fn limits_set_by_another_master_are_read_before_any_motion() {
     assert_eq!(desk.notice_ids(Severity::Warning), ["hd_refused.outside"]);
 }
 
-/// Issue 21.4: a drive outside its limits reports it, the pad that leads further out is blocked with its reason, and can be
-/// permitted for one press at a time, at 10 % speed and 25 % torque.
+/// Issue 21.4: a drive outside its limits reports it, the pad that leads further out is blocked with its reason, and
+/// can be permitted for one press at a time, at 10 % speed and 25 % torque.
 #[test]
 fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     let mut desk = in_control("sim:?position=33488896&defect=runs-on");
@@ -332,8 +332,8 @@ fn from_outside_only_the_inward_pad_is_enabled_until_permitted() {
     assert!(unit(&desk).may_jog(ONE, up).is_err());
 }
 
-/// Issue 21.4: with only status bit 15, and the position well inside, the inward direction is not known: nothing moves, and
-/// each pad can be permitted for one press.
+/// Issue 21.4: with only status bit 15, and the position well inside, the inward direction is not known: nothing moves,
+/// and each pad can be permitted for one press.
 #[test]
 fn outside_by_bit_15_alone_both_pads_are_blocked_until_permitted() {
     let mut desk = in_control("sim:?defect=says-outside");

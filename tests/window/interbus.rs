@@ -1,5 +1,5 @@
-//! The INTERBUS tab by actions: reading, parameters and cams with edits, a write with its review, tables of cams, and the
-//! question before a running machine is disturbed.
+//! The INTERBUS tab by actions: reading, parameters and cams with edits, a write with its review, tables of cams, and
+//! the question before a running machine is disturbed.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;

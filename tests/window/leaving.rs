@@ -32,10 +32,10 @@ fn a_write_of_a_closed_session_is_awaited_and_reported() {
     let mut desk = closed_while_writing(Desk::at_port(""));
     desk.act(Action::Close);
     desk.settle();
-    assert!(!desk.studio.may_close(), "it still writes");
+    assert!(!desk.studio.can_close(), "it still writes");
     assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Running);
     desk.wire().release();
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
     assert!(desk.notice_ids(Severity::Warning).contains(&"write.cancelled"));
     assert_eq!(desk.studio.services.jobs().next_back().unwrap().end, JobEnd::Cancelled);
     assert_eq!(desk.wire().field(0)[..3], *b"XMD");
@@ -68,9 +68,9 @@ fn the_draft_of_a_closed_session_is_awaited() {
     desk.act(Action::Confirm);
     desk.act(Action::Close);
     desk.settle();
-    assert!(desk.studio.devices().is_empty() && !desk.studio.may_close(), "the edit is not on disk");
+    assert!(desk.studio.devices().is_empty() && !desk.studio.can_close(), "the edit is not on disk");
     assert!(std::fs::read_to_string(&draft).unwrap().contains("88"));
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
 }
 
 /// The first attempt is late, after another one has connected.
@@ -90,7 +90,7 @@ fn a_link_from_an_earlier_attempt_is_not_used() {
     assert_eq!(desk.wire().count(0x52), surveys, "nobody reads it a second time");
     assert_eq!((desk.studio.devices().len(), desk.phase()), (1, &Phase::Connected));
     desk.act(Action::Close);
-    desk.until("its thread has ended", |studio| studio.may_close());
+    desk.until("its thread has ended", |studio| studio.can_close());
 }
 
 #[test]
@@ -127,14 +127,14 @@ fn closing_waits_briefly_for_a_job_and_longer_for_a_write() {
     let began = Instant::now();
     desk.act(Action::Close);
     desk.act(Action::Confirm);
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
     assert!(began.elapsed() >= patience.job && began.elapsed() < patience.write);
     desk.wire().release();
 
     let mut desk = closed_while_writing(Desk::impatient(""));
     let began = Instant::now();
     desk.act(Action::Close);
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
     assert!(began.elapsed() >= patience.write);
     desk.wire().release();
 }

@@ -1,5 +1,5 @@
-//! The window used as by a user: its state by actions, without drawing, and its real widgets by their accessible labels.
-//! One module per behaviour.
+//! The window used as by a user: its state by actions, without drawing, and its real widgets by their accessible
+//! labels. One module per behaviour.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod biss;

@@ -1,5 +1,5 @@
-//! A press and its release reach the same button, and the keyboard focus remains, whatever appears or disappears meanwhile
-//! elsewhere in the window (issue 21.7: clicks on a drive's button were lost while its limits were read).
+//! A press and its release reach the same button, and the keyboard focus remains, whatever appears or disappears
+//! meanwhile elsewhere in the window (issue 21.7: clicks on a drive's button were lost while its limits were read).
 
 use std::collections::BTreeMap;
 
@@ -117,7 +117,8 @@ fn a_click_counts_despite_layout_changes_during_it() {
     }
 }
 
-/// Issue 22.29: keyboard focus on a button of a review that is still planned is not on any button of the completed plan.
+/// Issue 22.29: keyboard focus on a button of a review that is still planned is not on any button of the completed
+/// plan.
 #[test]
 fn a_review_becoming_ready_ignores_a_key_pressed_before() {
     let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);

@@ -242,7 +242,8 @@ fn allow_another(desk: &mut Desk) {
     desk.toggle(Permit::OtherType);
 }
 
-/// Issue 22.7: with both permissions, the values to set up again are in the review, at its end, and after an interruption.
+/// Issue 22.7: with both permissions, the values to set up again are in the review, at its end, and after an
+/// interruption.
 #[test]
 fn values_of_another_mounting_are_named_until_the_end() {
     let (mut desk, path) = saved();

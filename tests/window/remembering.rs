@@ -143,5 +143,5 @@ fn unwritable_settings_are_reported_once() {
     }
     assert_eq!(desk.notice_ids(Severity::Warning), ["session.settings_not_kept"]);
     desk.act(Action::Close);
-    desk.until("it may close", |studio| studio.may_close());
+    desk.until("it may close", |studio| studio.can_close());
 }

@@ -138,7 +138,8 @@ fn saving_over_a_changed_file_asks_first() {
     assert_eq!(file_text(&path), theirs);
 }
 
-/// Issue 22.25: comments alone are no difference, and remain; a deleted file is written again; an invalid one is reported.
+/// Issue 22.25: comments alone are no difference, and remain; a deleted file is written again; an invalid one is
+/// reported.
 #[test]
 fn only_changed_values_count_as_a_difference() {
     let (mut desk, path) = opened(OWN);
@@ -276,8 +277,8 @@ fn cams_beyond_a_smaller_range_are_reported_immediately_and_on_save() {
     assert_eq!(file_text(&path), text.replace("steps: 3600", "steps: 1800"));
 }
 
-/// Issue 22.27: changes of a colleague in a closed file remain, and so do earlier edits, for a layout, parameters and cams
-/// alike; also if the file is only read again.
+/// Issue 22.27: changes of a colleague in a closed file remain, and so do earlier edits, for a layout, parameters and
+/// cams alike; also if the file is only read again.
 #[test]
 fn restored_edits_keep_changes_by_others() {
     let ssi = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
@@ -326,8 +327,8 @@ fn restored_edits_keep_changes_by_others() {
     }
 }
 
-/// Issue 22.27: earlier edits that result in no valid layout together with the changes of a colleague are left out, with a
-/// message.
+/// Issue 22.27: earlier edits that result in no valid layout together with the changes of a colleague are left out,
+/// with a message.
 #[test]
 fn restored_edits_that_no_longer_apply_are_dropped_with_a_notice() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";

@@ -1,5 +1,5 @@
-//! The shell of the window: the lower panel and the line below it, what stays in its place while messages come and go, and
-//! live values that start by themselves.
+//! The shell of the window: the lower panel and the line below it, what stays in its place while messages come and go,
+//! and live values that start by themselves.
 
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! Sine and cosine through an adapter: the virtual one and one on a network, the shown values, and the message if there is
-//! none.
+//! Sine and cosine through an adapter: the virtual one and one on a network, the shown values, and the message if there
+//! is none.
 
 use crate::tabs::Tabs as _;
 use std::time::Instant;
@@ -78,7 +78,7 @@ fn a_closing_window_stops_the_adapter_first() {
     begin(&mut desk, &served.link(), 20_000);
     desk.until("samples come", |studio| recorded(studio).0 > 100);
     desk.act(Action::Close);
-    desk.until("the window may close", Studio::may_close);
+    desk.until("the window may close", Studio::can_close);
     assert_eq!(served.requested_frame(&Request::AnalogStream { on: false }), 1);
 }
 
@@ -128,7 +128,7 @@ fn a_valid_adapter_link_is_remembered_and_an_invalid_one_is_not() {
     begin(&mut desk, "sim:?rpm=60", 10_000);
     begin(&mut desk, "serial:/dev/ttyUSB0", 10_000);
     desk.act(Action::Close);
-    desk.until("the window may close", Studio::may_close);
+    desk.until("the window may close", Studio::can_close);
     let desk = desk.crash();
     assert_eq!(desk.studio.signals().source().link(), "sim:?rpm=60");
     assert!(!desk.studio.signals().source().is_running());

@@ -78,7 +78,7 @@ fn absolute_and_analog_positions_are_synchronised_while_typing() {
     screen.retype("synchronise.phase", "0.98");
     assert!(screen.shows("10.98000"));
     screen.retype("synchronise.absolute", "32768");
-    assert!(screen.shows("\"32768\" is not a position from 0 to 32767"));
+    assert!(screen.shows("\"32768\" is not a valid position. Enter a position from 0 to 32767"));
     screen.act(Action::SetLanguage(Language::German));
     screen.check_language();
     assert!(!screen.is_enabled("synchronise.read"), "no encoder is connected");

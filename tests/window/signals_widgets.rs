@@ -73,7 +73,7 @@ fn the_tab_opens_by_key_and_click_and_loads_an_example() {
     screen.click("tab.signals");
     screen.click("signals.example_errors");
     screen.until("it is read", |studio| studio.signals().measurement().is_some());
-    assert!(screen.shows("outside 0.9 … 1.1 V"));
+    assert!(screen.shows("the permitted range is 0.9 to 1.1 V"));
     // 2 · 0.5 / 1.12 V and 40 mV of 0.5 V, the parameters of the example.
     assert!(screen.shows("0.8928 V") && screen.shows("8.00 %"));
     assert!(screen.harness.query_all_by_label(&screen.say("quality.outside")).count() >= 6);
@@ -191,7 +191,7 @@ fn the_virtual_encoder_is_started_set_held_and_stopped() {
         let slider = screen.words(&encoder_studio::app::explain::signal::quantity(Quantity::Noise));
         assert!(screen.harness.query_all_by_role_and_label(egui::Role::Slider, &slider).next().is_some());
         screen.signals(Signals::Source(SourceAction::Set(Quantity::Amplitude, 7.0)));
-        assert!(screen.shows("Amplitude: 7 is outside 0 … 2 V."));
+        assert!(screen.shows("Amplitude: 7 is outside the range from 0 to 2 V."));
         screen.click("virtual.hold");
         assert!(screen.studio().signals().source().is_held());
         screen.click("virtual.go_on");

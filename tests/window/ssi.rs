@@ -175,8 +175,8 @@ fn a_layout_is_saved_opened_and_survives_a_crash() {
     assert_eq!((own.range, own.code), (Range::Bits { multiturn: 12, singleturn: 12 }, Code::Gray));
 }
 
-/// The sheet and the table are in the language of the window; C and structured text are programs. Terms of TM PosInput as in
-/// its German manual.
+/// The sheet and the table are in the language of the window; C and structured text are programs. Terms of TM PosInput
+/// as in its German manual.
 #[test]
 fn exports_are_in_the_language_of_the_window() {
     let mut desk = layout();

@@ -1,4 +1,5 @@
-//! Test support for the window's state: a studio in a separate environment, with two cables and a link that hangs forever.
+//! Test support for the window's state: a studio in a separate environment, with two cables and a link that hangs
+//! forever.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -419,8 +420,8 @@ impl Desk {
     }
 }
 
-/// Answers the question about a drive on the line, if there is one: these tests have no drive. The effect of the question
-/// is tested in `connecting`.
+/// Answers the question about a drive on the line, if there is one: these tests have no drive. The effect of the
+/// question is tested in `connecting`.
 pub(crate) fn only_master(studio: &mut Studio) {
     if asks_for_drive(studio) {
         studio.act(Action::Confirm);

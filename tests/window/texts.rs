@@ -1,5 +1,5 @@
-//! Every text in these tests is complete in both languages: it is in the table, each place of it is filled in, and no name
-//! of the table occurs twice.
+//! Every text in these tests is complete in both languages: it is in the table, each place of it is filled in, and no
+//! name of the table occurs twice.
 
 use crate::tabs::Tabs as _;
 use std::collections::{BTreeMap, BTreeSet};

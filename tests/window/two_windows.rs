@@ -1,5 +1,5 @@
-//! Two windows on one settings file: in this process and in separate processes. The changes of one survive the writes of
-//! the other, and unconfirmed limits in one lock the other.
+//! Two windows on one settings file: in this process and in separate processes. The changes of one survive the writes
+//! of the other, and unconfirmed limits in one lock the other.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -105,8 +105,8 @@ fn changes_of_each_window_survive_the_others_write() {
     assert_eq!((first.studio.settings.language, second.studio.settings.theme), (Language::English, ColorScheme::Dark));
 }
 
-/// Issue 21.11: limits that one window has marked are locked in another one that controls the drives, without any write or
-/// read by it, and in one that is opened later, whatever the other writes.
+/// Issue 21.11: limits that one window has marked are locked in another one that controls the drives, without any write
+/// or read by it, and in one that is opened later, whatever the other writes.
 #[test]
 fn limits_marked_by_another_window_are_locked() {
     let (mut first, mut second) = two();

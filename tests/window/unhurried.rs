@@ -1,5 +1,5 @@
-//! Virtual HIPERDRIVE drives whose time passes more slowly: a motion that is not refreshed for 250 ms stops on purpose, and
-//! a frame that is drawn in software on a busy computer may take longer than that.
+//! Virtual HIPERDRIVE drives whose time passes more slowly: a motion that is not refreshed for 250 ms stops on purpose,
+//! and a frame that is drawn in software on a busy computer may take longer than that.
 
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex};

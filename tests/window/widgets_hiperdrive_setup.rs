@@ -59,7 +59,9 @@ fn clicking_leds_sets_the_observed_states() {
     assert!(screen.shows("No supply.") && screen.shows("Check the control supply and its fuse."));
     screen.press(Role::RadioButton, "Device: Hub");
     screen.press(Role::RadioButton, "Switch S3: 3");
-    assert!(screen.shows("The drive is neither connected nor requested.") && screen.shows("S3 is not at 0"));
+    assert!(
+        screen.shows("The drive is neither connected nor requested.") && screen.shows("Switch S3 is set to drive 3")
+    );
     screen.press(Role::Button, "NS: green");
     screen.press(Role::Button, "NS: green, flashing");
     screen.press(Role::Button, "NS: red, flashing");
@@ -167,8 +169,8 @@ fn pitch_and_resolution_set_the_scale_and_keep_the_limits_in_place() {
     }
 }
 
-/// A number is typed in the table. An invalid one remains there with its reason, and with its parameter when other lines
-/// are shown.
+/// A number is typed in the table. An invalid one remains there with its reason, and with its parameter when other
+/// lines are shown.
 #[test]
 fn parameters_can_be_typed_into_their_table() {
     let mut screen = page("sim:?hub=4&drives=1,0,1", "page.parameters");
@@ -258,7 +260,8 @@ fn stop_is_reachable_over_a_dialog() {
     assert!(own.actual(own.drive()).unwrap().position < 30_000_000 && screen.studio().connect.is_some());
 }
 
-/// Issue 21.6 (i): whatever the drive reports, no clickable control moves, and the step remains until the user leaves it.
+/// Issue 21.6 (i): whatever the drive reports, no clickable control moves, and the step remains until the user leaves
+/// it.
 #[test]
 fn the_layout_of_a_step_does_not_shift() {
     let mut screen = page("sim:", "page.axis");
@@ -316,7 +319,7 @@ fn the_layout_of_a_step_does_not_shift() {
         studio.hiperdrive().is_some_and(|own| own.axis().unwrap().invalidated_text() == Some(AxisStep::Scale))
     });
     screen.steps();
-    assert!(screen.shows("Step 2, Pitch and resolution, is no longer valid"));
+    assert!(screen.shows("Step 2 (Pitch and resolution) is no longer valid"));
     assert_eq!(
         (screen.studio().hiperdrive().unwrap().axis().unwrap().step(), places(&screen)),
         (AxisStep::Jog, before)

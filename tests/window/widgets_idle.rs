@@ -78,7 +78,7 @@ fn the_system_close_button_asks_before_losing_edits() {
     let viewport = screen.harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
     viewport.events.clear();
     screen.steps();
-    assert!(screen.studio().question.is_some() && !screen.studio().may_close());
+    assert!(screen.studio().question.is_some() && !screen.studio().can_close());
     screen.key(Key::Escape);
     assert!(screen.studio().question.is_none());
     assert!(screen.studio().services.log.notices().all(|notice| notice.severity < Severity::Error));

@@ -93,7 +93,7 @@ fn unsaved_registers_are_reported_with_a_remedy() {
     assert!(
         screen.shows("Der Geber war im Gerätemodus 0x04 Schreiben von OEM- und Motordaten. Er ist wieder im Betrieb")
     );
-    assert!(!screen.shows("ist im Gerätemodus 0x04") && !screen.shows("im Gerätemodus 0x04 statt"));
+    assert!(!screen.shows("ist im Gerätemodus 0x04") && !screen.shows("im Gerätemodus 0x04, nicht"));
     assert!(!screen.has_button("lead_back_card.button"));
 }
 

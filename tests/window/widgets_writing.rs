@@ -198,10 +198,10 @@ fn closing_with_edits_asks_and_can_be_declined() {
     screen.act(Action::Close);
     assert!(screen.shows(&screen.words(&screen.studio().question.as_ref().unwrap().text)));
     screen.click("question.stay");
-    assert!(screen.studio().question.is_none() && !screen.studio().may_close());
+    assert!(screen.studio().question.is_none() && !screen.studio().can_close());
     screen.act(Action::Close);
     screen.click("question.close_window");
-    screen.until("it may close", |studio| studio.may_close());
+    screen.until("it may close", |studio| studio.can_close());
 }
 
 #[test]

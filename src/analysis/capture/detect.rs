@@ -15,11 +15,11 @@ pub enum Delimiter {
     Tab,
 }
 
-/// Known properties of a table; properties that are `None` are detected.
+/// Known properties of a table; a property that is `None` is detected.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableHints {
     pub delimiter: Option<Delimiter>,
-    /// Whether numbers have a decimal comma, if known.
+    /// Whether numbers use a decimal comma, if known.
     pub decimal_comma: Option<bool>,
     pub columns: Option<Columns>,
     pub time_unit: Option<TimeUnit>,
@@ -52,7 +52,7 @@ pub struct SampleClock {
 }
 
 impl Delimiter {
-    /// All delimiters, the least ambiguous first: a comma may also be a decimal separator.
+    /// All delimiters, the least ambiguous first, since a comma may also be a decimal separator.
     pub const ALL: [Delimiter; 3] = [Delimiter::Semicolon, Delimiter::Tab, Delimiter::Comma];
 
     pub const fn byte(self) -> u8 {
@@ -64,7 +64,7 @@ impl Delimiter {
     }
 }
 
-/// Line before the data: its line number in the file and its fields.
+/// Line before the data, with its line number in the file and its fields.
 struct HeaderLine {
     row: u64,
     fields: Vec<Vec<u8>>,
@@ -126,8 +126,8 @@ impl Layout {
     }
 }
 
-/// Removes columns whose first value does not fit: a reference angle must be a number, an absolute position a whole
-/// number.
+/// Removes columns whose first value does not fit: a reference angle must be a number, and an absolute position must be
+/// a whole number.
 fn fitting(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) -> Columns {
     let read = |column: usize| {
         let field = first.and_then(|line| line.fields.get(column.checked_sub(1)?));
@@ -147,7 +147,7 @@ fn whole_lines(head: &[u8], read: usize) -> &[u8] {
     }
 }
 
-/// Parses the header columns `Start` and `Increment` with the line below them (the format of Rigol oscilloscopes). If
+/// Parses the header columns `Start` and `Increment` and the line below them, as written by Rigol oscilloscopes. If
 /// both are present, the first column counts samples.
 fn sample_clock(before: &[HeaderLine], decimal_comma: bool) -> Result<Option<SampleClock>, CaptureError> {
     let at = |line: &HeaderLine, name: &[u8]| line.fields.iter().position(|field| field.eq_ignore_ascii_case(name));
@@ -202,22 +202,21 @@ fn fields(line: &[u8], delimiter: Delimiter) -> Vec<Vec<u8>> {
     fields.iter().map(|field| field.trim_ascii().to_vec()).collect()
 }
 
-/// Returns whether some number has a decimal comma and none has a decimal point.
+/// Returns whether at least one number has a decimal comma and none has a decimal point.
 fn decimal_comma(lines: &[HeaderLine]) -> bool {
     let numeric = |field: &&Vec<u8>| matches!(number(field, true), Number::Finite(_));
     let has = |byte: u8| lines.iter().flat_map(|line| &line.fields).filter(numeric).any(|field| field.contains(&byte));
     has(b',') && !has(b'.')
 }
 
-/// Returns whether a line is a row of data: all fields are numbers, or at least half of them in a row of the usual
-/// width. A broken number in the first row is thus an error and not a header, while a line about the instrument may
-/// still contain a number.
+/// Returns whether a line is a data row: all fields are numbers, or at least half of them in a row of the usual width.
+/// A malformed number in the first row is thus an error rather than a header.
 fn is_data(line: &HeaderLine, usual: usize, decimal_comma: bool) -> bool {
     let (numbers, width) = (numbers(line, decimal_comma), filled(&line.fields));
     (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)
 }
 
-/// Returns whether a row contains at least one number, and its other fields have no value.
+/// Returns whether a row contains at least one number and all its other fields are empty or have no value.
 fn is_gap(line: &HeaderLine, width: usize, decimal_comma: bool) -> bool {
     let is_text = |field: &Vec<u8>| matches!(number(field, decimal_comma), Number::Text);
     line.fields.len() >= width
@@ -229,7 +228,8 @@ fn numbers(line: &HeaderLine, decimal_comma: bool) -> usize {
     line.fields.iter().filter(|field| !matches!(number(field, decimal_comma), Number::Text)).count()
 }
 
-/// Returns the most frequent width of rows that are at least half numbers; in a tie, the larger width.
+/// Returns the most frequent width of the rows in which at least half the fields are numbers, or the larger width in a
+/// tie.
 fn usual_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
     let mut counts = std::collections::BTreeMap::<usize, usize>::new();
     for line in lines.iter().filter(|line| 2 * numbers(line, decimal_comma) >= filled(&line.fields)) {
@@ -238,15 +238,16 @@ fn usual_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
     counts.into_iter().max_by_key(|(width, count)| (*count, *width)).map_or(0, |(width, _)| width)
 }
 
-/// Returns the number of fields up to the last non-empty one: some programs end each line with a delimiter.
+/// Returns the number of fields up to the last non-empty one, since some programs end each line with a delimiter.
 fn filled(fields: &[Vec<u8>]) -> usize {
     fields.iter().rposition(|field| !field.is_empty()).map_or(0, |at| at + 1)
 }
 
-/// Returns the names, and the line of units if present: the last lines before the data with as many columns.
+/// Returns the column names and, if present, the line of units: the last lines before the data with the same number of
+/// columns.
 fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     let wide = |line: &&HeaderLine| filled(&line.fields) >= width.min(2) && filled(&line.fields) + 1 >= width;
-    let name = |field: &Vec<u8>| String::from_utf8_lossy(&latin(field)).into_owned();
+    let name = |field: &Vec<u8>| String::from_utf8_lossy(&normalise_header_field(field)).into_owned();
     let mut found: Vec<Vec<String>> =
         before.iter().rev().take_while(wide).take(2).map(|line| line.fields.iter().map(name).collect()).collect();
     // Of two lines, either the second has the units, or the first has no names. A field in the second that is not a
@@ -269,8 +270,8 @@ fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     found
 }
 
-/// Converts a header field: a lone B5h is a µ in the encoding of older programs, and a leading # or % marks a comment.
-fn latin(field: &[u8]) -> Vec<u8> {
+/// Normalises a header field: a lone B5h is the µ of older encodings, and a leading # or % marks a comment.
+fn normalise_header_field(field: &[u8]) -> Vec<u8> {
     let field = field.strip_prefix(b"#").or_else(|| field.strip_prefix(b"%")).unwrap_or(field).trim_ascii();
     if std::str::from_utf8(field).is_ok() {
         return field.to_vec();

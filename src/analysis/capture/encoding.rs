@@ -5,19 +5,19 @@ use std::borrow::Cow;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Encoding {
-    /// UTF-8, or one byte per character.
+    /// UTF-8 or a single-byte encoding.
     Bytes,
-    /// UTF-16, least significant byte first.
+    /// UTF-16, little-endian.
     Utf16Le,
-    /// UTF-16, most significant byte first.
+    /// UTF-16, big-endian.
     Utf16Be,
 }
 
-/// Converter that turns a table into UTF-8 piece by piece and drops the byte order mark.
+/// Decoder that converts a table to UTF-8 piece by piece and drops the byte order mark.
 #[derive(Debug)]
 pub(super) struct Decoder {
     encoding: Encoding,
-    /// Remaining length of the byte order mark in bytes.
+    /// Number of remaining bytes of the byte order mark.
     mark: usize,
     /// First byte of a code unit split across two pieces.
     half: Option<u8>,
@@ -32,7 +32,7 @@ pub fn decode_head(head: &[u8]) -> Cow<'_, [u8]> {
 
 impl Decoder {
     /// Detects the encoding from the beginning of a table. Without a byte order mark, UTF-16 is recognised by the zero
-    /// bytes in its first two characters.
+    /// bytes in the first two characters.
     pub(super) fn of(head: &[u8]) -> Self {
         let (encoding, mark) = match head {
             [0xEF, 0xBB, 0xBF, ..] => (Encoding::Bytes, 3),

@@ -8,7 +8,7 @@ pub struct Columns {
     pub time: Option<usize>,
     pub sine: usize,
     pub cosine: usize,
-    /// Columns of REFSIN and REFCOS against ground, unless sine and cosine are already differences.
+    /// Columns of REFSIN and REFCOS against ground, or `None` if sine and cosine are already differences.
     pub references: Option<(usize, usize)>,
     /// Column with the shaft angle of a reference encoder in degrees, if any.
     pub reference_angle: Option<usize>,
@@ -34,7 +34,7 @@ pub enum VoltUnit {
 }
 
 impl Columns {
-    /// Columns for time, sine and cosine in this order.
+    /// Columns for time, sine and cosine, in this order.
     pub const PLAIN: Columns =
         Columns { time: Some(1), sine: 2, cosine: 3, references: None, reference_angle: None, absolute: None };
 
@@ -53,7 +53,7 @@ impl Columns {
         Columns { time: self.time.or((!is_taken).then_some(1)), ..self }
     }
 
-    /// Finds the columns by name; `None` if sine or cosine is missing.
+    /// Finds the columns by name, or returns `None` if sine or cosine is missing.
     pub(super) fn named(names: &[String]) -> Option<Columns> {
         let find = |known: &[&str]| {
             let at = names.iter().position(|name| known.contains(&bare_name(name).as_str()));
@@ -75,7 +75,7 @@ impl Columns {
 }
 
 impl TimeUnit {
-    /// Returns the unit's length in seconds.
+    /// Returns the length of the unit in seconds.
     pub const fn factor(self) -> f64 {
         match self {
             TimeUnit::Seconds => 1.0,
@@ -98,7 +98,7 @@ impl TimeUnit {
 }
 
 impl VoltUnit {
-    /// Returns the unit's size in volts.
+    /// Returns the size of the unit in volts.
     pub const fn factor(self) -> f64 {
         match self {
             VoltUnit::Volts => 1.0,
@@ -130,7 +130,7 @@ pub(super) fn is_unit(text: &str) -> bool {
     TimeUnit::parse(text).is_some() || VoltUnit::parse(text).is_some() || is_degrees(text)
 }
 
-/// Returns the name without its unit, in lower case: `Time [ms]` becomes `time`.
+/// Returns a column name in lower case and without its unit: `Time [ms]` becomes `time`.
 fn bare_name(name: &str) -> String {
     let name = name.trim().to_lowercase();
     let bare = match unit_of(&name) {
@@ -140,8 +140,8 @@ fn bare_name(name: &str) -> String {
     bare.trim_end_matches([' ', '[', '(', '/', '_', ',']).trim().to_owned()
 }
 
-/// Returns the unit that follows a name, in brackets or after a space, a slash or an underscore: `ms` of `time_ms`. A
-/// name entirely in brackets, as in a line of units, is all unit. Expects lower case.
+/// Returns the unit in a lower-case column name, in brackets or after a space, a slash or an underscore: `ms` in
+/// `time_ms`. A name entirely in brackets, as in a line of units, is a unit as a whole.
 pub(super) fn unit_of(name: &str) -> Option<&str> {
     let name = name.trim();
     let inside = name.strip_suffix([']', ')']).unwrap_or(name);

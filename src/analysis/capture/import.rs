@@ -19,13 +19,13 @@ pub struct Import {
     ended: usize,
     last: Option<u8>,
     decoder: Decoder,
-    /// First row that was left out, and the error for its missing value.
+    /// First skipped row, and the error for its missing value.
     first_left_out: Option<(u64, CaptureError)>,
     taken: ColumnChoice,
     capture: Capture,
 }
 
-/// Columns to import, with conversion factors.
+/// Columns to import, with their conversion factors.
 #[derive(Clone, Copy, Debug)]
 struct ColumnChoice {
     columns: Columns,
@@ -43,9 +43,9 @@ pub(super) enum Number {
     Text,
 }
 
-/// Maximum length of a row in bytes; a longer row does not belong to a table.
+/// Maximum length of a row in bytes; input with a longer row is not a table.
 const LONGEST_ROW: usize = 1 << 20;
-/// Minimum number of rows for a measurement; a shorter table is rejected at the first missing value.
+/// Minimum number of rows in a measurement; a shorter table is rejected at its first missing value.
 const LEAST_ROWS: u64 = 6;
 /// Maximum number of characters of an invalid field shown in a message.
 const SHOWN: usize = 24;
@@ -138,7 +138,7 @@ impl Import {
         }
     }
 
-    /// Returns the number of line breaks in the incomplete row, all of them between quotation marks.
+    /// Returns the number of line breaks in the incomplete row, all of which are inside quotation marks.
     fn lines_in_row(&self) -> usize {
         let row = self.row.get(..self.written).unwrap_or_default();
         row.iter().filter(|byte| **byte == b'\n').count()
@@ -188,7 +188,7 @@ impl Import {
 }
 
 impl ColumnChoice {
-    /// Adds a row to the capture; returns the error for the missing value if the row is left out.
+    /// Adds a row to the capture, or returns the error for the missing value if the row is skipped.
     fn take(
         &self,
         row: &[u8],
@@ -258,7 +258,7 @@ impl ColumnChoice {
         }
     }
 
-    /// Parses a value; the inner error means that the instrument recorded none.
+    /// Parses a value; the inner error means that the instrument recorded no value.
     fn value(
         &self,
         row: &[u8],
@@ -294,13 +294,13 @@ pub(super) fn is_no_value(field: &[u8]) -> bool {
     text.chars().all(|sign| matches!(sign, '-' | '*' | '?')) && text.len() != 1 || WORDS.contains(&text.as_str())
 }
 
-/// Returns the value as a whole number, or `None` beyond 2⁵³, where neighbouring integers are not distinct.
+/// Returns the value as an integer, or `None` beyond 2⁵³, where neighbouring integers are not distinct.
 pub(super) fn whole(value: f64) -> Option<i64> {
     const MOST: f64 = (1_i64 << 53) as f64;
     (value.fract() == 0.0 && value.abs() <= MOST).then_some(value as i64)
 }
 
-/// Values that SCPI instruments send for an overload (9.9E37) and for "not a number" (9.91E37): SCPI-99, 7.2.1.
+/// Values that SCPI instruments send for an overload (9.9E37) and for "not a number" (9.91E37), see SCPI-99, 7.2.1.
 const NO_VALUE: std::ops::RangeInclusive<f64> = 9.9e37..=9.91e37;
 
 /// Parses a field without surrounding spaces.
@@ -318,7 +318,7 @@ pub(super) fn number(field: &[u8], comma: bool) -> Number {
 }
 
 fn parse_with_decimal_comma(field: &[u8], comma: usize) -> Option<f64> {
-    /// Maximum length of a number, more than the digits of a double with sign and exponent.
+    /// Maximum length of a number, which exceeds the digits of a double with sign and exponent.
     const LONGEST: usize = 64;
     let mut copy = [0; LONGEST];
     let copy = copy.get_mut(..field.len())?;

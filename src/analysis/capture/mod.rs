@@ -19,19 +19,19 @@ use super::wiring::Wires;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Capture {
-    /// Times in seconds; empty if the table has none.
+    /// Times in seconds; empty if the table has no time column.
     pub time_s: Vec<f64>,
     /// Sine channel in volts, with the reference subtracted.
     pub sine_v: Vec<f64>,
     /// Cosine channel in volts, with the reference subtracted.
     pub cosine_v: Vec<f64>,
-    /// The four wires against ground as measured, if the table contains the references.
+    /// The four wires measured against ground, if the table contains the references.
     pub wires: Option<Wires>,
-    /// Shaft angle of a reference encoder in degrees, wrapped at a turn or not, if the table contains it.
+    /// Shaft angle of a reference encoder in degrees, wrapped or unwrapped, if the table contains it.
     pub reference_deg: Option<Vec<f64>>,
     /// Absolute positions in steps of 1/32 period, if the table contains them.
     pub absolute: Option<Vec<i64>>,
-    /// Number of rows left out: rows without a measured value (empty, NaN, overload) after their time, and a truncated
+    /// Number of skipped rows: rows with a time but without a measured value (empty, NaN, overload), and a truncated
     /// last line.
     pub left_out: u64,
 }
@@ -52,7 +52,7 @@ pub enum CaptureError {
     NoNumbers,
     #[error("it has one column")]
     OneColumn,
-    /// The table has too few columns, and their names do not tell which one is missing.
+    /// The table has too few columns, and their names do not show which one is missing.
     #[error("it has {columns} columns")]
     TooFewColumns { columns: usize },
     /// A row ends before a required column.
@@ -80,7 +80,7 @@ pub enum CaptureError {
         column: usize,
         text: String,
     },
-    /// A number is NaN or infinite: either a time, or a value in a table with too few rows.
+    /// A time is NaN or infinite, or a value in a table with too few rows is.
     #[error("row {row}, column {column}: {text} is not finite")]
     NotFinite {
         /// Line number in the file, counted from 1.
@@ -95,17 +95,16 @@ pub enum CaptureError {
         /// Number of rows without a measured value.
         left_out: u64,
         rows: u64,
-        /// Line number of the first such row in the file, counted from 1.
+        /// Line number in the file of the first row without a measured value, counted from 1.
         row: u64,
     },
-    /// The header names a start time and an increment, but the line below does not give their values.
+    /// The header names a start time and an increment, but the line below does not contain their values.
     #[error("the header names Start and Increment, and row {row} has no numbers for them")]
     NoSampleClock {
         /// Line number in the file, counted from 1.
         row: u64,
     },
-    /// The header gives a start time and an increment, but a field in the column of sample numbers contains something
-    /// else.
+    /// The header gives a start time and an increment, but a field in the sample number column is not a sample number.
     #[error("row {row}, column {column}: {text} is no sample number, though the header names Start and Increment")]
     NotASampleNumber {
         /// Line number in the file, counted from 1.
@@ -114,7 +113,7 @@ pub enum CaptureError {
         column: usize,
         text: String,
     },
-    /// A quotation mark is not closed, so that everything after it belongs to one field.
+    /// A quotation mark is not closed, so everything after it belongs to one field.
     #[error("row {row} has a quotation mark that is not closed")]
     OpenQuote {
         /// Line number in the file, counted from 1.

@@ -8,7 +8,7 @@ use super::{Diagnosis, DiagnosisFinding, FindingKind, LEAST_LINE, OutOfLimits, S
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changes {
-    /// Findings that became worse or are new, most severe first.
+    /// Findings that are new or became worse, most severe first.
     pub worse: Vec<DiagnosisFinding>,
     /// Findings that changed without becoming worse.
     pub changed: Vec<DiagnosisFinding>,
@@ -20,15 +20,15 @@ pub struct Changes {
 pub enum ComparisonObstacle {
     NoEllipseBefore,
     NoEllipseAfter,
-    /// One of the captures has no spectrum, so that hum, interference and noise cannot be compared.
+    /// One of the captures has no spectrum, so hum, interference and noise cannot be compared.
     NoSpectrum,
 }
 
 /// Factor above which a disturbance counts as increased.
 const MORE: f64 = 1.5;
-/// Factor above which an ellipse parameter counts as further out of its limits.
+/// Factor above which an ellipse parameter counts as further outside its limits.
 const FURTHER: f64 = 1.1;
-/// Minimum noise increase that counts, as a fraction of the amplitude.
+/// Minimum noise increase that is reported, as a fraction of the amplitude.
 const LEAST_NOISE: f64 = 0.001;
 /// Relative difference from which an amplitude counts as changed.
 const AMPLITUDE: f64 = 0.02;
@@ -67,10 +67,10 @@ fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: 
         changes.worse.push(DiagnosisFinding { severity: severity(to_v / amplitude), kind: what });
     }
     let spacing = before.spacing_hz.unwrap_or(0.0).max(after.spacing_hz.unwrap_or(0.0));
-    changes.worse.extend(later.iter().filter_map(|line| rose(line, earlier, spacing, amplitude)));
+    changes.worse.extend(later.iter().filter_map(|line| increase_finding(line, earlier, spacing, amplitude)));
 }
 
-/// Returns whether a finding of the second capture is new, or greater than in the first.
+/// Returns whether a finding of the second capture is new, or greater than in the first capture.
 fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -> bool {
     match finding.kind {
         // Without an ellipse for comparison, only these kinds can be reported.
@@ -101,7 +101,7 @@ fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -
         || comparable && finding_magnitude(&finding.kind) >= factor * finding_magnitude(&earlier.kind)
 }
 
-/// Returns whether the earlier finding is of the later one's kind, or a worse form of it.
+/// Returns whether the earlier finding is of the same kind as the later one, or a worse form of it.
 fn covers(earlier: &FindingKind, later: &FindingKind) -> bool {
     match (earlier, later) {
         (FindingKind::Limit(earlier), FindingKind::Limit(later)) => discriminant(earlier) == discriminant(later),
@@ -142,7 +142,12 @@ fn finding_magnitude(what: &FindingKind) -> f64 {
     }
 }
 
-fn rose(line: &Interference, earlier: &[Interference], spacing_hz: f64, amplitude: f64) -> Option<DiagnosisFinding> {
+fn increase_finding(
+    line: &Interference,
+    earlier: &[Interference],
+    spacing_hz: f64,
+    amplitude: f64,
+) -> Option<DiagnosisFinding> {
     let same = earlier.iter().filter(|other| (other.frequency_hz - line.frequency_hz).abs() <= 2.0 * spacing_hz);
     let from_v = same.map(|other| other.volts).fold(0.0, f64::max);
     let to_v = line.volts;

@@ -7,7 +7,7 @@ use crate::analysis::wiring::Wire;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     Notice,
-    /// A parameter is out of its limits, or a disturbance reduces accuracy.
+    /// A parameter is outside its limits, or a disturbance reduces accuracy.
     Warning,
     Fault,
 }
@@ -23,22 +23,22 @@ pub struct DiagnosisFinding {
 pub enum FindingKind {
     Limit(OutOfLimits),
     Still,
-    /// Both channels are constant, away from zero: the shaft stands still.
+    /// Both channels are constant and nonzero, so the shaft is at rest.
     AtRest,
-    /// One channel does not move while the other one does.
+    /// One channel is constant while the other one changes.
     Dead {
         channel: Channel,
         stuck: Stuck,
     },
-    /// One channel has half the amplitude of the other: one of its two wires is open.
+    /// One channel has half the amplitude of the other, because one of its two wires is open.
     Half {
         channel: Channel,
-        /// Ratio of the channel's amplitude to that of the other channel.
+        /// Ratio of this channel's amplitude to that of the other channel.
         share: f64,
     },
     /// Both channels carry the same signal, or one carries the inverse of the other.
     Same,
-    /// The mean level of a reference is outside the family's limits.
+    /// The mean level of a reference is outside the limits of the encoder family.
     Level {
         wire: Wire,
         /// Mean level in volts.
@@ -48,10 +48,10 @@ pub enum FindingKind {
     },
     Hum {
         mains_hz: f64,
-        /// Peak of all mains lines together, in volts.
+        /// Combined peak of all mains lines, in volts.
         volts: f64,
         share: f64,
-        /// Whether the hum is in phase and about equally strong in both channels, that is, coupled in by the screen or
+        /// Whether the hum is in phase and about equally strong in both channels, as when coupled in by the screen or
         /// the ground.
         common: bool,
     },
@@ -69,8 +69,8 @@ pub enum FindingKind {
         volts: f64,
         share: f64,
     },
-    /// The distance from the ellipse repeats `order` times per period, which indicates harmonics one below and one
-    /// above that order.
+    /// The distance from the ellipse repeats `order` times per period, which indicates harmonics of the orders one
+    /// below and one above.
     Harmonics {
         /// Repetitions per period, 3 to 8.
         order: usize,
@@ -81,14 +81,14 @@ pub enum FindingKind {
         channel: Channel,
         /// Clipping level in volts.
         volts: f64,
-        /// Share of the samples at the clipping level.
+        /// Fraction of the samples at the clipping level.
         samples: f64,
     },
     Modulation {
-        /// Half the difference between the largest and the smallest amplitude, divided by the mean.
+        /// Half the difference between the largest and smallest amplitudes, divided by the mean amplitude.
         share: f64,
     },
-    /// Isolated outliers were left out.
+    /// Isolated outliers were excluded.
     Spikes {
         count: usize,
         /// Greatest distance of an outlier from the ellipse, in volts.
@@ -105,7 +105,7 @@ pub enum FindingKind {
         longest_s: f64,
     },
     TimeBack {
-        /// First sample that is earlier than the previous one, counted from 0.
+        /// Index of the first sample that is earlier than its predecessor, counted from 0.
         sample: usize,
     },
     Reversed {
@@ -127,7 +127,7 @@ pub enum FindingKind {
         /// Peak-to-peak position error after the correction, in electrical degrees.
         corrected_deg: f64,
     },
-    /// Both channels are at the level of a single wire: no reference was subtracted.
+    /// Both channels have the mean level of a single wire, so no reference was subtracted.
     SingleEnded {
         /// Mean of the sine channel in volts.
         sine_v: f64,
@@ -139,7 +139,7 @@ pub enum FindingKind {
         /// Peak amplitude in the second capture, in volts.
         to_v: f64,
     },
-    /// An interference is present only in the second of two captures, or is stronger than in the first.
+    /// An interference line is present only in the second of two captures, or is stronger there than in the first.
     InterferenceRose {
         frequency_hz: f64,
         /// Peak in the first capture, in volts; 0 if no interference was visible.
@@ -157,13 +157,13 @@ pub enum FindingKind {
     },
 }
 
-/// Level of the wires of a channel that does not move.
+/// Level of the wires of a channel that does not change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stuck {
     /// Both wires are at the same level: one is open, or they are shorted to each other.
     Together,
     Ground(Wire),
     Supply(Wire),
-    /// The wires differ by the given voltage: one is shorted, or open without a resistor between them.
+    /// The wires differ by the given voltage: one is shorted, or open without a resistor between the two.
     Apart(f64),
 }

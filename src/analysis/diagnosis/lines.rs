@@ -21,14 +21,14 @@ const MULTIPLES: f64 = 10.0;
 /// Line spacing of a spectrum above which its lines cannot be attributed to the mains.
 const MAINS_SPACING_HZ: f64 = 10.0;
 
-/// Minimum length of the examined record in seconds, if available: ten mains periods.
+/// Preferred minimum length of the examined record in seconds: ten mains periods.
 const SECONDS: f64 = 0.2;
 /// Minimum and maximum number of samples in the spectrum.
 const SAMPLES: (usize, usize) = (1 << 16, 1 << 20);
-/// Minimum number of periods; with fewer, the signal's own line covers everything.
+/// Minimum number of periods; with fewer, the signal's own line covers the whole spectrum.
 const LEAST_PERIODS: f64 = 8.0;
-/// Number of signal harmonics skipped, for an even and an uneven motion. An uneven motion has fewer, because its
-/// harmonics cover much of the spectrum and spread lines do not stand out.
+/// Number of signal harmonics skipped, for even and uneven motion. Uneven motion skips fewer, because its wide
+/// harmonics cover much of the spectrum and do not stand out as lines.
 const HARMONICS: (usize, usize) = (25, 5);
 /// Number of lines on each side of a harmonic that belong to it in a Hann window.
 const REACH: usize = 3;
@@ -36,11 +36,11 @@ const REACH: usize = 3;
 const WIDTH: f64 = 0.01;
 /// Number of lines on each side from which the noise is determined.
 const NEIGHBOURS: usize = 50;
-/// Factor above the median of its neighbours from which a line is not noise.
+/// Factor above the median of the neighbouring lines from which a line does not count as noise.
 const ABOVE: f64 = 6.0;
 /// Maximum number of lines reported.
 const MOST: usize = 8;
-/// Permitted radial share of an interference, the part that moves the vector along the radius.
+/// Permitted radial share of an interference line, that is, of its component along the signal vector.
 const RADIAL: Range<f64> = 0.25..0.75;
 /// Maximum phase difference at which both channels count as in phase, in radians.
 const IN_PHASE: f64 = TAU / 12.0;
@@ -57,7 +57,7 @@ pub struct Interference {
     pub mains_hz: Option<f64>,
 }
 
-/// Line with its contribution to the distance from the ellipse, as a mean square in V².
+/// Spectral line and its contribution to the distance from the ellipse, as a mean square in V².
 struct StrongLine {
     line: Interference,
     radial_v2: f64,
@@ -70,11 +70,12 @@ pub(super) struct SpectrumContent {
     pub(super) noise_v: f64,
     /// Spacing of the spectrum's lines in hertz.
     pub(super) spacing_hz: f64,
-    /// Effect of all lines on the distance from the ellipse, as a mean square in V².
+    /// Contribution of all lines to the distance from the ellipse, as a mean square in V².
     pub(super) radial_v2: f64,
 }
 
-/// Finds the interference lines; `None` if the samples are not evenly spaced, too few, or cover too few periods.
+/// Finds the interference lines, or returns `None` if the samples are not evenly spaced, are too few, or cover too few
+/// periods.
 pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<SpectrumContent> {
     let count = samples.sine_v.len().min(samples.cosine_v.len()).min(samples.time_s.len());
     let all = samples.time_s.get(..count)?;
@@ -120,11 +121,11 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Spectru
     found.truncate(MOST);
     let radial_v2 = found.iter().map(|found| found.radial_v2).sum();
     let mut lines: Vec<Interference> = found.into_iter().map(|found| found.line).collect();
-    name_mains(&mut lines, spacing_hz);
+    name_mains_lines(&mut lines, spacing_hz);
     Some(SpectrumContent { lines, noise_v, spacing_hz, radial_v2 })
 }
 
-/// Replaces each outlier by the preceding value: a spike would raise every line.
+/// Replaces each outlier by the preceding value, since a spike would raise every line.
 fn hold(values: &mut [f64], start: usize, analysis: &Analysis) {
     let end = start + values.len();
     let stretches = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
@@ -141,7 +142,7 @@ fn height(lines: &[f64], at: usize) -> f64 {
     lines.get(at).copied().unwrap_or(0.0)
 }
 
-/// Returns which lines belong to the signal: its fundamental and its harmonics, including those aliased at half the
+/// Returns which lines belong to the signal: the fundamental and its harmonics, including those aliased at half the
 /// sample rate.
 fn signal(both: &[f64]) -> Vec<bool> {
     let mut belongs = vec![false; both.len()];
@@ -187,8 +188,8 @@ fn candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usize> {
     taken
 }
 
-/// Returns the white noise of one channel from the median line of both channels combined. The square of such a line is
-/// the sum of four squares of the normal distribution, whose median is 3.3567 times their variance.
+/// Returns the white noise of one channel from the median line of both channels combined. The power of such a line is
+/// a sum of four squared normal variables, whose median is 3.3567 times their variance.
 fn noise(median: f64, samples: usize) -> f64 {
     const MEDIAN: f64 = 3.356_694;
     // A line is 4/n times a sum whose real and imaginary parts each have the variance σ²·Σw²/2, Σw² = 3n/8.
@@ -200,9 +201,9 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     (middle < values.len()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Assigns lines to a mains frequency. 300 Hz and 600 Hz are multiples of both frequencies and are assigned according
-/// to the other lines present.
-fn name_mains(lines: &mut [Interference], spacing_hz: f64) {
+/// Assigns lines to a mains frequency. 300 Hz and 600 Hz are multiples of both mains frequencies and are assigned
+/// according to the other lines present.
+fn name_mains_lines(lines: &mut [Interference], spacing_hz: f64) {
     if spacing_hz > MAINS_SPACING_HZ {
         return;
     }
@@ -242,7 +243,7 @@ impl Complex {
     }
 }
 
-/// Examines a single frequency in both channels, and its radial component.
+/// Probe for a single frequency in both channels and in the radial component.
 struct FrequencyProbe<'a> {
     sine: &'a [f64],
     cosine: &'a [f64],
@@ -271,7 +272,8 @@ impl FrequencyProbe<'_> {
         Some(StrongLine { line, radial_v2: (sine.square() + cosine.square()) / 4.0 })
     }
 
-    /// Returns amplitude and phase, in a Hann window, of sine, cosine and the radial part of their corrected values.
+    /// Returns the amplitude and phase, in a Hann window, of sine, cosine and the radial component of the corrected
+    /// values.
     fn at(&self, frequency_hz: f64) -> [Complex; 4] {
         let count = self.sine.len() as f64;
         let turn = |angle: f64| Complex { re: angle.cos(), im: angle.sin() };

@@ -23,20 +23,20 @@ use super::wiring::Wire;
 
 /// Fraction of the amplitude below which hum and interference are not reported.
 pub const LEAST_LINE: f64 = 0.002;
-/// Fraction of the amplitude from which a disturbance is a warning instead of a notice; it costs 0.6 electrical
-/// degrees.
+/// Fraction of the amplitude from which a disturbance is a warning rather than a notice; it corresponds to an error of
+/// 0.6 electrical degrees.
 pub const WARNING_SHARE: f64 = 0.01;
-/// Range of the amplitude ratio to the other channel in which a channel has lost one of its two wires.
+/// Range of the amplitude ratio between the channels that indicates that one channel has lost one of its two wires.
 const HALF: (f64, f64) = (0.4, 0.6);
-/// Voltage difference within which both wires of a pair count as equal.
+/// Voltage difference up to which both wires of a pair count as equal.
 const SAME_LEVEL_V: f64 = 0.1;
-/// Levels in volts below and above which a wire is shorted to ground or to a supply.
+/// Levels in volts below and above which a wire counts as shorted to ground or to a supply.
 const RAILS_V: (f64, f64) = (0.5, 4.5);
-/// Share of samples left out of the fit from which spikes are a warning.
+/// Fraction of samples excluded from the fit from which spikes are a warning.
 const MANY_SPIKES: f64 = 1e-3;
-/// Number of consecutive samples from which an outlier is an intermittent contact rather than a spike.
+/// Number of consecutive outliers from which the cause is an intermittent contact rather than a spike.
 const LETS_GO: usize = 16;
-/// Amplitude modulation over a revolution from which a finding is reported, and from which it is a warning.
+/// Amplitude modulation over a revolution from which it is reported, and from which it is a warning.
 const MODULATION: (f64, f64) = (0.03, 0.1);
 
 /// Fraction of the residual's mean square that other findings must explain.
@@ -55,12 +55,12 @@ pub struct Record<'a> {
 pub struct Diagnosis {
     /// Findings, most severe first.
     pub findings: Vec<DiagnosisFinding>,
-    /// Peak amplitude of the cosine channel in volts; `None` without an ellipse.
+    /// Peak amplitude of the cosine channel in volts, or `None` if no ellipse was fitted.
     pub amplitude_v: Option<f64>,
     /// RMS white noise of one channel in volts, if known.
     pub noise_v: Option<f64>,
-    /// Spectral lines that are not harmonics of the signal, including the mains, strongest first; `None` if the samples
-    /// are not evenly spaced, or the capture is too short for a spectrum.
+    /// Spectral lines that are not harmonics of the signal, including the mains, strongest first. `None` if the samples
+    /// are not evenly spaced or the capture is too short for a spectrum.
     pub interference: Option<Vec<Interference>>,
     /// Line spacing of the interference spectrum in hertz, if available.
     pub spacing_hz: Option<f64>,
@@ -109,8 +109,8 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
 }
 
 impl Diagnosis {
-    /// Returns the diagnosis under other limits, without the samples. Findings that depend on limits are judged again
-    /// from the analysis and the mean levels of REFSIN and REFCOS in volts.
+    /// Returns the diagnosis under other limits, without needing the samples. Findings that depend on limits are judged
+    /// again from the analysis and the mean levels of REFSIN and REFCOS in volts.
     #[must_use]
     pub fn from_limits(
         &self,
@@ -163,7 +163,7 @@ fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &m
     }
 }
 
-/// Diagnoses samples without an ellipse; their distribution still reveals the cause.
+/// Diagnoses samples to which no ellipse could be fitted; their distribution still reveals the cause.
 fn without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnMut(Severity, FindingKind)) {
     match error {
         AnalysisError::AtRest => say(Severity::Warning, FindingKind::AtRest),
@@ -195,7 +195,8 @@ fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
     }
 }
 
-/// Judges the ellipse by its limits. A channel that has lost a wire explains deviations in amplitude and gain.
+/// Checks the ellipse against its limits. Deviations in amplitude and gain are attributed to a lost wire if a channel
+/// has one.
 fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ratio = analysis.ellipse.gain_ratio;
     let half = if within(1.0 / ratio, HALF) {

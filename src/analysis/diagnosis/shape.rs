@@ -13,24 +13,24 @@ use crate::analysis::signal_analysis::Analysis;
 const SECTORS: usize = 64;
 /// Maximum number of samples examined for harmonics.
 const SAMPLES: usize = 1 << 18;
-/// Orders of the averaged distance that are examined; the ellipse absorbs the first two.
+/// Orders examined in the averaged distance from the ellipse; the fit absorbs the first two.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=8;
 const OF_REVOLUTION: usize = 36;
-/// Number of samples per period sufficient to follow the angle.
+/// Number of samples per period that suffices to follow the angle.
 const FOLLOWED: f64 = 16.0;
 
-/// Distance from the end of the range within which a sample counts as being at the end, as a fraction of the amplitude.
+/// Distance from the end of the range up to which a sample counts as being at the end, as a fraction of the amplitude.
 const AT_END: f64 = 0.002;
-/// Share of samples at the end of the range from which a channel counts as clipped: three times that of an unclipped
+/// Fraction of samples at the end of the range from which a channel counts as clipped: three times that of an unclipped
 /// sine, √(2·0.002)/π = 2 %.
 const CUT_OFF: f64 = 3.0 * 0.0201;
-/// Minimum number of periods; with the shaft at rest, all samples would be at one level.
+/// Minimum number of periods, since all samples of a shaft at rest are at one level.
 const LEAST_PERIODS: f64 = 2.0;
 /// Minimum RMS distance of a clipped sine from its ellipse, as a fraction of the amplitude.
 const LEAST_RESIDUAL: f64 = 0.002;
 
 /// Returns the strongest order of the distance from the ellipse over the period, and its peak as a fraction of the
-/// amplitude. `None` if part of the period has no samples.
+/// amplitude, or `None` if part of the period has no samples.
 pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(usize, f64)> {
     let correction = analysis.ellipse.correction();
     let mut sectors = [(0.0, 0_u32); SECTORS];
@@ -61,7 +61,7 @@ pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(u
     ORDERS.map(|order| (order, order_of(order))).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Returns the clipped channels, each with its clipping voltage and the share of samples at that voltage.
+/// Returns the clipped channels, each with its clipping voltage and the fraction of samples at that voltage.
 pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(Channel, f64, f64)> {
     if analysis.coverage.periods < LEAST_PERIODS || analysis.coverage.residual_rms < LEAST_RESIDUAL {
         return Vec::new();
@@ -86,7 +86,7 @@ pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(Chann
     found
 }
 
-/// Returns the amplitude variation over a revolution of the given number of periods, as a fraction; `None` if the
+/// Returns the amplitude variation over a revolution of the given number of periods, as a fraction, or `None` if the
 /// capture covers less than one revolution.
 pub(super) fn modulation(samples: &Samples<'_>, analysis: &Analysis, periods: u32) -> Option<f64> {
     let revolution = f64::from(periods);
@@ -118,7 +118,7 @@ pub(super) fn modulation(samples: &Samples<'_>, analysis: &Analysis, periods: u3
     Some((most - least) / (most + least))
 }
 
-/// Returns the sine and cosine of the samples that were not left out.
+/// Returns the sine and cosine of the samples that were not excluded.
 fn good<'a>(samples: &Samples<'a>, analysis: &'a Analysis) -> impl Iterator<Item = (f64, f64)> {
     let (sine, cosine) = (samples.sine_v, samples.cosine_v);
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);

@@ -18,8 +18,8 @@ struct Made {
     periods: Option<u32>,
 }
 
-/// Returns 40 000 samples in 0.4 s, with 0.5 mV of noise; `motion` gives periods from seconds, `disturbed` changes sine and
-/// cosine.
+/// Returns 40 000 samples in 0.4 s, with 0.5 mV of noise; `motion` gives periods from seconds, `disturbed` changes sine
+/// and cosine.
 fn made(motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64, f64, (f64, f64)) -> (f64, f64)) -> Made {
     let mut random = fastrand::Rng::with_seed(3);
     // Four even numbers have a variance of a third.

@@ -6,8 +6,8 @@ use crate::analysis::ellipse::Ellipse;
 use crate::analysis::position_error::Basis;
 use crate::analysis::signal_analysis::Analysis;
 
-/// Range of the mean level that identifies a single wire, in volts. Section 1 of the project's sine/cosine reference
-/// gives 2.0 … 3.0 V and 0.5 Vpp; the ranges have a margin for levels and amplitudes outside their limits.
+/// Range of the mean level, in volts, that identifies a single wire. Section 1 of the project's sine/cosine reference
+/// gives 2.0 … 3.0 V and 0.5 Vpp; the range has a margin for signals outside their limits.
 const WIRE_LEVEL_V: (f64, f64) = (1.5, 3.5);
 const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
 /// Factor by which a harmful correction increases the error; the increase must also exceed `LARGER_DEG`.
@@ -29,8 +29,8 @@ pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKi
     }
 }
 
-/// Checks for an ellipse that mistakes harmonics for gain or phase and adds them once more. Only a motion reveals this:
-/// the distance from the ellipse contains noise.
+/// Checks for an ellipse that mistakes harmonics for gain or phase errors and thereby doubles them. The distance from
+/// the ellipse contains noise, so only a motion reveals this.
 pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     let Basis::Motion { noise_deg } = analysis.error.basis else { return };
     let (raw_deg, corrected_deg) = (analysis.error.raw_pp_deg(), analysis.error.corrected_pp_deg);
@@ -62,8 +62,8 @@ pub(super) fn single_ended(ellipse: &Ellipse) -> Option<FindingKind> {
     (levels && amplitudes).then_some(FindingKind::SingleEnded { sine_v, cosine_v })
 }
 
-/// Returns whether a finding results from single-ended columns, whose offset is the wire's level and whose amplitude is
-/// halved.
+/// Returns whether a finding results from single-ended columns, which have the wire's level as offset and half the
+/// amplitude.
 pub(super) fn is_of_single_ended(found: &OutOfLimits) -> bool {
     matches!(found, OutOfLimits::Amplitude { .. } | OutOfLimits::OffsetSine(_) | OutOfLimits::OffsetCosine(_))
 }

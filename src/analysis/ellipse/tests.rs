@@ -64,7 +64,8 @@ fn fits_of_360_and_6_points_recover_the_parameters() {
 }
 
 /// With 1 mV rms of noise on 360 points, section 7 found deviations of 1e-5 V, 4e-5 V, 6e-4, 0.0083° and 1e-4 V. A
-/// parameter of a fit to n points scatters by about σ·√(2/n) = 7.5e-5 V; the limits are five times that, twice for α, r.
+/// parameter of a fit to n points scatters by about σ·√(2/n) = 7.5e-5 V; the limits are five times that, twice for α,
+/// r.
 #[test]
 fn noise_moves_the_parameters_within_its_statistics() {
     let mut random = fastrand::Rng::with_seed(7);

@@ -11,11 +11,11 @@ use super::{BLOCK, FAN};
 #[derive(Clone, Copy)]
 struct Level {
     size: usize,
-    /// Index of the level's first bucket within the block.
+    /// Index within the block of the first bucket of a level.
     start: usize,
 }
 
-/// Levels between the samples and the whole block, coarsest first, as stored in memory.
+/// Levels between the samples and the whole block, coarsest first, in the order in which they are stored.
 const LEVELS: [Level; 3] = [
     Level { size: FAN * FAN * FAN, start: 0 },
     Level { size: FAN * FAN, start: FAN },
@@ -24,7 +24,7 @@ const LEVELS: [Level; 3] = [
 
 const BUCKETS: usize = FAN + FAN * FAN + FAN * FAN * FAN;
 
-/// Minimum and maximum of some samples, as distances from the block's base, rounded outward. An empty bucket is (∞,
+/// Minimum and maximum of several samples, as distances from the block's base, rounded outward. An empty bucket is (∞,
 /// −∞).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Bucket {
@@ -87,15 +87,15 @@ impl Extent {
 #[derive(Debug)]
 pub(super) struct Block<T> {
     values: Vec<T>,
-    /// All `BUCKETS` buckets; a bucket is valid once its samples are complete.
+    /// All `BUCKETS` buckets. A bucket is valid once its samples are complete.
     buckets: Box<[Bucket]>,
-    /// Bucket of the whole block, once the block is full.
+    /// Bucket for the whole block, valid once the block is full.
     top: Bucket,
-    /// Base of the buckets: the median of the first few values, so that one outlier does not coarsen the rest. `None`
-    /// until a bucket contains a value.
+    /// Base of the buckets, which is the median of the first few values, so that one outlier does not coarsen the rest.
+    /// `None` until a bucket contains a value.
     base: Option<T>,
     flags: FlagBlock,
-    /// Spread of the whole block, if the block is full and contains a value.
+    /// Spread of the whole block if the block is full and contains a value.
     spread: Option<Box<Spread<T>>>,
 }
 
@@ -118,8 +118,8 @@ impl<T: Number> Block<T> {
         self.values.len()
     }
 
-    /// Appends `values`, which must fit, with their flags (empty: no flags). A value that is not a finite number is
-    /// marked as bad.
+    /// Appends `values`, which must fit, with their flags; empty flags mean that none are set. A value that is not a
+    /// finite number is marked as bad.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags]) {
         let start = self.values.len();
         self.values.extend_from_slice(values);
@@ -149,14 +149,14 @@ impl<T: Number> Block<T> {
         &self.flags
     }
 
-    /// Returns `known`, widened to include the values in `range`. Values from samples are exact, those from buckets are
-    /// rounded outward; only parts that can widen the result are examined.
+    /// Returns `known`, widened to include the values in `range`. Values from samples are exact and values from buckets
+    /// are rounded outward. Only parts that can widen the result are examined.
     pub(super) fn widen(&self, known: Extent, range: Range<usize>) -> Extent {
         let Some(base) = self.base else { return known.with(self.scan(range)) };
         let mut search = Search {
             samples: Extent::EMPTY,
             found: Bucket::EMPTY,
-            enough: Bucket { low: base.within_up(known.min), high: base.within_down(known.max) },
+            enough: Bucket { low: base.distance_rounded_up(known.min), high: base.distance_rounded_down(known.max) },
         };
         if range == (0..BLOCK) {
             search.find(self.top);
@@ -173,7 +173,7 @@ impl<T: Number> Block<T> {
         known.with(Extent { min: base.at_most(search.found.low), max: base.at_least(search.found.high) })
     }
 
-    /// Returns the count, mean and deviation of the samples in `range`, computed from the samples themselves.
+    /// Returns the count, mean and deviation of the samples in `range`, calculated from the samples themselves.
     pub(super) fn spread(&self, range: Range<usize>) -> Option<Spread<T>> {
         if range == (0..BLOCK) {
             return self.spread.as_deref().copied();
@@ -247,16 +247,16 @@ impl<T: Number> Block<T> {
                 }
             }
         }
-        self.raise(finest, second, before);
-        self.raise(second, third, before);
+        self.fill_level(finest, second, before);
+        self.fill_level(second, third, before);
         if self.values.len() == BLOCK {
             self.top = Bucket::of(self.buckets.get(..FAN).unwrap_or_default());
             self.spread = self.spread_of(0..BLOCK).map(Box::new);
         }
     }
 
-    /// Fills the newly completed buckets of the level `upper` from those of the level below.
-    fn raise(&mut self, lower: Level, upper: Level, before: usize) {
+    /// Fills the newly completed buckets of the level `upper` from the buckets of the level `lower`.
+    fn fill_level(&mut self, lower: Level, upper: Level, before: usize) {
         let (first, end) = (before / upper.size, self.values.len() / upper.size);
         let (uppers, lowers) = self.buckets.split_at_mut(lower.start);
         let (groups, _) = lowers.get(first * FAN..end * FAN).unwrap_or_default().as_chunks::<FAN>();
@@ -272,8 +272,8 @@ impl<T: Number> Block<T> {
         self.buckets.get(level.start + number).copied().filter(|_| complete)
     }
 
-    /// Searches `range` for values that widen the result: first in the buckets of the coarsest level inside the range,
-    /// then in the remainder on both sides, which a single bucket may rule out.
+    /// Searches `range` for values that widen the result. Buckets of the coarsest level inside the range are searched
+    /// first, then the remainder on both sides, which a single bucket may rule out.
     fn search(&self, levels: &[Level], range: Range<usize>, search: &mut Search) {
         let Some((level, finer)) = levels.split_first() else {
             search.samples = search.samples.with(self.scan(range));
@@ -326,7 +326,7 @@ impl<T: Number> Block<T> {
 struct Search {
     samples: Extent,
     found: Bucket,
-    /// Values within this bucket do not widen the result.
+    /// Bucket whose values do not widen the result.
     enough: Bucket,
 }
 

@@ -11,9 +11,9 @@ pub struct Flags(u8);
 
 impl Flags {
     pub const NONE: Flags = Flags(0);
-    /// Samples are missing before the flagged sample, which must not be joined to the previous one by a line.
+    /// Samples are missing before the flagged sample, so no line may join it to the previous sample.
     pub const BREAK: Flags = Flags(1);
-    /// The value is invalid: it is excluded everywhere, and the line is broken. Implies [`BREAK`](Flags::BREAK).
+    /// The value is invalid, so it is excluded everywhere and the line is broken. Implies [`BREAK`](Flags::BREAK).
     pub const BAD: Flags = Flags(2);
     /// The device has issued a warning; the value is valid.
     pub const WARNING: Flags = Flags(4);
@@ -41,7 +41,7 @@ impl BitOrAssign for Flags {
     }
 }
 
-/// Number of samples that share one summary; a block has as many groups as a `u64` has bits.
+/// Number of samples that share one summary. A block has as many groups as a `u64` has bits.
 const GROUP: usize = BLOCK / u64::BITS as usize;
 
 const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
@@ -51,7 +51,7 @@ const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
 #[derive(Debug, Default)]
 pub(super) struct FlagBlock {
     any: Flags,
-    /// One bit per group for each kind of flag, set if the group contains that flag.
+    /// One bitmap per kind of flag, with one bit per group that is set if the group contains the flag.
     groups: [u64; KINDS.len()],
     kept: Option<Box<[Flags; BLOCK]>>,
 }
@@ -109,7 +109,7 @@ impl FlagBlock {
         found
     }
 
-    /// Returns whether the summary of the group already proves that sample `at` has a valid value.
+    /// Returns whether the group summary alone proves that sample `at` has a valid value.
     pub(super) fn is_surely_good(&self, at: usize) -> bool {
         !self.of_groups(at / GROUP..at / GROUP + 1).contains(Flags::BAD)
     }

@@ -32,7 +32,7 @@ use super::Time;
 /// Number of samples in a block, the unit of allocation and eviction.
 const BLOCK: usize = 4096;
 
-/// Number of samples per bucket of the pyramid, and of buckets per bucket of the next level.
+/// Number of samples per lowest-level pyramid bucket, and of buckets per bucket of the next level.
 const FAN: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,10 +91,10 @@ impl<'a> Part<'a> {
 /// Reason why a batch was refused as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refused {
-    /// The number of columns, values or flags does not match, or a column has values of another kind.
+    /// The number of columns, values or flags does not match, or a column has values of the wrong kind.
     #[error("the batch does not have the history's columns")]
     Shape,
-    /// A sample is earlier than the previous one.
+    /// A sample is earlier than its predecessor.
     #[error("the time goes back at sample {at} of the batch")]
     TimeGoesBack {
         /// Index of the sample in the batch.
@@ -118,7 +118,7 @@ pub struct History {
     columns: Vec<Column>,
     /// Number of blocks to keep, including the one being filled.
     keep: usize,
-    /// Longest pause in nanoseconds across which samples are joined, if limited.
+    /// Longest pause in nanoseconds across which samples are joined, or `None` for no limit.
     longest_pause: Option<i64>,
     broken: bool,
 }
@@ -141,7 +141,8 @@ impl History {
         History { times: Times::new(keep), columns, keep, longest_pause: None, broken: false }
     }
 
-    /// Sets the pause in nanoseconds beyond which samples are missing and the line is not joined.
+    /// Sets the longest pause in nanoseconds; after a longer pause, samples are considered missing and the line is
+    /// broken.
     #[must_use]
     pub fn with_longest_pause(self, nanoseconds: i64) -> Self {
         History { longest_pause: Some(nanoseconds), ..self }
@@ -151,7 +152,7 @@ impl History {
         self.broken = true;
     }
 
-    /// Appends samples: their times, none earlier than the previous one, and a part of equal length for every column.
+    /// Appends samples, given as non-decreasing times and one part of equal length per column.
     pub fn append(&mut self, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
         let fits = |(column, part): (&Column, &Part<'_>)| column.kind() == part.kind() && part.fits(times.len());
         if parts.len() != self.columns.len() || !self.columns.iter().zip(parts).all(fits) {
@@ -185,7 +186,7 @@ impl History {
         self.times.first()..self.times.end()
     }
 
-    /// Returns the time of the oldest sample that will remain after `more` further samples, or `None` if all present
+    /// Returns the time of the oldest sample left after `more` further samples are appended, or `None` if all current
     /// samples will have been evicted.
     pub fn oldest_after(&self, more: usize) -> Option<Time> {
         let blocks = self.times.end().saturating_add(more as u64).div_ceil(BLOCK as u64);
@@ -204,7 +205,7 @@ impl History {
         self.times.get(index)
     }
 
-    /// Returns the sample `index` of a column, or `None` if the sample is not stored.
+    /// Returns sample `index` of a column, or `None` if the sample is not stored.
     pub fn sample(&self, column: usize, index: u64) -> Option<Sample> {
         let time = self.times.get(index)?;
         let (value, flags) = match self.columns.get(column)? {
@@ -214,8 +215,8 @@ impl History {
         Some(Sample { index, time, value, flags })
     }
 
-    /// Returns the index of the sample nearest to `time`, the earlier one if two are equally near, or `None` without
-    /// samples.
+    /// Returns the index of the sample nearest to `time`, or `None` if there are no samples. The earlier sample wins a
+    /// tie.
     pub fn nearest(&self, time: Time) -> Option<u64> {
         let after = self.times.search(time);
         let before = after.checked_sub(1).and_then(|index| Some((index, self.times.get(index)?)));
@@ -260,8 +261,8 @@ impl Column {
         }
     }
 
-    /// Appends the values of `part` in `range`. Values of another kind are ignored; `History::append` has already
-    /// excluded them.
+    /// Appends the values of `part` in `range`. Values of the wrong kind are ignored; `History::append` has already
+    /// rejected them.
     fn append(&mut self, part: &Part<'_>, range: Range<usize>, keep: usize) {
         let flags = part.flags.get(range.clone()).unwrap_or_default();
         match (self, part.values) {

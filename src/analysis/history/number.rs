@@ -1,10 +1,10 @@
 //! The two kinds of stored numbers, and their outward rounding, so that a range never becomes too small.
 
-/// Value as appended, without rounding.
+/// Sample value exactly as appended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     Real(f64),
-    /// A count, for example the steps of a position.
+    /// A count, for example a position in steps.
     Whole(i64),
 }
 
@@ -21,11 +21,11 @@ impl Value {
 pub(super) trait Number: Copy + PartialOrd {
     fn is_number(self) -> bool;
 
-    /// Returns the distance from `base` for which [`at_most`](Number::at_most) yields a value not above the number, and
-    /// hardly below it; −∞ if the distance exceeds the range of `f32`.
+    /// Returns a distance from `base` for which [`at_most`](Number::at_most) yields a value at or slightly below the
+    /// number, or −∞ if the distance exceeds the range of `f32`.
     fn down(self, base: Self) -> f32;
 
-    /// Returns the distance from `base` for which [`at_least`](Number::at_least) yields a value not below the number;
+    /// Returns a distance from `base` for which [`at_least`](Number::at_least) yields a value not below the number, or
     /// +∞ if the distance exceeds the range of `f32`.
     fn up(self, base: Self) -> f32;
 
@@ -35,18 +35,18 @@ pub(super) trait Number: Copy + PartialOrd {
     /// Returns `self + distance`, rounded up if rounding is necessary.
     fn at_least(self, distance: f32) -> f64;
 
-    /// Returns a distance from `self` such that no value at or above that distance is below `known`; +∞ if none is
+    /// Returns a distance from `self` such that no value at or above that distance is below `known`, or +∞ if none is
     /// found.
-    fn within_up(self, known: f64) -> f32 {
+    fn distance_rounded_up(self, known: f64) -> f32 {
         let distance = (known - self.value().to_f64()) as f32;
         let candidates = [distance, distance.next_up(), distance.next_up().next_up()];
         let holds = |distance: &f32| distance.is_finite() && self.at_most(*distance) >= known;
         candidates.into_iter().find(holds).unwrap_or(f32::INFINITY)
     }
 
-    /// Returns a distance from `self` such that no value at or below that distance is above `known`; −∞ if none is
+    /// Returns a distance from `self` such that no value at or below that distance is above `known`, or −∞ if none is
     /// found.
-    fn within_down(self, known: f64) -> f32 {
+    fn distance_rounded_down(self, known: f64) -> f32 {
         let distance = (known - self.value().to_f64()) as f32;
         let candidates = [distance, distance.next_down(), distance.next_down().next_down()];
         let holds = |distance: &f32| distance.is_finite() && self.at_least(*distance) <= known;
@@ -56,10 +56,10 @@ pub(super) trait Number: Copy + PartialOrd {
     /// Returns `self − base`, rounded to nearest.
     fn minus(self, base: Self) -> f64;
 
-    /// Returns the greatest `f64` that is not above the number.
+    /// Returns the greatest `f64` not above the number.
     fn below(self) -> f64;
 
-    /// Returns the least `f64` that is not below the number.
+    /// Returns the least `f64` not below the number.
     fn above(self) -> f64;
 
     fn value(self) -> Value;
@@ -121,7 +121,7 @@ impl Number for f64 {
     }
 }
 
-/// Moves a finite `f32` up by the given number of steps to neighbouring values; −0 is one step below 0.
+/// Moves a finite `f32` up by the given number of representable values; −0 is one step below 0.
 fn moved(distance: f32, steps: i32) -> f32 {
     // With the bits of negative numbers inverted, the bit patterns are in numerical order.
     let ordered = |bits: i32| bits ^ ((bits >> 31) & i32::MAX);
@@ -129,7 +129,7 @@ fn moved(distance: f32, steps: i32) -> f32 {
     f32::from_bits(ordered(place).cast_unsigned())
 }
 
-/// Largest count up to which all counts are exact in `f32`.
+/// Limit up to which every count is exact in `f32`.
 const EXACT_F32: u64 = 1 << 24;
 
 /// Limit up to which the sum of two numbers is exact in `f64`.

@@ -10,8 +10,8 @@ use super::series::Series;
 use super::{Column, FAN, History};
 use crate::analysis::Time;
 
-/// Equal time steps, one per pixel column, whose edges are multiples of their width: a picture that scrolls at constant
-/// zoom keeps its columns.
+/// Grid of equal time steps, one per pixel column. Edges are multiples of the step, so that a picture scrolling at
+/// constant zoom keeps its pixel columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
     start: Time,
@@ -20,7 +20,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Creates the columns for the time from `from` until `to`, either `pixels` columns or one more.
+    /// Creates a grid of `pixels` or `pixels + 1` columns that covers the time from `from` to `to`.
     pub fn new(from: Time, to: Time, pixels: usize) -> Self {
         let span = i128::from(to.nanoseconds()) - i128::from(from.nanoseconds());
         let width = match i128::try_from(pixels) {
@@ -43,7 +43,7 @@ impl Grid {
         self.width
     }
 
-    /// Returns the start of pixel column `pixel`, inclusive, where the previous column ends.
+    /// Returns the start of pixel column `pixel`, which is also the end of the previous column.
     pub fn edge(&self, pixel: usize) -> Time {
         let edge = i128::from(self.start.nanoseconds()) + pixel as i128 * i128::from(self.width);
         Time::from_nanoseconds(i64::try_from(edge).unwrap_or(i64::MAX))
@@ -54,7 +54,7 @@ impl Grid {
 /// later are not included, and evicted samples are not drawn.
 #[derive(Clone, Debug)]
 pub struct GridCut {
-    /// Start of each pixel column, and end of the last one.
+    /// Starts of all pixel columns, followed by the end of the last one.
     edges: Vec<Edge>,
 }
 
@@ -78,8 +78,7 @@ pub struct Pixel {
     pub values: Option<Reduced>,
     /// Union of the samples' flags; [`BREAK`](Flags::BREAK) if the line is broken inside or before the pixel column.
     pub flags: Flags,
-    /// Whether a line leads from the last value of the previous pixel column to the first value of the column, without
-    /// a break in between.
+    /// Whether an unbroken line connects the last value of the previous pixel column to the first value of this one.
     pub joined: bool,
 }
 
@@ -88,40 +87,39 @@ pub struct Pixel {
 pub struct Reduced {
     /// First value, exact.
     pub first: f64,
-    /// Lower bound of the minimum, below the true value by at most 2⁻²² of the value range within the surrounding 4096
-    /// samples.
+    /// Lower bound of the minimum, at most 2⁻²² of the value range of the surrounding 4096 samples below the true
+    /// value.
     pub min: f64,
-    /// Upper bound of the maximum, above the true value by at most 2⁻²² of the value range within the surrounding 4096
-    /// samples.
+    /// Upper bound of the maximum, at most 2⁻²² of the value range of the surrounding 4096 samples above the true
+    /// value.
     pub max: f64,
     /// Last value, exact.
     pub last: f64,
 }
 
-/// Picture of a column: pixel columns that contain samples, in chronological order. A line goes through first, min, max
-/// and last of each. The nearest samples to the left and right are included, so that the line extends beyond both
-/// edges.
+/// Picture of a history column: the non-empty pixel columns in chronological order, each drawn through first, min, max
+/// and last. The nearest samples to the left and right are included, so that the line extends beyond both edges.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
     /// Pixel columns that contain samples, or single samples if `raw` is set.
     pub pixels: Vec<Pixel>,
-    /// Whether samples are so few that each has its own pixel and its own time.
+    /// Whether there are so few samples that each has its own pixel and its exact time.
     pub raw: bool,
 }
 
-/// Number of samples per pixel column up to which samples are included unchanged, which takes no more drawing than
-/// first, min, max and last.
+/// Number of samples per pixel column up to which samples are included unchanged; drawing them costs no more than
+/// drawing first, min, max and last.
 const FEW: u64 = 4;
 
-/// Divisor of a pixel column's width that limits how far the column may extend over its edge to begin with a bucket of
-/// the pyramid.
+/// Divisor of a pixel column's width that limits how far the column may extend before its edge to start at a
+/// pyramid bucket.
 const REACH: i64 = 16;
 /// Bucket sizes in samples, largest first.
 const BUCKETS: [u64; 3] = [(FAN * FAN * FAN) as u64, (FAN * FAN) as u64, FAN as u64];
 
 impl History {
-    /// Finds the samples of each pixel column. A column of many samples begins where a bucket of the pyramid does, up
-    /// to a sixteenth of its width before its edge; the result depends only on the samples and the edge.
+    /// Finds the samples of each pixel column. A column with many samples starts at a pyramid bucket, up to a sixteenth
+    /// of its width before its edge; the result depends only on the samples and the edge.
     pub fn cut(&self, grid: &Grid) -> GridCut {
         let edge = |pixel: usize| {
             let exact = self.times.search(grid.edge(pixel));
@@ -133,7 +131,7 @@ impl History {
         GridCut { edges: (0..=grid.pixels()).map(edge).collect() }
     }
 
-    /// Returns the start of a bucket in place of the first sample after an edge, if the bucket starts only slightly
+    /// Returns the start of a bucket instead of the first sample after an edge, if the bucket starts only slightly
     /// earlier.
     fn rounded(&self, exact: u64, grid: &Grid, pixel: usize) -> u64 {
         let earliest = grid.edge(pixel).plus(-(grid.width() / REACH));
@@ -178,7 +176,7 @@ impl<T: Number> Painter<'_, T> {
                 pixels.clone().map(|(from, to)| self.series.ends(from.index..to.index)).collect();
             for ((from, to), ends) in pixels.zip(ends) {
                 if let Some(ends) = ends {
-                    self.pixel(from, to, ends);
+                    self.paint_pixel(from, to, ends);
                 }
             }
         }
@@ -199,8 +197,8 @@ impl<T: Number> Painter<'_, T> {
         self.picture.pixels.push(Pixel { from: time, to: time, values, flags, joined });
     }
 
-    /// Adds the samples between two edges as one pixel; `ends` holds the first and last values.
-    fn pixel(&mut self, from: &Edge, to: &Edge, ends: (T, T)) {
+    /// Adds the samples between two edges as one pixel column; `ends` holds the first and last values.
+    fn paint_pixel(&mut self, from: &Edge, to: &Edge, ends: (T, T)) {
         let range = from.index..to.index;
         let (Some(start), Some(end)) = (from.after, to.before) else { return };
         if self.series.is_plain(range.clone()) {
@@ -225,7 +223,7 @@ impl<T: Number> Painter<'_, T> {
         self.picture.pixels.push(pixel);
     }
 
-    /// Returns whether a line leads from the last valid sample to the sample `index`.
+    /// Returns whether a line connects the last valid sample to sample `index`.
     fn is_joined(&self, index: u64) -> bool {
         self.last.is_some_and(|last| !self.series.flags(last + 1..index + 1).contains(Flags::BREAK))
     }

@@ -22,7 +22,7 @@ impl<T: Number> Series<T> {
         Series { blocks: VecDeque::with_capacity(blocks), first: 0 }
     }
 
-    /// Appends `values`, which must fit into the newest block or begin a new one. At most `keep` blocks are kept.
+    /// Appends `values`, which must fit into the newest block or start a new one. At most `keep` blocks are kept.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags], keep: usize) {
         if self.blocks.back().is_none_or(|block| block.len() == BLOCK) {
             self.open(keep);
@@ -58,7 +58,7 @@ impl<T: Number> Series<T> {
     }
 
     /// Returns `known`, widened by the values of the samples in `range`, which must all be stored; see
-    /// [`Block::widen`]. Whole blocks come first, since they save most of the work on the rest.
+    /// [`Block::widen`]. Whole blocks are processed first, since they save most of the work on the rest.
     pub(super) fn widen(&self, known: Extent, range: Range<u64>) -> Extent {
         let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end - 1));
         let widen = |known: Extent, block: usize, range: Range<usize>| {
@@ -71,7 +71,7 @@ impl<T: Number> Series<T> {
         widen(widen(known, first, from..BLOCK), last, 0..to + 1)
     }
 
-    /// Returns whether no sample near `range` has a flag: a quick check that may return false although no sample in
+    /// Returns whether no sample near `range` has a flag. This quick check may return false although no sample in
     /// `range` has a flag.
     pub(super) fn is_plain(&self, range: Range<u64>) -> bool {
         let ((first, _), (last, _)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
@@ -92,7 +92,7 @@ impl<T: Number> Series<T> {
         self.parts(range).map(|(_, block, range)| block.spread(range)).fold(None, combine_spreads)
     }
 
-    /// Returns the first sample in `range` that has a value.
+    /// Returns the first sample in `range` that has a valid value.
     pub(super) fn first_good(&self, range: Range<u64>) -> Option<u64> {
         if !range.is_empty() && self.is_surely_good(range.start) {
             return Some(range.start);
@@ -100,7 +100,7 @@ impl<T: Number> Series<T> {
         self.parts(range).find_map(|(start, block, range)| Some(start + block.first_good(range)? as u64))
     }
 
-    /// Returns the last sample in `range` that has a value.
+    /// Returns the last sample in `range` that has a valid value.
     pub(super) fn last_good(&self, range: Range<u64>) -> Option<u64> {
         if !range.is_empty() && self.is_surely_good(range.end - 1) {
             return Some(range.end - 1);
@@ -108,8 +108,8 @@ impl<T: Number> Series<T> {
         self.parts(range).rev().find_map(|(start, block, range)| Some(start + block.last_good(range)? as u64))
     }
 
-    /// Returns whether the sample `index` is stored and has a valid value: a quick check that may return false although
-    /// the value is valid.
+    /// Returns whether sample `index` is stored and has a valid value. This quick check may return false although the
+    /// value is valid.
     fn is_surely_good(&self, index: u64) -> bool {
         let (block, at) = self.place(index);
         let has_it = |block: &&Block<T>| index >= self.first && at < block.len();
@@ -134,13 +134,13 @@ impl<T: Number> Series<T> {
         self.blocks.push_back(block);
     }
 
-    /// Returns the position of the block that contains the sample `index`, and the sample's index within the block.
+    /// Returns the position of the block that contains sample `index`, and the sample's index within that block.
     fn place(&self, index: u64) -> (usize, usize) {
         let at = index.saturating_sub(self.first) as usize;
         (at / BLOCK, at % BLOCK)
     }
 
-    /// Returns the blocks that overlap `range`, as far as samples are stored: index of the block's first sample, block,
+    /// Returns the blocks that overlap the stored part of `range`, each with the index of its first sample and the
     /// range within the block.
     fn parts(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &Block<T>, Range<usize>)> {
         let from = range.start.saturating_sub(self.first) as usize;

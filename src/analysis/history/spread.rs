@@ -3,7 +3,7 @@
 
 use super::number::Number;
 
-/// Count, mean, sum of squared deviations and range of some samples.
+/// Count, mean, sum of squared deviations and range of a set of samples.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spread<T> {
     pub(super) count: u64,
@@ -15,7 +15,7 @@ pub(super) struct Spread<T> {
 }
 
 impl<T: Number> Spread<T> {
-    /// Returns the spread of `values`, which must all be finite; `None` if `values` is empty.
+    /// Returns the spread of `values`, which must all be finite, or `None` if `values` is empty.
     pub(super) fn of(values: &[T]) -> Option<Self> {
         let base = *values.first()?;
         let (min, max) = extremes(values)?;
@@ -28,7 +28,7 @@ impl<T: Number> Spread<T> {
         Some(Spread { count: values.len() as u64, base, mean, squares, min, max })
     }
 
-    /// Returns the spread of both sets of samples together.
+    /// Returns the combined spread of both sets of samples.
     pub(super) fn with(self, other: Self) -> Self {
         let (own, others) = (self.count as f64, other.count as f64);
         let all = own + others;
@@ -51,8 +51,7 @@ pub(super) fn combine_spreads<T: Number>(one: Option<Spread<T>>, other: Option<S
     }
 }
 
-/// Returns the minimum and maximum of `values`, which must all be finite. Eight values are compared in parallel, as in
-/// the sums.
+/// Returns the minimum and maximum of `values`, which must all be finite. Eight values are compared in parallel.
 pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
     let (groups, rest) = values.as_chunks::<8>();
     let of_groups = groups.split_first().map(|(first, others)| {
@@ -63,18 +62,18 @@ pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
                 *most = larger_of(*most, *value);
             }
         }
-        (of_eight(least, smaller_of), of_eight(most, larger_of))
+        (reduce_eight(least, smaller_of), reduce_eight(most, larger_of))
     });
     let start = of_groups.or_else(|| rest.first().map(|first| (*first, *first)))?;
     Some(rest.iter().fold(start, |(least, most), value| (smaller_of(least, *value), larger_of(most, *value))))
 }
 
 pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
-    (of_eight(*values, smaller_of), of_eight(*values, larger_of))
+    (reduce_eight(*values, smaller_of), reduce_eight(*values, larger_of))
 }
 
-/// Combines values in pairs, so that no operation waits for the previous one.
-fn of_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, T) -> T) -> T {
+/// Reduces eight values pairwise, so that no operation has to wait for the previous one.
+fn reduce_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, T) -> T) -> T {
     choose(choose(choose(a, e), choose(b, f)), choose(choose(c, g), choose(d, h)))
 }
 
@@ -86,7 +85,7 @@ fn larger_of<T: Number>(one: T, other: T) -> T {
     if other > one { other } else { one }
 }
 
-/// Sums the terms in eight parallel sums, which takes a processor little more time than one.
+/// Sums the terms in eight parallel sums, which takes little more time than a single sum.
 fn sum<T: Number>(values: &[T], term: impl Fn(T) -> f64) -> f64 {
     let (groups, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];

@@ -24,7 +24,7 @@ pub struct Statistics {
 }
 
 impl History {
-    /// Returns the statistics of the samples `indices` of a column, or `None` if no sample has a valid value.
+    /// Returns the statistics of a column over the samples `indices`, or `None` if no sample has a valid value.
     pub fn statistics(&self, column: usize, indices: Range<u64>) -> Option<Statistics> {
         let all = self.all();
         let indices = indices.start.max(all.start)..indices.end.min(all.end);

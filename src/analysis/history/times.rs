@@ -5,11 +5,11 @@ use std::collections::VecDeque;
 use super::BLOCK;
 use crate::analysis::Time;
 
-/// Times of the samples, in blocks that begin and end with those of the values.
+/// Times of the samples, in blocks that match those of the values.
 #[derive(Debug)]
 pub(super) struct Times {
     blocks: VecDeque<Vec<Time>>,
-    /// First time of each block, stored contiguously for a quick search.
+    /// First time of each block, stored contiguously for fast search.
     starts: VecDeque<Time>,
     /// Absolute index of the oldest sample, a multiple of `BLOCK`.
     first: u64,
@@ -44,7 +44,7 @@ impl Times {
         self.blocks.get(at / BLOCK)?.get(at % BLOCK).copied()
     }
 
-    /// Appends `times`, which must fit into the newest block or begin a new one. At most `keep` blocks are kept.
+    /// Appends `times`, which must fit into the newest block or start a new one. At most `keep` blocks are kept.
     pub(super) fn append(&mut self, times: &[Time], keep: usize) {
         let Some(start) = times.first() else { return };
         if self.room() == 0 {

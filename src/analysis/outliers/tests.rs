@@ -59,8 +59,8 @@ fn a_single_spike_is_excluded_and_reported() {
     assert!((raw.amplitude_v - 0.5).abs() > 0.01, "{raw:?}");
 }
 
-/// 1 mV of noise on 100 000 samples: a parameter scatters by 1 mV·√(2/100 000) = 4.5 µV, r and α by twice that, as shares
-/// of 0.5 V; six of them.
+/// 1 mV of noise on 100 000 samples: a parameter scatters by 1 mV·√(2/100 000) = 4.5 µV, r and α by twice that, as
+/// shares of 0.5 V; six of them.
 #[test]
 fn spikes_in_a_long_capture_do_not_change_the_fit() {
     let mut capture = made(100_000, 100.0, 1e-3);

@@ -21,8 +21,8 @@ struct Made {
     cosine: Vec<f64>,
 }
 
-/// Returns samples of a motion given as periods at a share of the time, and a disturbance added to the angle of the signals
-/// in radians.
+/// Returns samples of a motion given as periods at a share of the time, and a disturbance added to the angle of the
+/// signals in radians.
 fn made(ellipse: &Ellipse, count: usize, motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64) -> f64) -> Made {
     let time: Vec<f64> = (0..count).map(|at| at as f64 / count as f64).collect();
     let angle = |t: &f64| TAU * motion(*t);
@@ -69,8 +69,8 @@ fn raw_errors_match_section_6() {
     assert!((first - 0.573).abs() < 1e-4 && second < 0.003, "{first} {second}");
 }
 
-/// Section 7: mean removed, the error of the reference runs from 353.9708° − 360° at 0° and so on; computed point by point
-/// with Python at 720 angles: 9.97087° peak to peak.
+/// Section 7: mean removed, the error of the reference runs from 353.9708° − 360° at 0° and so on; computed point by
+/// point with Python at 720 angles: 9.97087° peak to peak.
 #[test]
 fn the_reference_error_is_found_and_corrected() {
     let told = made(&REFERENCE, 360, |t| t, |_| 0.0).analysed().unwrap();
@@ -90,8 +90,8 @@ fn the_reference_error_is_found_and_corrected() {
     assert!(told.error.corrected_pp_deg < 1e-9);
 }
 
-/// An error of the angle of 0.3° at the fourth harmonic is in the raw and in the corrected curve, with noise of 1 mV in 0.5
-/// V: 0.115° per sample, of which an amplitude from n samples keeps 0.115°·√(2/n).
+/// An error of the angle of 0.3° at the fourth harmonic is in the raw and in the corrected curve, with noise of 1 mV in
+/// 0.5 V: 0.115° per sample, of which an amplitude from n samples keeps 0.115°·√(2/n).
 #[test]
 fn harmonics_are_not_corrected() {
     for (count, periods) in [(2000, 1.0), (5000, 17.3), (200_000, 999.0)] {

@@ -10,14 +10,12 @@ pub struct PortEntry {
     pub description: String,
     pub used: bool,
     /// Whether the port currently exists. The system lists it, or its path exists, as for a pseudo-terminal, which is
-    /// never
-    /// listed. A previously used port may have been unplugged.
+    /// never listed. A previously used port may have been unplugged.
     pub listed: bool,
 }
 
 /// Returns previously used ports, latest first, then USB adapters, then all others. `links` are the previously used
-/// links, latest
-/// first; `exists` checks a path that the system does not list.
+/// links, latest first; `exists` checks a path that the system does not list.
 pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str) -> bool) -> Vec<PortEntry> {
     let mut offers: Vec<PortEntry> = Vec::new();
     for url in links.iter().filter_map(|link| link.parse::<LinkUrl>().ok()) {

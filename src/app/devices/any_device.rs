@@ -26,7 +26,7 @@ impl AnyDevice {
         (self as &mut dyn Any).downcast_mut()
     }
 
-    /// Returns the number of the session in the studio.
+    /// Returns the session number of the device in the studio.
     pub fn id(&self) -> SessionId {
         self.state().id
     }
@@ -133,7 +133,7 @@ impl AnyDevice {
         }
     }
 
-    /// Returns whether minutes of a recording are not exported.
+    /// Returns whether minutes of a recording have not been exported.
     pub(in crate::app) fn has_recorded_much(&self) -> bool {
         self.recorders().into_iter().any(|recorder| recorder.unsaved() >= MUCH)
     }
@@ -142,7 +142,7 @@ impl AnyDevice {
         self.state().suggested_file()
     }
 
-    /// Marks that a save has led to a question, so that another one may begin.
+    /// Records that a save is waiting for an answer from the user, so that another save may begin.
     pub(in crate::app) fn save_waits(&mut self) {
         self.state_mut().is_saving = false;
     }

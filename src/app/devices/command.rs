@@ -14,7 +14,7 @@ pub enum DeviceCommand {
     Read,
     AskSave,
     Review,
-    /// Read the position all the time, or no more.
+    /// Start polling the position, or stop polling.
     Poll(Option<Duration>),
     /// Read the position once.
     ReadPosition,

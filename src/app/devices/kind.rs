@@ -22,10 +22,10 @@ use crate::worker::OpenError;
 
 /// A kind of device, implemented once per device folder.
 pub trait DeviceType: DeviceModel + Sized {
-    /// Entry for the list of kinds.
+    /// Entry in the list of device kinds.
     const KIND: &'static dyn DeviceKind = &KindOf::<Self>(PhantomData);
 
-    /// Name of the bus, which is the same in every language.
+    /// Name of the bus, identical in every language.
     const BUS: &'static str;
 
     /// Profile in which a device of this kind is saved.
@@ -34,10 +34,10 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Type of the form in the connection dialog.
     type Form: FormModel;
 
-    /// Tables required to read profiles of this kind, in addition to the file.
+    /// Tables required in addition to the file to read profiles of this kind.
     type Tables: Send + 'static;
 
-    /// Checks whether a link can lead to a device of this kind, as far as possible without opening it.
+    /// Checks whether a link can lead to a device of this kind, as far as possible without opening the link.
     ///
     /// # Errors
     /// Returns the reason why it cannot.
@@ -52,7 +52,8 @@ pub trait DeviceType: DeviceModel + Sized {
         false
     }
 
-    /// Creates a device about which nothing is known except the opened profile, if any, and the tables for reading it.
+    /// Creates a device about which nothing is known except the opened profile, if any, and the tables for reading that
+    /// profile.
     fn begin(
         session: Session<Self::Device>,
         profile: Option<(&Self::Profile, Self::Tables)>,
@@ -64,7 +65,7 @@ pub trait DeviceType: DeviceModel + Sized {
         Self::begin(Session::at_link(id, url, services.world.kinds), None, services)
     }
 
-    /// Reads the tables that its profiles require. Runs on a task thread.
+    /// Reads the tables that profiles of this kind require. Runs on a task thread.
     fn tables(store: &Store) -> Self::Tables;
 
     /// Creates an offline device from a profile.
@@ -87,20 +88,20 @@ pub trait DeviceType: DeviceModel + Sized {
     }
 
     /// Creates a profile that has not been saved to a file, or returns `None` if profiles of this kind only come from
-    /// devices. `is_taken` tells whether a file name is in use.
+    /// devices. `is_taken` returns whether a file name is in use.
     fn new_profile(_id: SessionId, _is_taken: &dyn Fn(&Path) -> bool, _services: &mut Services) -> Option<Self> {
         None
     }
 }
 
-/// Puts a profile on the desk.
+/// A function that opens a profile in a session.
 pub(crate) type OpenProfile = Box<dyn FnOnce(SessionId, ProfileFile, Document, &mut Services) -> Box<AnyDevice> + Send>;
 
 /// Object-safe interface of a kind of device, used by the studio. Implemented for every [`DeviceType`].
 pub trait DeviceKind: Sync {
     /// Returns the tab in which devices of this kind are shown.
     fn tab(&self) -> Tab;
-    /// Returns the name of the bus, which is the same in every language.
+    /// Returns the name of the bus, which is identical in every language.
     fn bus(&self) -> &'static str;
     /// Returns the keyword for this kind in profiles and on the command line.
     fn word(&self) -> &'static str;
@@ -141,7 +142,7 @@ pub trait DeviceKind: Sync {
     ) -> Option<Box<AnyDevice>>;
 }
 
-/// The adapter from [`DeviceType`] to [`DeviceKind`].
+/// Adapter from [`DeviceType`] to [`DeviceKind`].
 struct KindOf<M>(PhantomData<fn() -> M>);
 
 impl<M: DeviceType> DeviceKind for KindOf<M> {

@@ -22,7 +22,7 @@ use crate::worker;
 
 type Job<T> = <<T as HasSession>::Device as worker::Device>::Job;
 
-/// State of a device or a profile, with all data known about it.
+/// The state of a device or a profile, with all data known about it.
 pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// Tab in which the device is shown.
     const TAB: Tab;
@@ -33,7 +33,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// Results of the tasks that a device starts.
     type Done: Any + Send;
 
-    /// Returns the preparation of a session before it moves to its thread.
+    /// Returns the function that prepares a session before it moves to its thread.
     fn prepare(&self, _world: &Environment) -> Prepare<Self::Device> {
         Box::new(|_| ())
     }
@@ -109,12 +109,12 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         step(self.pending_mut());
     }
 
-    /// Asks for the file in which to save a profile.
+    /// Asks the user for the file in which to save a profile.
     fn ask_where_to_save(&mut self, services: &mut Services) {
         self.session().ask_where_to_save(services);
     }
 
-    /// Returns whether positions can be streamed, at thousands of samples per second.
+    /// Returns whether positions can be streamed at thousands of samples per second.
     fn streams(&self) -> bool {
         false
     }
@@ -161,7 +161,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.memory()?.wanted_body()
     }
 
-    /// Returns the profile to use in comparisons: with the edits of the user, or else from the last reading. `None` if
+    /// Returns the profile to use in comparisons, which is the edited one or else the last one read, or `None` if
     /// nothing has been read.
     ///
     /// # Errors
@@ -170,11 +170,11 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.wanted_body().map(Ok).or_else(|| self.memory()?.known_body())
     }
 
-    /// Adopts a profile: opens the review of a write, or edits the layout to match.
+    /// Adopts a profile by opening the review of a write or by editing the layout to match.
     ///
     /// # Errors
     /// The profile belongs to another kind of device.
-    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+    fn adopt_body(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
         self.with_memory(services, |memory, services| memory.restore(body, services)).unwrap_or(Ok(()))
     }
 
@@ -188,12 +188,12 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.memory().is_some_and(DeviceMemory::is_savable)
     }
 
-    /// Returns the source of sine and cosine, or `None` for a kind without analogue signals.
+    /// Returns the source of sine and cosine signals, or `None` for a kind without analogue signals.
     fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         None
     }
 
-    /// Returns the source of sine and cosine, mutably.
+    /// Returns the source of sine and cosine signals, mutably.
     fn sine_cosine_mut(&mut self) -> Option<&mut dyn SineCosineSource> {
         None
     }
@@ -214,7 +214,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     }
 }
 
-/// Preparation of a session before it moves to its thread.
+/// A function that prepares a session before it moves to its thread.
 pub(crate) type Prepare<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
 
 /// Resources that an action may use in addition to the device.
@@ -229,7 +229,7 @@ impl<'a> ActContext<'a> {
         ActContext { services, others, next: Vec::new() }
     }
 
-    /// Sends a further command to the same device once the action is done.
+    /// Queues another command for the same device, to be sent once the action is done.
     pub(crate) fn then(&mut self, command: DeviceCommand) {
         self.next.push(command);
     }
@@ -248,25 +248,25 @@ impl<'a> ActContext<'a> {
     }
 }
 
-/// Motion requested from this window. STOP and key release act through this interface only, never through an action of
-/// a kind.
+/// Control of motion requested in this window. STOP and key release act only through this interface, never through an
+/// action of a device kind.
 pub trait MotionControl {
     /// Stops all motion.
     fn stop(&mut self);
 
-    /// Ends every motion that lasts only while a button is held: jogging, and running without an end.
+    /// Ends every motion that lasts only while a button is held, such as jogging and running without an end.
     fn let_go(&mut self);
 
     /// Returns whether a drive is moving or about to move.
     fn is_moving(&self) -> bool;
 
     /// Returns whether a drive is moving, or about to move, at the request of this window.
-    fn moves_by_hand(&self) -> bool;
+    fn is_turned_by_hand(&self) -> bool;
 
     /// Returns whether a motion requested in this window has not ended yet.
     fn is_under_way(&self) -> bool;
 
-    /// Returns whether this window has control of the drives; values then arrive without being requested.
+    /// Returns whether this window has control of the drives. If it does, values arrive without being requested.
     fn is_in_control(&self) -> bool;
 }
 
@@ -287,7 +287,7 @@ pub trait DeviceMemory {
     /// Closes the review; a write in progress continues.
     fn close_review(&mut self);
 
-    /// Returns the edited profile, or `None` if this is a device.
+    /// Returns the edited profile, or `None` for a device.
     fn wanted_body(&self) -> Option<Body>;
 
     /// Returns the profile of the last reading, or `None` if nothing has been read.
@@ -311,10 +311,10 @@ pub trait DeviceMemory {
     /// Reads a backup that is to be restored.
     fn read_backup(&mut self, path: PathBuf, services: &mut Services);
 
-    /// Stores the lists of backups and writes; ignores those of another device.
+    /// Stores the lists of backups and writes, ignoring lists of another device.
     fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory);
 
-    /// Handles a backup that was read, or the error; ignores those of another device.
+    /// Handles a backup that was read, or the error, ignoring backups of another device.
     fn take_backup(
         &mut self,
         of: &DeviceKey,

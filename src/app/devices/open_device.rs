@@ -23,7 +23,7 @@ use crate::store::FileError;
 /// A device or profile of any kind.
 pub type AnyDevice = dyn OpenDevice;
 
-/// The interface common to all devices. A kind implements `DeviceModel`; this interface follows from it.
+/// Interface common to all devices. A kind implements `DeviceModel`, from which this interface follows.
 pub trait OpenDevice: Any {
     /// Returns the state common to all sessions.
     fn state(&self) -> &SessionState;
@@ -37,7 +37,7 @@ pub trait OpenDevice: Any {
     fn is_connected(&self) -> bool;
     /// Returns whether a job is running.
     fn is_busy(&self) -> bool;
-    /// Returns whether its memory is being changed.
+    /// Returns whether the memory of the device is being changed.
     fn is_writing(&self) -> bool;
     /// Returns whether values are polled.
     fn is_polling(&self) -> bool;
@@ -45,15 +45,15 @@ pub trait OpenDevice: Any {
     fn is_active(&self) -> bool;
     /// Returns whether the device is connected and idle, so that a job may start.
     fn is_ready(&self) -> bool;
-    /// Returns whether the device can be read again; also true for a device that did not reply, and for a profile.
+    /// Returns whether the device can be read again. This includes a device that did not reply, and a profile.
     fn is_readable(&self) -> bool;
     /// Returns whether a profile can currently be saved.
     fn is_savable(&self) -> bool;
-    /// Returns whether positions can be streamed, at thousands of samples per second.
+    /// Returns whether positions can be streamed at thousands of samples per second.
     fn streams(&self) -> bool;
     /// Returns the running job, if any.
     fn running(&self) -> Option<JobProgress>;
-    /// Returns whether edits have not been written.
+    /// Returns whether any edits have not been written.
     fn is_dirty(&self) -> bool;
     /// Returns the number of edits that have not been written.
     fn edits(&self) -> usize;
@@ -63,7 +63,7 @@ pub trait OpenDevice: Any {
     fn can_redo(&self) -> bool;
     /// Returns whether edits are restored after the device has been closed.
     fn keeps_edits(&self) -> bool;
-    /// Returns whether every edit is on disk, as far as the disk accepts it.
+    /// Returns whether every edit has been saved to disk, as far as the disk accepts it.
     fn is_draft_kept(&self) -> bool;
     /// Returns the number of samples that were dropped before they could be recorded.
     fn dropped(&self) -> u64;
@@ -75,7 +75,7 @@ pub trait OpenDevice: Any {
     fn recorders(&self) -> Vec<&Recorder>;
     #[doc(hidden)]
     fn recorders_mut(&mut self) -> Vec<&mut Recorder>;
-    /// Returns the source of sine and cosine, or `None` for a kind without analogue signals.
+    /// Returns the source of sine and cosine signals, or `None` for a kind without analogue signals.
     fn sine_cosine(&self) -> Option<&dyn SineCosineSource>;
     #[doc(hidden)]
     fn sine_cosine_mut(&mut self) -> Option<&mut dyn SineCosineSource>;
@@ -106,7 +106,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>>;
     #[doc(hidden)]
-    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
+    fn adopt_body(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
     #[doc(hidden)]
     fn take_link(&mut self, url: LinkUrl);
     #[doc(hidden)]
@@ -305,8 +305,8 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::comparable_body(self)
     }
 
-    fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
-        DeviceModel::take_over(self, body, services)
+    fn adopt_body(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {
+        DeviceModel::adopt_body(self, body, services)
     }
 
     fn take_link(&mut self, url: LinkUrl) {

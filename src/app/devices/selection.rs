@@ -28,8 +28,8 @@ impl Selection {
         self.last = Some(id);
     }
 
-    /// Removes a device; `left` are the remaining ones. Its tab then shows the device opened last; the device shown
-    /// last becomes that of the last tab.
+    /// Removes a device, where `left` are the remaining ones. Its tab then shows the device opened last, and the device
+    /// shown last becomes that of the last tab.
     pub(in crate::app) fn remove(&mut self, kinds: Kinds, left: &[Box<AnyDevice>], id: SessionId) {
         for (tab, shown) in &mut self.by_tab {
             if *shown == id

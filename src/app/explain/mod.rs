@@ -58,8 +58,7 @@ pub fn open(error: &OpenError) -> Text {
 }
 
 /// Explains why a link could not be opened, including the case that no thread could be started. `open` supplies the
-/// explanation
-/// for the kind of device.
+/// explanation for the kind of device.
 pub fn open_failed(failed: &OpenFailure, open: impl Fn(&OpenError) -> Text) -> Text {
     match failed {
         OpenFailure::Link(error) => open(error),

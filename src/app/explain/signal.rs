@@ -144,7 +144,7 @@ pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
         }
         FindingKind::Interference { frequency_hz, volts, share, common } => {
             let id = if common { "diagnosis.interference_common" } else { "diagnosis.interference" };
-            hertz(millivolts(id, volts, share), frequency_hz)
+            with_frequency(millivolts(id, volts, share), frequency_hz)
         }
         FindingKind::Noise { volts, share } => millivolts("diagnosis.noise", volts, share),
         FindingKind::Harmonics { order, share } => Text::new("diagnosis.harmonics")
@@ -181,10 +181,10 @@ pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
         }
         FindingKind::NoiseRose { from_v, to_v } => changed("diagnosis.noise_rose", from_v * 1e3, to_v * 1e3, 1),
         FindingKind::InterferenceRose { frequency_hz, from_v: 0.0, to_v, .. } => {
-            hertz(Text::new("diagnosis.interference_new").with_number("to", to_v * 1e3, 1), frequency_hz)
+            with_frequency(Text::new("diagnosis.interference_new").with_number("to", to_v * 1e3, 1), frequency_hz)
         }
         FindingKind::InterferenceRose { frequency_hz, from_v, to_v, .. } => {
-            hertz(changed("diagnosis.interference_rose", from_v * 1e3, to_v * 1e3, 1), frequency_hz)
+            with_frequency(changed("diagnosis.interference_rose", from_v * 1e3, to_v * 1e3, 1), frequency_hz)
         }
         FindingKind::AmplitudeChanged { from_v, to_v } => {
             changed("diagnosis.amplitude_changed", 2.0 * from_v, 2.0 * to_v, 3)
@@ -192,7 +192,7 @@ pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
     }
 }
 
-pub fn untold(untold: ComparisonObstacle) -> Text {
+pub fn comparison_obstacle(untold: ComparisonObstacle) -> Text {
     Text::new(match untold {
         ComparisonObstacle::NoEllipseBefore => "compare.no_ellipse_before",
         ComparisonObstacle::NoEllipseAfter => "compare.no_ellipse_after",
@@ -200,7 +200,7 @@ pub fn untold(untold: ComparisonObstacle) -> Text {
     })
 }
 
-fn hertz(text: Text, frequency_hz: f64) -> Text {
+fn with_frequency(text: Text, frequency_hz: f64) -> Text {
     // Users look for a round number: four digits are enough above 1 kHz.
     text.with_number("hertz", frequency_hz, if frequency_hz < 1_000.0 { 1 } else { 0 })
 }
@@ -280,16 +280,16 @@ mod tests {
         assert_eq!(
             said(drive),
             [
-                "Interference of 12.3 mV (2.5 % of the amplitude) at 8000 Hz is in phase on both channels, coupled in through \
-                 the screen or the ground. Connect the screen at both ends.",
-                "Eine Störung von 12,3 mV (2,5 % der Amplitude) mit 8000 Hz ist in beiden Kanälen gleichphasig, eingekoppelt \
-                 über Schirm oder Masse. Den Schirm beidseitig auflegen.",
+                "Both channels carry interference of 12.3 mV (2.5 % of the amplitude) at 8000 Hz in phase. It enters through \
+                 the cable screen or the ground. Connect the cable screen at both ends.",
+                "Beide Kanäle führen eine gleichphasige Störung von 12,3 mV (2,5 % der Amplitude) mit 8000 Hz. Sie wird über \
+                 Schirm oder Masse eingekoppelt. Den Schirm beidseitig auflegen.",
             ]
         );
         let dead = FindingKind::Dead { channel: Channel::Sine, stuck: Stuck::Ground(Wire::Refsin) };
-        assert!(said(dead)[1].starts_with("Der Sinus hat kein Signal: REFSIN liegt auf Masse."));
+        assert!(said(dead)[1].starts_with("Der Sinus hat kein Signal, weil REFSIN auf Masse liegt."));
         let level = FindingKind::Level { wire: Wire::Refcos, volts: 3.2, ok_v: (2.375, 2.625) };
-        assert!(said(level)[0].contains("3.20 V, outside 2.375 … 2.625 V"));
+        assert!(said(level)[0].contains("3.20 V; the permitted range is 2.375 to 2.625 V"));
         let harmonics = FindingKind::Harmonics { order: 4, share: 0.02 };
         assert!(
             said(harmonics)[0]
@@ -306,13 +306,16 @@ mod tests {
         assert_eq!(
             said(Quantity::GainRatio, 0.1234),
             [
-                "Gain ratio, cosine to sine: 0.123 is outside 0.2 … 5.",
-                "Verstärkungsverhältnis Kosinus zu Sinus: 0,123 liegt außerhalb von 0,2 … 5."
+                "Gain ratio of cosine to sine: 0.123 is outside the range from 0.2 to 5.",
+                "Verstärkungsverhältnis Kosinus zu Sinus: 0,123 liegt außerhalb des Bereichs von 0,2 bis 5."
             ]
         );
         assert_eq!(
             said(Quantity::Amplitude, 3.0),
-            ["Amplitude: 3 is outside 0 … 2 V.", "Amplitude: 3 liegt außerhalb von 0 … 2 V."]
+            [
+                "Amplitude: 3 is outside the range from 0 to 2 V.",
+                "Amplitude: 3 liegt außerhalb des Bereichs von 0 bis 2 V."
+            ]
         );
         assert_eq!(
             said(Quantity::Periods, 16.5)[0],

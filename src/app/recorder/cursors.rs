@@ -22,20 +22,20 @@ impl Cursor {
     }
 }
 
-/// Readings of the cursors on a line, in its unit; `None` without a valid sample.
+/// Cursor readings on a line in its unit, or `None` where there is no valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     pub a: Option<f64>,
     pub b: Option<f64>,
     pub difference: Option<f64>,
-    /// Mean, minimum, maximum and standard deviation of the samples between the cursors, including both.
+    /// Mean, minimum, maximum and standard deviation of the samples from one cursor to the other, inclusive.
     pub between: Option<CursorStatistics>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CursorStatistics {
     pub count: u64,
-    /// Samples without a value to believe.
+    /// Number of samples without a valid value.
     pub bad: u64,
     pub mean: f64,
     pub min: f64,
@@ -51,12 +51,12 @@ impl Recorder {
         }
     }
 
-    /// Nanoseconds from A to B.
+    /// Returns the distance from cursor A to cursor B in nanoseconds.
     pub fn cursor_distance(&self) -> Option<i64> {
         Some(self.cursor(Cursor::B)?.nanoseconds_since(self.cursor(Cursor::A)?))
     }
 
-    /// Returns the readings of the cursors on a line, or `None` without a cursor.
+    /// Returns the cursor readings on a line, or `None` if no cursor is set.
     pub fn measure(&self, line: &Series) -> Option<Measured> {
         let [a, b] = self.cursors;
         if a.is_none() && b.is_none() {
@@ -91,9 +91,9 @@ impl Recorder {
         })
     }
 
-    /// Returns the raw sample of a line nearest to a point in time, if it was recorded then.
+    /// Returns the raw sample of a line nearest to a point in time, or `None` if nothing was recorded then.
     pub fn at(&self, line: &Series, time: Time) -> Option<Sample> {
-        /// Divisor of the visible range by which a cursor may be outside the first or last sample.
+        /// Divisor of the visible range that gives how far a cursor may be from the first or last sample.
         const BESIDE: i64 = 200;
         let history = self.history(line)?;
         let all = history.all();
@@ -102,8 +102,8 @@ impl Recorder {
         (time >= first.plus(-beside) && time <= last.plus(beside)).then(|| self.nearest(line, time)).flatten()
     }
 
-    /// Moves a cursor to the nearest sample, so that time and value belong together; where nothing was recorded, it
-    /// stays at the given time.
+    /// Moves a cursor to the nearest sample, so that time and value belong together. If nothing was recorded there, the
+    /// cursor stays at the given time.
     pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<Time>) {
         let nearest = |time: Time| {
             let samples = self.visible_series().filter_map(|line| self.at(line, time)).map(|sample| sample.time);

@@ -5,8 +5,8 @@ use super::{LineId, Recorder, Scale, Series};
 use crate::app::Text;
 
 impl Recorder {
-    /// Continues a line with other samples, in its colour and, if possible, its unit. The old line ends under the given
-    /// name.
+    /// Continues a line with new samples, keeping its colour and, if possible, its unit. The old line ends under the
+    /// given name.
     pub(in crate::app) fn succeed(&mut self, old: LineId, new: Series, (name, heading): (Text, String)) -> LineId {
         let id = self.add_line(new);
         if let (Some(before), Some(at)) = (self.line(old).cloned(), self.lines.iter().position(|line| line.id == old)) {
@@ -30,7 +30,7 @@ impl Recorder {
         Some(self.lines.remove(at))
     }
 
-    /// Ends a line: no more samples are added, and it moves behind the active lines.
+    /// Ends a line. No more samples are added, and the line moves behind the active lines.
     pub(in crate::app) fn end_line(&mut self, id: LineId, name: Text, heading: String) {
         if let Some(line) = self.take(id) {
             self.lines.push(Series { ended: true, remark: None, name, heading, ..line });
@@ -47,7 +47,7 @@ impl Recorder {
         group.into_iter().for_each(|group| self.break_before_next(group));
     }
 
-    /// Changes the units in which the samples of a line are seen.
+    /// Changes the units in which the samples of a line can be displayed.
     pub(in crate::app) fn rescale(&mut self, id: LineId, scales: Vec<Scale>) {
         if self.line(id).is_none_or(|line| line.scales == scales) {
             return;

@@ -13,11 +13,11 @@ use crate::analysis::Time;
 use crate::analysis::history::{Flags, History};
 use crate::store::{FileError, write_with};
 
-/// Rows of a portion, and portions that wait.
+/// Number of rows in a portion.
 const ROWS: usize = 16_384;
 const WAITING: usize = 2;
 
-/// A table being written. If it is dropped before everything has been passed on, no file is written.
+/// A table being written. No file is written if it is dropped before all rows have been passed on.
 #[derive(Debug)]
 pub struct Export {
     pub path: PathBuf,
@@ -49,7 +49,7 @@ impl ExportNumber {
 pub struct ExportResult {
     pub(in crate::app) number: ExportNumber,
     pub path: PathBuf,
-    /// Number of rows written, or `None` if the export was cancelled and there is no file.
+    /// Number of rows written, or `None` if the export was cancelled and no file was written.
     pub rows: Result<Option<u64>, FileError>,
 }
 
@@ -67,32 +67,32 @@ struct Column {
     head: usize,
     column: usize,
     factor: f64,
-    /// A missing value is not an error of the sample.
+    /// Whether the values are derived, so that a missing value is not an error of the sample.
     derived: bool,
 }
 
 #[derive(Debug)]
 enum Portion {
     Rows(Rows),
-    /// End of the samples; without it the table is incomplete.
+    /// End of the samples. A table without it is incomplete.
     End,
 }
 
-/// A part of the table: for each row a time and one cell per column.
+/// A portion of the table. Each row has a time and one cell per column.
 #[derive(Debug, Default)]
 struct Rows {
     times: Vec<Time>,
     cells: Vec<Cell>,
 }
 
-/// A cell, empty if the line has no sample at that time; the sample may be invalid.
+/// A table cell, empty if the line has no sample at that time. The sample may be invalid.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     value: Option<f64>,
     flags: Flags,
 }
 
-/// The part that runs on a thread and writes the table as its rows arrive.
+/// The part of an export that runs on a thread and writes rows as they arrive.
 pub(in crate::app) struct Writing {
     path: PathBuf,
     number: ExportNumber,
@@ -123,9 +123,9 @@ impl Recorder {
         self.export.as_ref()
     }
 
-    /// Begins to write a table of the displayed lines: of the visible part, or of everything recorded. Returns the part
-    /// to run on a thread; [`feed_export`](Self::feed_export) passes the rows on. Returns `None` if there is nothing to
-    /// write, or a table is already being written.
+    /// Starts writing a table of the displayed lines, either the visible part or everything recorded. Returns the part
+    /// to run on a thread, which [`feed_export`](Self::feed_export) supplies with rows, or `None` if there is nothing
+    /// to write or a table is already being written.
     pub(in crate::app) fn begin_export(&mut self, path: &Path, visible: bool) -> Option<Writing> {
         if self.export.is_some() {
             return None;
@@ -183,7 +183,7 @@ impl Recorder {
         Some(writing)
     }
 
-    /// Passes on as many rows as fit between two frames, without blocking.
+    /// Passes on as many rows as the time between two frames allows, without blocking.
     pub(in crate::app) fn feed_export(&mut self) {
         let Some(mut export) = self.export.take() else { return };
         if let Some(sender) = export.sender.clone() {
@@ -203,7 +203,8 @@ impl Recorder {
         self.export = Some(export);
     }
 
-    /// Handles the end of the thread; returns the number of lost samples, or `None` for an earlier table.
+    /// Handles the end of the thread. Returns the number of lost samples, or `None` if the thread wrote an earlier
+    /// table.
     pub(in crate::app) fn end_export(&mut self, number: ExportNumber, written: bool) -> Option<u64> {
         let export = self.export.take_if(|export| export.number == number)?;
         if written && export.until.is_some() {
@@ -212,13 +213,13 @@ impl Recorder {
         Some(export.lost)
     }
 
-    /// Nanoseconds of recording that no table has.
+    /// Returns the nanoseconds of recording that have not been exported to a table.
     pub fn unsaved(&self) -> i64 {
         let Some((first, last)) = self.recorded() else { return 0 };
         last.nanoseconds_since(self.saved.map_or(first, |saved| saved.max(first)))
     }
 
-    /// Returns the next rows: the samples of all groups in time order, those of the same time in one row.
+    /// Returns the next rows, with the samples of all groups in time order and samples of the same time in one row.
     fn portion(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Portion {
         // In the order of the heads; a removed group no longer has samples.
         let histories: Vec<Option<&History>> =
@@ -259,7 +260,7 @@ fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) ->
     Cell { value, flags }
 }
 
-/// Returns the column heading with name and unit, which do not depend on the window language.
+/// Returns the column heading with name and unit, independent of the window language.
 fn heading(line: &Series) -> String {
     match line.scale() {
         Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal()),
@@ -268,7 +269,7 @@ fn heading(line: &Series) -> String {
 }
 
 impl Writing {
-    /// Writes until all rows have arrived; `wake` tells that more can be passed on.
+    /// Writes until all rows have arrived, calling `wake` whenever more rows can be passed on.
     pub(in crate::app) fn run(self, wake: &dyn Fn()) -> ExportResult {
         let mut given_up = false;
         let rows = write_with(&self.path, |file| {

@@ -10,7 +10,7 @@ pub struct LineId(pub(super) u32);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     pub unit: Text,
-    /// Size of this unit in units of the samples; not zero.
+    /// Size of this unit in units of the samples. Never zero.
     pub factor: f64,
     /// Useful number of decimals.
     pub decimals: usize,
@@ -29,15 +29,15 @@ pub struct Series {
     pub name: Text,
     /// Column heading in a table.
     pub heading: String,
-    /// Index of the colour, one of eight; further lines start again.
+    /// Index of the colour, one of eight. Further lines reuse the colours from the start.
     pub colour: usize,
     pub shown: bool,
     /// Displayed range of values in the unit of the line, or `None` to fit the visible samples.
     pub range: Option<(f64, f64)>,
     pub ended: bool,
-    /// Whether the values are calculated from another line, so that a missing one is not a fault of the device.
+    /// Whether the values are calculated from another line, so that a missing value is not a fault of the device.
     pub derived: bool,
-    /// Present remark explaining why there are no samples.
+    /// Current remark explaining why there are no samples.
     pub remark: Option<Text>,
     pub(super) group: GroupId,
     pub(super) column: usize,
@@ -46,7 +46,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// Creates a line from a column of a group; the first of at least one scale is displayed.
+    /// Creates a line from a column of a group. `scales` must not be empty, and its first entry is displayed.
     pub fn of(group: GroupId, column: usize, name: Text, heading: impl Into<String>, scales: Vec<Scale>) -> Self {
         Series {
             id: LineId::default(),
@@ -96,7 +96,7 @@ impl Series {
         self.scale().filter(|_| self.scale > 0).map(|scale| scale.unit.clone())
     }
 
-    /// Displays the given unit, or the default if there is no such unit.
+    /// Displays values in the given unit, or in the default unit if there is no such unit.
     pub(super) fn choose(&mut self, unit: Option<&Text>) {
         self.scale = self.scales.iter().position(|scale| Some(&scale.unit) == unit).unwrap_or_default();
     }
@@ -105,7 +105,7 @@ impl Series {
         self.scale().map_or(1.0, |scale| scale.factor)
     }
 
-    /// Returns the useful number of decimals in the displayed unit.
+    /// Returns the useful number of decimal places in the displayed unit.
     pub fn decimals(&self) -> usize {
         self.scale().map_or(0, |scale| scale.decimals)
     }
@@ -114,7 +114,7 @@ impl Series {
         sample.value.to_f64() * self.factor()
     }
 
-    /// Returns `later` minus `earlier` in the displayed unit; counts are subtracted before rounding.
+    /// Returns `later` minus `earlier` in the displayed unit. Counts are subtracted before rounding.
     pub fn difference(&self, earlier: &Sample, later: &Sample) -> f64 {
         let difference = match (earlier.value, later.value) {
             (Value::Whole(earlier), Value::Whole(later)) => (i128::from(later) - i128::from(earlier)) as f64,

@@ -28,21 +28,21 @@ use crate::app::Text;
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecorderAction {
     Show(LineId, bool),
-    /// Show a line in the unit of this number.
+    /// Display a line in the unit with this index.
     SetScale(LineId, usize),
-    /// Set the range of values of a line, in its unit; `None`: fit the visible samples.
+    /// Set the range of values of a line in its unit, or `None` to fit the visible samples.
     SetRange(LineId, Option<(f64, f64)>),
-    /// Draw all lines over one axis, or each over its own.
+    /// Draw all lines on one shared axis, or each line on its own.
     ShareAxis(bool),
     Follow,
     Pause,
     Fit,
     Look(Time, Time),
-    /// Show this many nanoseconds, up to the present end of the view.
+    /// Set the length of the view in nanoseconds, keeping its current end.
     SetSpan(i64),
-    /// Longer (above 1) or shorter (below 1) about a point in time.
+    /// Lengthen (above 1) or shorten (below 1) the view around a point in time.
     Zoom(Time, f64),
-    /// A cursor to a point in time, or away.
+    /// Move a cursor to a point in time, or remove it.
     SetCursor(Cursor, Option<Time>),
     ShowCursors(bool),
     Arm(Trigger),
@@ -51,10 +51,10 @@ pub enum RecorderAction {
     CancelExport,
 }
 
-/// Nanoseconds between two samples whose interval is not known.
+/// Nanoseconds between two samples whose interval is unknown.
 pub const SAMPLE: i64 = 1_000;
 
-/// Samples that are taken together.
+/// A group of samples that are taken together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct GroupId(u32);
 
@@ -67,7 +67,7 @@ struct Group {
     longest_pause: Option<i64>,
 }
 
-/// Identifies the samples of one group among all others, present or past: also cleared ones and those of other recorders.
+/// Identifier of the samples of one group among all groups, including cleared ones and those of other recorders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp(u64);
 
@@ -87,7 +87,7 @@ impl Group {
         }
     }
 
-    /// Marks a gap before the next sample, unless there is none yet.
+    /// Marks a gap before the next sample, unless there are no samples yet.
     fn break_before_next(&mut self) {
         if !self.history.all().is_empty() {
             self.history.break_before_next();
@@ -107,23 +107,23 @@ pub struct Recorder {
     cursors: [Option<Time>; 2],
     watch: Option<Watch>,
     export: Option<Export>,
-    /// Until then everything is in a table.
+    /// Time up to which everything has been exported to a table.
     saved: Option<Time>,
 }
 
 impl Recorder {
-    /// Creates an empty recorder that shows this many nanoseconds while it follows.
+    /// Creates an empty recorder that shows the given number of nanoseconds in follow mode.
     pub fn new(span: i64) -> Self {
         Recorder { view: TimeWindow::Follow { span: span.max(1) }, ..Recorder::default() }
     }
 
-    /// Creates a recorder for samples without times: time is the number of the sample times [`SAMPLE`], and this many
-    /// samples are shown while following.
+    /// Creates a recorder for samples without times, where the time is the sample number times [`SAMPLE`]. In follow
+    /// mode it shows the given number of samples.
     pub fn counting(samples: i64) -> Self {
         Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
     }
 
-    /// Marks the recording as complete: no further samples come, so a trigger has fired or never will.
+    /// Marks the recording as complete. No further samples arrive, so a trigger has either fired or never will.
     pub(crate) fn finish(&mut self) {
         self.finished = true;
     }
@@ -132,8 +132,8 @@ impl Recorder {
         self.counts
     }
 
-    /// Adds a group of samples with these columns and this capacity; samples further apart than this many nanoseconds are
-    /// not joined.
+    /// Adds a group of samples with the given columns and capacity. Samples more than `longest_pause` nanoseconds apart
+    /// are not joined.
     pub fn add_group(&mut self, columns: &[Kind], capacity: usize, longest_pause: Option<i64>) -> GroupId {
         let history = Group::history(columns, capacity, longest_pause);
         let id = GroupId(self.new_number());
@@ -151,7 +151,7 @@ impl Recorder {
         id
     }
 
-    /// Removes a line, with its samples unless another line shows some of the same group.
+    /// Removes a line, and its samples unless another line shows samples of the same group.
     pub(in crate::app) fn remove_line(&mut self, id: LineId) {
         let Some(at) = self.lines.iter().position(|line| line.id == id) else { return };
         let group = self.lines.remove(at).group;
@@ -171,12 +171,12 @@ impl Recorder {
         self.with_line(id, |line| line.remark = remark);
     }
 
-    /// Appends samples to a group; samples are left out while they would evict a held view.
+    /// Appends samples to a group. Samples are skipped while they would evict samples of a held view.
     ///
     /// # Errors
     /// The batch does not have the group's columns, or its time goes back.
     pub fn append(&mut self, group: GroupId, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
-        if self.would_lose_picture(group, times.len()) {
+        if self.would_discard_picture(group, times.len()) {
             self.break_before_next(group);
             return Ok(());
         }
@@ -187,12 +187,12 @@ impl Recorder {
         Ok(())
     }
 
-    /// Notes that samples are missing before the next ones of every group.
+    /// Marks that samples are missing before the next samples of every group.
     pub(in crate::app) fn break_all(&mut self) {
         self.groups.values_mut().for_each(Group::break_before_next);
     }
 
-    /// Notes that samples are missing before the next ones of a group.
+    /// Marks that samples are missing before the next samples of a group.
     pub(crate) fn break_before_next(&mut self, group: GroupId) {
         self.groups.get_mut(&group).into_iter().for_each(Group::break_before_next);
     }
@@ -237,7 +237,7 @@ impl Recorder {
         self.lines.iter().find(|line| line.id == id)
     }
 
-    /// Returns the displayed lines; ended ones only if they have samples in the visible range.
+    /// Returns the displayed lines, including ended ones only if they have samples in the visible range.
     pub fn visible_series(&self) -> impl Iterator<Item = &Series> {
         let (from, to) = self.window();
         let is_visible = move |line: &&Series| {
@@ -246,7 +246,7 @@ impl Recorder {
         self.selected_series().filter(is_visible)
     }
 
-    /// Returns the lines selected for display, whatever is visible.
+    /// Returns the lines selected for display, regardless of the visible range.
     fn selected_series(&self) -> impl Iterator<Item = &Series> {
         self.lines.iter().filter(|line| line.shown)
     }
@@ -274,12 +274,12 @@ impl Recorder {
         history.sample(line.column, history.nearest(time)?)
     }
 
-    /// Returns the number of bytes that the samples take.
+    /// Returns the memory used by the samples in bytes.
     pub fn memory(&self) -> usize {
         self.groups.values().map(|group| group.history.memory()).sum()
     }
 
-    /// Returns the first and the last sample of all, by time.
+    /// Returns the times of the first and last samples of all groups.
     pub fn recorded(&self) -> Option<(Time, Time)> {
         let ends = self.groups.values().filter_map(|Group { history, .. }| {
             let all = history.all();
@@ -288,7 +288,7 @@ impl Recorder {
         ends.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
     }
 
-    /// Forgets the samples, and ended lines; the others, units and the length of the view stay.
+    /// Discards the samples and ended lines, but keeps active lines, units and the length of the view.
     pub(crate) fn clear(&mut self) {
         let ended: Vec<LineId> = self.lines.iter().filter(|line| line.ended).map(|line| line.id).collect();
         ended.into_iter().for_each(|id| self.remove_line(id));

@@ -10,7 +10,7 @@ pub enum When {
     Below,
     Rising,
     Falling,
-    /// A sample that the device marks as bad, or with a warning.
+    /// A sample that the device marks as bad or with a warning.
     Error,
 }
 
@@ -22,13 +22,13 @@ impl When {
     }
 }
 
-/// A trigger: its condition, and the range displayed around the event.
+/// A trigger with its condition and the range displayed around the event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigger {
     pub line: LineId,
     pub when: When,
     pub level: f64,
-    /// Share of the view before the event, 0 to 1.
+    /// Fraction of the view before the event, from 0 to 1.
     pub before: f64,
     /// Whether to wait again after each view instead of holding it.
     pub repeat: bool,
@@ -72,7 +72,7 @@ impl Watch {
         (from, from.plus(self.span))
     }
 
-    /// Checks the next sample; returns whether the event has occurred.
+    /// Checks the next sample and returns whether the event has occurred.
     fn is_it(&mut self, sample: &Sample) -> bool {
         let bad = sample.flags.contains(Flags::BAD);
         let value = Some(sample.value.to_f64()).filter(|value| !bad && value.is_finite());
@@ -138,8 +138,8 @@ impl Recorder {
         }
     }
 
-    /// Returns whether adding samples to a group would remove some from a held view.
-    pub(super) fn would_lose_picture(&self, group: GroupId, more: usize) -> bool {
+    /// Returns whether adding samples to a group would evict samples from a held view.
+    pub(super) fn would_discard_picture(&self, group: GroupId, more: usize) -> bool {
         let Some(watch) = self.watch else { return false };
         let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };
         let history = &group.history;
@@ -153,7 +153,7 @@ impl Recorder {
         self.watch = None;
     }
 
-    /// Searches the samples of a group from `from` on, which have just arrived.
+    /// Searches the new samples of a group, starting at `from`.
     pub(super) fn find_trigger(&mut self, group: GroupId, from: u64) {
         let Some(mut watch) = self.watch else { return };
         let Some(line) = self.line(watch.trigger.line).filter(|line| line.group == group) else { return };

@@ -3,7 +3,7 @@
 use super::Recorder;
 use crate::analysis::Time;
 
-/// Nanoseconds that a view never becomes shorter than.
+/// Minimum length of a view in nanoseconds.
 const SHORTEST: i64 = 100;
 /// Maximum length of a view in nanoseconds: a hundred days.
 const LONGEST: i64 = 100 * 86_400 * 1_000_000_000;
@@ -85,7 +85,7 @@ impl Recorder {
         };
     }
 
-    /// Zooms around a time. In follow mode the newest sample stays in place.
+    /// Zooms around a time. In follow mode the newest sample stays at its position.
     pub(super) fn zoom(&mut self, about: Time, factor: f64) {
         if !factor.is_finite() || factor <= 0.0 {
             return;

@@ -48,7 +48,7 @@ pub trait Drafted: HasSession {
     }
 
     /// Handles the successful saving of a connected device's profile to a file.
-    fn written_beside(&mut self, _document: Document) {}
+    fn note_profile_saved(&mut self, _document: Document) {}
 
     /// Returns the key of the draft, or `None` for a device that does not identify itself.
     fn draft_key(&self) -> Option<DraftKey> {
@@ -121,16 +121,16 @@ pub trait Drafted: HasSession {
         let severity = if saving.remarks.is_empty() { Severity::Good } else { Severity::Warning };
         let saved = Text::new("session.saved").with("path", saving.path.display());
         if self.session().phase != Phase::Offline {
-            self.written_beside(*saving.document);
+            self.note_profile_saved(*saving.document);
         } else {
             if saving.is_merged {
                 self.revert_edits();
             }
-            self.take_written(file, *saving.document, services);
+            self.adopt_written_file(file, *saving.document, services);
         }
         // Earlier notices about this document no longer apply.
         services.log.settle(NOT_SAVED, Some(&name));
-        services.log.settle_file(&saving.path);
+        services.log.remove_file_notices(&saving.path);
         if self.edited().is_nothing() {
             services.log.settle(DRAFT_BACK, Some(&name));
         }
@@ -138,7 +138,7 @@ pub trait Drafted: HasSession {
     }
 
     /// Records that the profile is now stored in the given file.
-    fn take_written(&mut self, file: ProfileFile, document: Document, services: &mut Services) {
+    fn adopt_written_file(&mut self, file: ProfileFile, document: Document, services: &mut Services) {
         let moves = !matches!(&self.session().source, Source::File { key: own, .. } if *own == file.key);
         if moves {
             let before = self.draft_key();

@@ -78,8 +78,7 @@ pub(crate) struct ActiveDraft<E> {
 }
 
 /// Returns the draft name for a file, which does not depend on the path leading to it. This accesses the disk and must
-/// therefore run in a
-/// task.
+/// therefore run in a task.
 pub(in crate::app) fn file_key(path: &Path) -> String {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     // FNV-1a, the same in every version of the program.
@@ -139,8 +138,7 @@ impl<E: DraftEdits> ActiveDraft<E> {
     }
 
     /// Handles the result of a task, which contains the edits of an earlier session, if any. A result about a draft
-    /// other than `own`
-    /// is outdated; edits made in the meantime (`dirty`) take precedence.
+    /// other than `own` is outdated; edits made in the meantime (`dirty`) take precedence.
     pub(in crate::app) fn take(
         &mut self,
         done: DraftOutcome,

@@ -141,8 +141,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     }
 
     /// Adopts a plan for review. The plan is discarded if the device has been exchanged, because the change was
-    /// intended
-    /// for the previous device.
+    /// intended for the previous device.
     fn planned(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
         if self.is_of_another(&prepared) {
             *self.review_mut() = None;

@@ -187,8 +187,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Sets the polling interval, or stops polling. Returns whether polling starts with this call, or `None` if there
-    /// is no
-    /// line.
+    /// is no line.
     pub(crate) fn poll(&mut self, interval: Option<Duration>) -> Option<bool> {
         let line = self.line.as_mut()?;
         let begins = line.polling().is_none();
@@ -197,8 +196,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Records that polling has stopped, the reason, and whether the device does not reply at all. Polling that has
-    /// been requested
-    /// again in the meantime continues.
+    /// been requested again in the meantime continues.
     pub(in crate::app) fn polling_failed(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
         if self.is_polling() {
             return;
@@ -261,8 +259,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// Releases the thread and records the end of the running job as `end`. A cancelled write ends on its own and
-    /// reports its own
-    /// result.
+    /// reports its own result.
     pub(crate) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.save_to = None;
         let Source::Link(url) = &self.source else { return };

@@ -45,12 +45,12 @@ pub struct Saving {
     pub opened: Option<Guard>,
     /// Whether the user has agreed that comments will be lost.
     pub may_lose: bool,
-    /// Whether the edits were merged with those of others and are no longer edits.
+    /// Whether the edits have been merged with the edits of other users and so no longer count as edits.
     pub is_merged: bool,
 }
 
 impl Saving {
-    /// Writes the file in a task, or returns why it has not been written yet.
+    /// Writes the file in a task, or returns the reason why it has not been written yet.
     pub(in crate::app) fn run(mut self, kinds: Kinds) -> Action {
         let formats = kinds.formats;
         let key = file_key(&self.path);
@@ -80,14 +80,14 @@ impl Saving {
 /// The content of a file that differs from what was opened.
 #[derive(Debug)]
 pub(in crate::app) struct DivergedFile {
-    /// File content; empty if it cannot be read.
+    /// File content, or an empty string if the file cannot be read.
     pub(in crate::app) text: String,
-    /// File content as a profile.
+    /// File content parsed as a profile.
     pub(in crate::app) document: Result<Box<Document>, ReadError>,
 }
 
 /// Returns the content to be replaced, or the file content if it differs both from what was opened and from what is to
-/// be written. A missing file does not differ.
+/// be written. A missing file does not count as different.
 fn changed(path: &Path, opened: &str, wanted: &Document, formats: Formats) -> Result<String, Box<DivergedFile>> {
     let text = match read_file(path) {
         Ok(text) => text,

@@ -20,7 +20,7 @@ type JobStep<T> = <<T as HasSession>::Device as Device>::JobStep;
 
 /// The reason why a request ended early.
 pub enum EarlyEnd<'e, E> {
-    /// The user has cancelled the request.
+    /// The request was cancelled by the user.
     Cancelled(&'e E),
     /// The request has failed.
     Failed(&'e E),
@@ -28,13 +28,13 @@ pub enum EarlyEnd<'e, E> {
     Lost,
 }
 
-/// A device that receives events from its line.
+/// A device that receives events from its communication line.
 pub trait SessionEvents: HasSession {
-    /// Records samples, preceded by the given number of dropped ones.
+    /// Records samples; `dropped` samples were lost before them.
     fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
-    /// Explains a frame in the trace; empty if there is nothing to say beyond its bytes. Called once per frame, in
-    /// order.
+    /// Returns the explanation of a frame for the trace, empty if there is nothing to add to its bytes. Called once per
+    /// frame, in order.
     fn meaning_of(&mut self, _frame: &TraceEntry) -> Explained {
         Explained::default()
     }
@@ -51,7 +51,7 @@ pub trait SessionEvents: HasSession {
     /// Discards pending requests whose replies will not arrive.
     fn forget_requests(&mut self);
 
-    /// Prepares for the release of the line.
+    /// Prepares for releasing the line.
     fn line_ends(&mut self) {}
 
     /// Handles progress of the running job.
@@ -62,12 +62,12 @@ pub trait SessionEvents: HasSession {
         true
     }
 
-    /// Handles the early end of a request; returns whether the review reports it.
+    /// Handles the early end of a request and returns whether the review reports it.
     fn ended_early(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
         false
     }
 
-    /// Handles polling that ended without a request.
+    /// Handles the end of polling where no request is involved.
     fn polling_ends(&mut self) {}
 
     /// Starts a job; reports the reason and returns `false` if it cannot be started.
@@ -85,7 +85,7 @@ pub trait SessionEvents: HasSession {
         self.poll_line(services);
     }
 
-    /// Processes the line; overridden by kinds that have more to do at that time.
+    /// Processes the line. Overridden by device kinds that do additional work at this point.
     fn poll_line(&mut self, services: &mut Services) {
         // Samples from before a job come before its result; later ones come the next time.
         self.take_samples_and_frames();
@@ -133,7 +133,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().drafting.may_have_changed();
     }
 
-    /// Handles a failed sample; polling has stopped.
+    /// Handles a failed sample, after which polling has stopped.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
         self.polling_ends();
         match Self::Device::connection_error(error) {
@@ -145,7 +145,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Handles a cancelled job; values written before the cancellation are read again.
+    /// Handles a cancelled job. Values written before the cancellation are read again.
     fn cancelled(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         services.end_job(self.session().id, id, JobEnd::Cancelled);
         self.session_mut().save_to = None;
@@ -189,7 +189,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().connection_lost(why, services);
     }
 
-    /// Releases the thread. The running job is recorded as `end`, and a plan is discarded.
+    /// Releases the thread, records the running job as `end` and discards any plan.
     fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.line_ends();
         self.forget_requests();
@@ -197,7 +197,7 @@ pub trait SessionEvents: HasSession {
     }
 }
 
-/// Returns the sentence to show where there is room for one only.
+/// Returns the first sentence, for display where there is room for only one.
 pub(crate) fn first(texts: &[Text]) -> Text {
     texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"))
 }

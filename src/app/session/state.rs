@@ -15,7 +15,7 @@ pub struct SessionState {
     pub id: SessionId,
     pub source: Source,
     pub phase: Phase,
-    /// The kinds of devices, which determine the secret link parameters.
+    /// Device kinds, which determine the secret link parameters.
     pub(super) kinds: Kinds,
     pub(crate) opening: Option<Opening>,
     pub title: Option<String>,
@@ -28,13 +28,13 @@ pub struct SessionState {
     pub cycles: Option<u64>,
     /// Status codes of this device in the logbook, newest first.
     pub statuses: Vec<StatusEntry>,
-    /// Nothing has been read since the link was opened.
+    /// Whether nothing has been read since the link was opened.
     pub just_connected: bool,
     /// Whether live values start automatically as soon as the device has been read and its line is idle.
     pub(in crate::app) live_due: bool,
-    /// File for the profile that is being read.
+    /// File in which to save the profile that is being read.
     pub(crate) save_to: Option<PathBuf>,
-    /// A profile is being written to a file, whose content is not known before that ends.
+    /// Whether a profile is being written to a file. The file content is unknown until the write ends.
     pub(crate) is_saving: bool,
 }
 
@@ -93,21 +93,21 @@ impl SessionState {
         services.note(Severity::Note, texts, Some(&self.name()));
     }
 
-    /// Notes that the device has answered, if only with a refusal.
+    /// Records that the device has answered, even if only with a refusal.
     pub(crate) fn answers(&mut self) {
         if matches!(self.phase, Phase::Silent(_)) {
             self.phase = Phase::Connected;
         }
     }
 
-    /// Records that the link is open but the device does not reply: the reason and what to do.
+    /// Records that the link is open but the device does not reply, with the reason and a suggested remedy.
     pub(crate) fn fall_silent(&mut self, why: Vec<Text>, services: &mut Services) {
         self.phase = Phase::Silent(first(&why));
         services.log.settle("session.not_connected", Some(&self.name()));
         services.note(Severity::Error, why, Some(&self.name()));
     }
 
-    /// Reports a message about this device; only in the log if it is already shown where it was requested.
+    /// Reports a message about this device. If the message is already shown where it was requested, it is only logged.
     pub(crate) fn report(&self, severity: Severity, texts: Vec<Text>, stands_there: bool, services: &mut Services) {
         match stands_there {
             true => services.note(severity, texts, Some(&self.name())),
@@ -115,7 +115,7 @@ impl SessionState {
         }
     }
 
-    /// Discards all known data of the device, because another one has replied.
+    /// Discards all known data about the device because a different device has replied.
     pub(super) fn forget_device(&mut self) {
         (self.title, self.backups, self.writes, self.cycles) = (None, None, None, None);
         self.statuses.clear();

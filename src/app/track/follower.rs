@@ -14,9 +14,9 @@ pub(super) struct Follower {
     motion: Motion,
     /// Last position, unwrapped.
     last: Option<(Time, i64)>,
-    /// Rate between the last two positions in steps per second, in either direction.
+    /// Rate between the last two positions in steps per second, signed by direction.
     pace: Option<f64>,
-    /// Whether samples without a position have arrived since the last one.
+    /// Whether samples without a position have arrived since the last position.
     has_missed: bool,
 }
 
@@ -26,8 +26,8 @@ impl Follower {
         Follower { meaning, unwrap, motion: Motion::over(WINDOW), last: None, pace: None, has_missed: false }
     }
 
-    /// Returns whether the next position is joined to the last one: it arrives soon enough, and across samples without
-    /// a position the shaft cannot have completed the range unnoticed at its last speed.
+    /// Returns whether the next position is joined to the last one. It must arrive soon enough, and across samples
+    /// without a position the shaft must be unable to complete the range unnoticed at its last speed.
     pub(super) fn continues_track(&self, time: Time, apart: i64) -> bool {
         let Some((before, _)) = self.last else { return true };
         if time.nanoseconds_since(before) > apart {

@@ -85,8 +85,8 @@ fn missing_bad_and_warned_samples_are_flagged_and_not_bridged() {
     assert_eq!((track.positions(), track.dropped()), (9, 3));
 }
 
-/// Issue 22.21: one frame of ten is damaged; the speed is available as soon as a window has passed, and stays: 50 steps in
-/// 50 µs.
+/// Issue 22.21: one frame of ten is damaged; the speed is available as soon as a window has passed, and stays: 50 steps
+/// in 50 µs.
 #[test]
 fn damaged_frames_do_not_interrupt_the_speed() {
     let meaning = Meaning::of_turns(Some(1000), 1000.0);
@@ -109,8 +109,8 @@ fn damaged_frames_do_not_interrupt_the_speed() {
     }
 }
 
-/// Issue 22.21: at 50 steps in 50 µs a shaft of 1000 steps completes a turn after 20 samples: this many damaged ones are
-/// not bridged, a few are.
+/// Issue 22.21: at 50 steps in 50 µs a shaft of 1000 steps completes a turn after 20 samples: this many damaged ones
+/// are not bridged, a few are.
 #[test]
 fn a_shaft_that_may_have_wrapped_in_a_gap_is_not_followed() {
     let meaning = Meaning::of_turns(Some(1000), 1000.0);
@@ -254,7 +254,7 @@ fn samples_that_cannot_be_decoded_again_are_kept() {
     for (kept, ended) in [(5, 0), (4, 3)] {
         let mut track = Track::<Nothing>::default();
         track.add(&seconds(0, 5), &before);
-        track.begin_again(kept);
+        track.restart_line(kept);
         track.add(&seconds(5 - kept as u64, kept as u64), &after);
         assert_eq!(track.recorder.lines().iter().filter(|line| line.ended).count(), ended, "{kept}");
         assert_eq!(steps(&track, "position").len(), kept);

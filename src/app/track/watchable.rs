@@ -13,7 +13,7 @@ pub trait Watchable: Clone + PartialEq {
 
     fn line(&self, group: GroupId) -> Series;
 
-    /// Returns whether samples of this value continue as samples of the other, which may be displayed in other units.
+    /// Returns whether samples of this value continue as samples of `other`, which may be displayed in different units.
     fn continues(&self, other: &Self) -> bool {
         self == other
     }
@@ -30,12 +30,12 @@ impl Watchable for Infallible {
     }
 }
 
-/// A watched value, if there is one at the moment.
+/// A watched value, if one is currently available.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedValue {
     pub at: Moment,
     pub value: Option<Value>,
     pub is_warned: bool,
-    /// Reason why there will never be a value, if so.
+    /// Reason why there will never be a value, if that is the case.
     pub never: Option<Text>,
 }

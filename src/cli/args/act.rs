@@ -22,7 +22,7 @@ pub struct Do {
 }
 
 impl Do {
-    /// Returns the action, one of those of a kind of device, which are `known`.
+    /// Returns the action for a kind of device, whose actions are listed in `known`.
     ///
     /// # Errors
     /// Returns an error if the action belongs to another kind of device.

@@ -9,7 +9,7 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Subcommand};
 use super::{COMMON_HEADING, Command, Common, Front};
 use crate::cli::commands::{CommandId, Commands, DeviceCommands, OwnCommand};
 
-/// Display order of options that a kind of device adds, which follow the shared ones.
+/// Display order of options that a kind of device adds. They follow the shared options.
 const AFTER_SHARED: usize = 200;
 
 pub(in crate::cli) struct Arguments {
@@ -88,7 +88,7 @@ fn extended(command: clap::Command, id: CommandId, commands: Commands) -> clap::
     if help.is_empty() { command } else { command.after_long_help(help.join("\n\n")) }
 }
 
-/// Returns the kinds of device that a command accepts, and the protocols if it accepts them.
+/// Returns the kinds of device that a command accepts, including protocols if the command accepts them.
 fn names(id: CommandId, commands: Commands) -> PossibleValuesParser {
     let devices = commands.devices().iter().filter(|device| id != CommandId::Find || device.is_searchable());
     let devices = devices.map(|device| PossibleValue::new(device.name()).help(device.about()));
@@ -116,7 +116,7 @@ fn actions(commands: Commands) -> PossibleValuesParser {
     PossibleValuesParser::new(values.collect::<Vec<_>>())
 }
 
-/// Returns which commands exist for which kinds of device.
+/// Returns a summary of which commands exist for which kinds of device.
 fn summary(commands: Commands) -> String {
     let devices = commands.devices();
     let list = |is: &dyn Fn(&dyn DeviceCommands) -> bool| {

@@ -15,7 +15,7 @@ pub struct Decode {
     pub(crate) own: OwnOptions,
 }
 
-/// The way that a word went, for the devices whose words have one meaning each way.
+/// Option for the direction of a word, for devices whose words have a different meaning in each direction.
 #[derive(Args)]
 pub(crate) struct DirectionOption {
     /// Direction: from the device (in) or to it (out). Default: explain every direction that fits.

@@ -12,11 +12,11 @@ use super::PATIENCE;
 use crate::link::{Clock, RealClock, wake_before_others};
 use crate::sim::DatagramDevice;
 
-/// Maximum sleep of the sender: no packet is due sooner after a request.
+/// Maximum sleep of the sender. No packet is due sooner after a request.
 const REST: Duration = Duration::from_millis(4);
-/// Number of ports to try if any port will do.
+/// Number of ports to try if the port is not specified.
 const TRIES: usize = 50;
-/// More than any packet has.
+/// Buffer size in bytes, larger than any packet.
 const ROOM: usize = 2048;
 
 /// Binds a TCP and a UDP socket to the same IPv4 port. Port 0 selects one that is free for both.
@@ -45,7 +45,7 @@ fn both(place: SocketAddrV4) -> std::io::Result<(TcpListener, UdpSocket, SocketA
 
 pub(super) struct Served {
     socket: UdpSocket,
-    /// Device, locked from taking packets until they have been sent, so that none overtakes another.
+    /// Device, locked while its packets are taken and sent, so that no packet overtakes another.
     device: Mutex<Box<dyn DatagramDevice>>,
     clock: Arc<RealClock>,
 }
@@ -95,7 +95,7 @@ impl Served {
         }
     }
 
-    /// Calls `work` with the device, sends all due packets, and returns the time until the next one.
+    /// Calls `work` with the device, sends all due packets, and returns the time until the next packet.
     fn pump(&self, work: impl FnOnce(&mut dyn DatagramDevice, &RealClock)) -> Duration {
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut **device, &self.clock);

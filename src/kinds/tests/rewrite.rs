@@ -34,8 +34,8 @@ fn unchanged_text_is_kept_verbatim() {
     }
 }
 
-/// Issue 22.26: a changed profile saved over a text has exactly its own content, and each comment of the user remains or is
-/// reported.
+/// Issue 22.26: a changed profile saved over a text has exactly its own content, and each comment of the user remains
+/// or is reported.
 #[test]
 fn any_rewrite_is_exact_and_lists_lost_comments() {
     let all = ready_made();
@@ -113,7 +113,8 @@ fn spaced(text: &str, picks: &[usize]) -> (String, usize) {
 proptest::proptest! {
     #![proptest_config(proptest::test_runner::Config { cases: 256, ..Default::default() })]
 
-    /// Issue 22.26: comments and line ends between any words remain or are reported, for any profile saved over the text.
+    /// Issue 22.26: comments and line ends between any words remain or are reported, for any profile saved over the
+    /// text.
     #[test]
     fn comments_between_any_tokens_are_kept_or_listed(
         from in 0_usize..100,

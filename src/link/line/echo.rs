@@ -5,7 +5,7 @@ use crate::parameter::Words;
 /// Whether the adapter echoes sent bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Echo {
-    /// Unknown: determined during the first exchange.
+    /// Not known yet; determined during the first exchange.
     Unknown,
     /// The adapter echoes.
     On,
@@ -30,7 +30,7 @@ impl Echo {
         }
     }
 
-    /// Learns from the first validly answered exchange whether the line echoes.
+    /// Learns whether the line echoes from the first exchange with a valid reply.
     pub(crate) fn learn(&mut self, echo_heard: bool) {
         if *self == Echo::Unknown {
             *self = if echo_heard { Echo::On } else { Echo::Off };

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Line quality, measured since the session began.
+/// Line quality measured since the start of the session.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LineQuality {
     /// Number of requests sent, including repetitions.
@@ -12,7 +12,7 @@ pub struct LineQuality {
     pub replies: u64,
     /// Number of repeated requests.
     pub retries: u64,
-    /// Number of damaged replies, including requests that the device reported as damaged.
+    /// Number of damaged replies, including those to requests that the device reported as damaged.
     pub damaged: u64,
     /// Number of requests without a reply.
     pub silent: u64,
@@ -25,7 +25,7 @@ pub struct LineQuality {
 impl LineQuality {
     const ANSWERS: usize = 1000;
 
-    /// Returns whether a request had to be repeated, or a reply arrived too late.
+    /// Returns whether a request had to be repeated or a reply arrived too late.
     pub fn is_troubled(&self) -> bool {
         self.troubles() != [0; 4]
     }
@@ -35,7 +35,7 @@ impl LineQuality {
         [self.retries, self.damaged, self.silent, self.late]
     }
 
-    /// Returns the time within which `percent` of the most recent replies arrived, or `None` if there were none.
+    /// Returns the time within which `percent` of the most recent replies arrived, or `None` without replies.
     pub fn answer_time_percentile(&self, percent: usize) -> Option<Duration> {
         let mut times: Vec<Duration> = self.answers.iter().copied().collect();
         times.sort_unstable();

@@ -6,7 +6,7 @@ use super::{Echo, LineQuality};
 use crate::parameter::Milliseconds;
 use crate::units::Moment;
 
-/// Margin of the slowest supported connection.
+/// Maximum reply delay of the slowest supported connection.
 pub(super) const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 
 /// Allowed reply delay beyond the protocol's worst case.
@@ -15,12 +15,12 @@ pub(crate) const MARGIN: Milliseconds = Milliseconds(0..=LONGEST_MARGIN.as_milli
 /// Line state that is kept between jobs.
 #[derive(Clone, Debug)]
 pub struct LineState {
-    /// Tolerated delay of a reply beyond the worst case of the protocol, since USB adapters and device servers deliver
+    /// Tolerated delay of a reply beyond the protocol's worst case, because USB adapters and device servers deliver
     /// late.
     pub margin: Duration,
     /// Whether the adapter echoes sent bytes.
     pub echo: Echo,
-    /// Number of failed exchanges since the session began, whether repeated or given up.
+    /// Number of failed exchanges since the start of the session, whether they were repeated or given up.
     pub damaged: u64,
     /// Line quality.
     pub quality: LineQuality,
@@ -67,17 +67,18 @@ impl LineState {
         self.quality.replies += 1;
     }
 
-    /// Records when the reply began.
+    /// Records the time at which the reply began.
     pub(crate) fn record_answer_start(&mut self, at: Moment) {
         self.quality.record_answer_time(at.since(self.last_sent));
     }
 
-    /// Resets the time-out margin after a valid reply.
+    /// Resets the error state after a valid reply.
     pub(crate) fn recovered(&mut self) {
         self.troubled_since = None;
     }
 
-    /// Allows further replies to be late by the given time plus half as much again.
+    /// Raises the margin for further replies to one and a half times the sum of the margin and `lateness`, up to
+    /// [`LONGEST_MARGIN`].
     pub(super) fn extend_allowance(&mut self, lateness: Duration) {
         let margin = (self.margin + lateness).saturating_mul(3) / 2;
         self.margin = margin.min(LONGEST_MARGIN).max(self.margin);

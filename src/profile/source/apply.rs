@@ -5,12 +5,12 @@ use std::ops::Range;
 use super::changes::{Change, Step, means_the_same, steps};
 use super::tree::{Kind, Node, Part, read, trailing_comment};
 
-/// Applies the changes one after the other; returns `None` if one of them cannot be placed in the text.
+/// Applies the changes one after the other, or returns `None` if one of them cannot be placed in the text.
 pub(in crate::profile) fn applied(text: &str, changes: &[Change]) -> Option<String> {
     changes.iter().try_fold(text.to_owned(), |text, change| apply(&text, change))
 }
 
-/// Applies a change to a text; returns `None` if the change cannot be placed.
+/// Applies a change to a text, or returns `None` if the change cannot be placed.
 pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
     let root = read(text)?;
     let (last, way) = match change.path.split_last() {
@@ -63,7 +63,8 @@ fn replaced(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
     Some([text.get(..place.start)?, by, text.get(place.end..)?].concat())
 }
 
-/// Moves the comment that this program wrote after an entry along with its value; a user's own comment stays.
+/// Moves the comment that this program wrote after an entry along with its value, while a user's own comment stays in
+/// place.
 fn with_comment(text: &str, at: usize, comments: &(Option<String>, Option<String>)) -> Option<String> {
     let found = trailing_comment(text, at);
     match (found, comments) {
@@ -75,7 +76,7 @@ fn with_comment(text: &str, at: usize, comments: &(Option<String>, Option<String
     }
 }
 
-/// Returns the text without an entry, including its line if the entry has one to itself.
+/// Returns the text without an entry, and without the line if the entry is alone on its line.
 fn without(text: &str, part: &Part) -> Option<String> {
     let before = text.get(..part.start())?;
     let after = part.end;

@@ -9,12 +9,12 @@ use super::tree::comments;
 pub struct Carried {
     /// Updated text.
     pub text: String,
-    /// Comments of the user for which the new content has no location.
+    /// User comments for which the new content has no location.
     pub lost: Vec<String>,
 }
 
 /// Applies the changes from `before` to `after` to the user's text, which contains what the program wrote as `before`.
-/// Returns `None` if the text cannot be followed. The caller has to check that the result means the same as `after`.
+/// Returns `None` if the text cannot be matched; the caller must check that the result means the same as `after`.
 pub(in crate::profile) fn carry(text: &str, before: &str, after: &str) -> Option<Carried> {
     let mut carried = text.to_owned();
     for change in changes(before, after)? {
@@ -34,7 +34,7 @@ fn as_a_whole(text: &str, change: &Change, after: &str) -> Option<String> {
     })
 }
 
-/// Returns the user's comments that are missing in the new text.
+/// Returns the user's comments that are missing from the new text.
 pub(in crate::profile) fn lost(text: &str, now: &str, generated: &str) -> Vec<String> {
     let (mut there, own) = (comments(now), comments(generated));
     let mut lost = Vec::new();

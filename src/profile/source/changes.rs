@@ -13,11 +13,11 @@ const NAMES: [&str; 7] = ["number", "program", "cam", "bank", "banks", "item", "
 /// A step of the path to an entry.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Step {
-    /// An entry of a structure, by its name as written.
+    /// An entry of a structure, identified by its name as written.
     Entry(String),
-    /// A list element, by the name and value of its identifying entry.
+    /// A list element, identified by the name and value of its identifying entry.
     Named(String, String),
-    /// A list element, by its index.
+    /// A list element, identified by its index.
     At(usize),
 }
 
@@ -26,9 +26,9 @@ pub enum Step {
 pub struct Change {
     /// Path of the entry.
     pub path: Vec<Step>,
-    /// Source text on the left, if the entry exists there.
+    /// Source text on the left, if the entry exists on that side.
     pub from: Option<String>,
-    /// Source text on the right, if the entry exists there.
+    /// Source text on the right, if the entry exists on that side.
     pub to: Option<String>,
     /// Preceding entries in the same structure or list on the right, nearest first.
     pub behind: Vec<Step>,
@@ -69,7 +69,7 @@ pub(in crate::profile) fn changes(left: &str, right: &str) -> Option<Vec<Change>
     Some(walk.found)
 }
 
-/// Returns whether two plain values mean the same, such as `0x10` and `16`.
+/// Returns whether two plain values are equivalent, such as `0x10` and `16`.
 pub(super) fn means_the_same(one: &str, other: &str) -> bool {
     let value = |text| ron::from_str::<Value>(text).ok();
     one == other || value(one).is_some_and(|own| Some(own) == value(other))
@@ -168,8 +168,8 @@ impl TreeWalk<'_> {
     }
 }
 
-/// Returns whether the order is unchanged. Named elements may be added or removed as long as the rest keep their order;
-/// unnamed elements keep their index.
+/// Returns whether the order is unchanged. Named elements may be added or removed if the others keep their order,
+/// and unnamed elements must keep their index.
 fn is_same_order(own: &[Step], other: &[Step]) -> bool {
     let common = |these: &[Step], those: &[Step]| -> Vec<Step> {
         these.iter().filter(|step| those.contains(step)).cloned().collect()

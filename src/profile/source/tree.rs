@@ -5,7 +5,7 @@ use std::ops::Range;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Node {
-    /// Range from the first character to the end of the last; for `Some(…)`, only the content.
+    /// Range of the value in the source text. For `Some(…)`, only the content is included.
     pub(super) span: Range<usize>,
     pub(super) kind: Kind,
 }
@@ -25,7 +25,7 @@ pub(super) struct Part {
     /// Range of the key before the colon.
     pub(super) key: Option<Range<usize>>,
     pub(super) value: Node,
-    /// End of the value, or of the comma that follows.
+    /// End of the value, or of the comma after the value.
     pub(super) end: usize,
     pub(super) comma: bool,
 }
@@ -45,7 +45,7 @@ impl Node {
     }
 }
 
-/// Parses a text; returns `None` if its syntax is not supported.
+/// Parses a text, or returns `None` if its syntax is not supported.
 pub(super) fn read(text: &str) -> Option<Node> {
     let mut reader = Reader { text, at: 0 };
     reader.skip();
@@ -191,7 +191,7 @@ impl<'t> Reader<'t> {
         Some(Node { span: start..self.at, kind })
     }
 
-    /// Parses a structure, or a tuple, which is treated as a single value.
+    /// Parses a structure, or a tuple as a single value.
     fn bracket(&mut self) -> Option<Kind> {
         let (parts, named) = self.parts('(', ')')?;
         Some(if named || parts.is_empty() { Kind::Entries(parts) } else { Kind::Plain })

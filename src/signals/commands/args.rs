@@ -22,8 +22,8 @@ pub(super) struct Analyse {
     /// Encoder family whose limits apply.
     #[arg(long, value_enum, default_value_t = Limits::Hiperface)]
     pub(super) limits: Limits,
-    /// Signal periods per revolution: for the speed, for errors that repeat each revolution, and, with a reference, for DNL
-    /// and INL.
+    /// Signal periods per revolution: for the speed, for errors that repeat each revolution, and, with a reference, for
+    /// DNL and INL.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
     pub(super) periods: Option<u32>,
 }

@@ -86,7 +86,8 @@ fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
     }
 }
 
-/// Prints DNL and INL if a reference and the number of periods are known, or else a remark on why they are missing.
+/// Prints DNL and INL if a reference and the number of periods are known, or otherwise a remark on why they are
+/// missing.
 fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: Option<u32>) -> Option<Revolution> {
     let reference = capture.reference_deg.as_ref()?;
     let Some(periods) = periods else {

@@ -23,7 +23,7 @@ use crate::store::ReadCaptureError;
 pub struct Signals {
     family: Family,
     periods: Option<u32>,
-    /// Whether the number of periods is that of the virtual encoder, which does not apply to a capture.
+    /// Whether the number of periods comes from the virtual encoder and thus does not apply to a capture.
     periods_of_source: bool,
     pub(crate) source: Source,
     synchronise: Synchronise,
@@ -110,7 +110,7 @@ impl Tool for Signals {
 }
 
 impl Signals {
-    /// Creates the state with the links of previously used adapters, latest first.
+    /// Creates the state with the links of previously used adapters, most recent first.
     pub(crate) fn at(links: &[String]) -> Self {
         Signals { source: Source::at(links.first()), ..Signals::default() }
     }
@@ -134,7 +134,7 @@ impl Signals {
         self.family
     }
 
-    /// Returns the signal periods per revolution, at least 1, or `None` if unknown; results that depend on them are
+    /// Returns the signal periods per revolution, at least 1, or `None` if unknown. Results that depend on them are
     /// then omitted.
     pub fn periods(&self) -> Option<u32> {
         self.periods
@@ -162,7 +162,7 @@ impl Signals {
         self.table.as_ref()
     }
 
-    /// Returns why the last table could not be read; the previous capture is still displayed.
+    /// Returns the reason why the last table could not be read. The previous capture is still displayed.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -180,7 +180,7 @@ impl Signals {
         self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
     }
 
-    /// Returns the changes since the capture used for comparison, with both judged by the same limits.
+    /// Returns the changes since the capture used for comparison. Both captures are judged by the same limits.
     pub fn changes(&self) -> Option<Changes> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
         let before = kept.diagnosis.from_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
@@ -195,7 +195,7 @@ impl Signals {
         }
     }
 
-    /// Forgets the reading in progress, whose result will not arrive.
+    /// Forgets the reading in progress, since its result will not arrive.
     pub(super) fn forget_reading(&mut self) {
         if let Some(reading) = self.reading.take() {
             self.table.clone_from(&reading.settled);
@@ -278,14 +278,14 @@ impl Signals {
         services.notify(Severity::Error, vec![TEXTS.text(what)], None);
     }
 
-    /// Replaces the samples. A table of the previous samples that is still being written cannot be completed.
+    /// Replaces the samples. A table of the previous samples that is still being written can then not be completed.
     pub(super) fn replace_scope(&mut self, scope: Scope, services: &Services) {
         self.scope.recorder.act(recorder::RecorderAction::CancelExport);
         task_guard::let_go(&services.tasks, std::mem::replace(&mut self.scope, scope));
     }
 
     fn show(&mut self, measurement: Measurement, services: &Services) {
-        /// Number of samples above which releasing their memory takes longer than starting a thread.
+        /// Number of samples above which releasing their memory takes longer than starting a thread to do so.
         const LARGE: usize = 100_000;
         if let Some(before) = self.measurement.replace(Arc::new(measurement))
             && before.capture.sine_v.len() > LARGE
@@ -329,7 +329,7 @@ impl Signals {
         }
     }
 
-    /// Returns the table of the displayed capture, even while it is being read again with other settings.
+    /// Returns the table of the displayed capture, even while it is being read again with changed settings.
     fn settled(&self) -> Option<Table> {
         self.reading.as_ref().map_or_else(|| self.table.clone(), |reading| reading.settled.clone())
     }
@@ -371,7 +371,7 @@ impl Signals {
         });
     }
 
-    /// Starts reading a table; a reading in progress is cancelled.
+    /// Starts reading a table and cancels a reading in progress.
     fn read(&mut self, place: TableSource, hints: TableHints, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;

@@ -10,16 +10,16 @@ use crate::store::ReadCaptureError;
 #[derive(Clone, Debug, PartialEq)]
 pub enum SignalsAction {
     Open(PathBuf),
-    /// Reads one of the captures that ship with the program.
+    /// Reads one of the example captures that ship with the program.
     Example(Example),
-    /// Uses a delimiter other than the detected one.
+    /// Replaces the detected delimiter.
     SetDelimiter(Delimiter),
     /// Sets whether numbers have a decimal comma.
     SetDecimalComma(bool),
-    /// Selects another column, counted from 1; `None` selects no column.
+    /// Selects another column, counted from 1, or no column with `None`.
     SetColumn(Column, Option<usize>),
     SetTimeUnit(TimeUnit),
-    /// Sets the volts per unit of the table, which are finite and not zero.
+    /// Sets the volts per unit of the table, which must be finite and not zero.
     SetVolts(f64),
     /// Detects the table's format again.
     Detect,
@@ -35,33 +35,33 @@ pub enum SignalsAction {
 }
 
 pub enum Done {
-    /// A capture has been read, or reading has failed.
+    /// Reports that a capture has been read or that reading has failed.
     Read {
-        /// Number of the attempt; only the latest counts.
+        /// Number of the attempt. Only the latest attempt counts.
         number: u32,
         read: Box<Read>,
     },
-    /// The displayed capture has been judged again.
+    /// Reports that the displayed capture has been judged again.
     Judged {
-        /// Number of the attempt; only the latest counts.
+        /// Number of the attempt. Only the latest attempt counts.
         number: u32,
         measurement: Box<Measurement>,
     },
     Measured {
-        /// Number of the start; only the latest counts.
+        /// Number of the start. Only the latest start counts.
         number: u32,
         measurement: Box<Measurement>,
     },
-    /// A task could not be started, or ended without a result.
+    /// Reports that a task could not be started or ended without a result.
     Failed(Failed),
-    /// A large value has been dropped.
+    /// Reports that a large value has been dropped.
     LetGo,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failed {
     Read(u32),
-    /// Judging the displayed capture again.
+    /// Judges the displayed capture again.
     Judge,
     Measure(u32),
 }

@@ -20,7 +20,7 @@ use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
 use crate::worker::stream::{Analogue, Batch, End, Producer, Stream};
 
-/// Both signals in volts, with equally many samples.
+/// Both signals in volts, with the same number of samples.
 #[derive(Clone, Debug)]
 pub(super) struct Channels {
     pub(super) sine_v: Vec<f64>,
@@ -56,7 +56,7 @@ pub(super) enum Feed {
     Virtual(Stream<Analogue>),
     Adapter {
         stream: Stream<Bridge<SineCosine>>,
-        /// The adapter and its actual sampling, once known.
+        /// The adapter and its actual sampling, once they are known.
         streaming: Arc<OnceLock<Streaming>>,
         url: LinkUrl,
     },
@@ -71,7 +71,7 @@ pub(super) struct AdapterLink {
 }
 
 impl AdapterLink {
-    /// Parses a link.
+    /// Parses a link to an adapter.
     ///
     /// # Errors
     /// Returns why the link does not lead to an adapter.
@@ -83,7 +83,7 @@ impl AdapterLink {
         Ok(AdapterLink { url, clock, margin, open })
     }
 
-    /// Starts sampling at the given rate, with the encoder's supply switched on if a voltage is given. The stream
+    /// Starts sampling at the given rate, and switches the encoder's supply on if a voltage is given. The stream
     /// reports whether the adapter is present.
     ///
     /// # Errors
@@ -161,8 +161,8 @@ impl Feed {
         }
     }
 
-    /// Returns the adapter and its actual sampling, or `None` for the virtual encoder and while the sampling is not yet
-    /// known.
+    /// Returns the adapter and its actual sampling, or `None` for the virtual encoder and while the sampling is
+    /// unknown.
     pub(super) fn streaming(&self) -> Option<&Streaming> {
         match self {
             Feed::Virtual(_) => None,
@@ -192,7 +192,7 @@ impl Feed {
         }
     }
 
-    /// Stops the feed without waiting for an adapter to end.
+    /// Stops the feed without waiting for the adapter to end its stream.
     pub(super) fn let_go(self, services: &mut Services) {
         if let Feed::Adapter { stream, url, .. } = self {
             let end: End = stream.end();

@@ -11,7 +11,7 @@ pub struct Form {
     pub periods: String,
     /// Speed in revolutions per minute.
     pub speed: String,
-    /// Resistor across the capacitor, such as `10k`.
+    /// Resistance of the filter resistor, such as `10k`.
     pub resistance: String,
     /// Capacitor, such as `22p`.
     pub capacitance: String,
@@ -22,7 +22,7 @@ pub struct Point {
     pub speed_rpm: f64,
     pub frequency_hz: f64,
     pub response: Response,
-    /// Lag in mechanical degrees of the shaft.
+    /// Lag of the shaft angle in mechanical degrees.
     pub shaft_deg: f64,
 }
 
@@ -51,7 +51,7 @@ impl Form {
     /// Calculates the circuit.
     ///
     /// # Errors
-    /// Returns why the first invalid entry is invalid.
+    /// Returns the reason for the first invalid entry.
     pub fn circuit(&self) -> Result<Circuit, Text> {
         let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
         let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MOST_RPM)?;
@@ -103,7 +103,8 @@ mod tests {
         }
     }
 
-    /// Section 1: 102.4 kHz after 10 kΩ and 47 pF; 100 kHz are 1024 periods at 5859.375 rpm. Lag of the shaft: 1/1024.
+    /// The filter with 10 kΩ and 47 pF has 102.4 kHz, and 1024 periods at 5859.375 rpm are 100 kHz with a shaft lag of
+    /// 1/1024 (section 1).
     #[test]
     fn rows_match_section_1() {
         let rows = [

@@ -15,18 +15,18 @@ pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 pub struct TableError {
     pub intervals: usize,
     pub largest_deg: f64,
-    /// Fraction of a period that bounds the error, as its reciprocal.
+    /// Reciprocal of the fraction of a period that bounds the error.
     pub parts: f64,
     /// Resolution in bits per period that corresponds to the error.
     pub bits: f64,
 }
 
-/// The phase of one pair of voltages, calculated exactly and by table.
+/// Phase of one pair of voltages, calculated exactly and by table lookup.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interpolated {
     pub exact: Phase,
     pub table: Phase,
-    /// Table phase minus exact phase in electrical degrees, within ±180.
+    /// Difference between table phase and exact phase in electrical degrees, within ±180.
     pub difference_deg: f64,
 }
 
@@ -35,7 +35,7 @@ pub fn table_errors() -> &'static [TableError] {
     &ERRORS
 }
 
-/// Evaluates all intervals of a table at points that include the largest error.
+/// Evaluates a table with the given number of intervals at points that include the largest error.
 fn table_error(intervals: usize) -> TableError {
     const PLACES: usize = 64;
     let table = OctantTable::new(intervals);
@@ -52,7 +52,7 @@ fn table_error(intervals: usize) -> TableError {
 /// Interpolates an entered pair of offset-free voltages with a table of the given number of intervals.
 ///
 /// # Errors
-/// Returns why the entries are invalid: an entry is not a number, or both are zero.
+/// Returns an error if an entry is not a number, or if both are zero.
 pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<Interpolated, Text> {
     let (sine, cosine) = (forms::number(sine)?, forms::number(cosine)?);
     let both = arctan::exact(sine, cosine).zip(OctantTable::new(intervals).phase(sine, cosine));
@@ -66,7 +66,7 @@ pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<Interpo
 mod tests {
     use super::*;
 
-    /// The tables of section 3: intervals, largest error in radians, parts of a period.
+    /// The tables match section 3 in number of intervals, largest error in radians, and parts of a period.
     #[test]
     fn tables_match_section_3() {
         let expected =

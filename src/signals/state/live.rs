@@ -24,17 +24,18 @@ use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
 pub enum SourceAction {
     Start,
     StartAdapter,
-    /// Sets the entered link to an adapter; a running adapter keeps its own.
+    /// Sets the entered link to an adapter. A running adapter keeps its link.
     SetLink(String),
-    /// Sets the requested sample rate of an adapter; a running adapter keeps its own.
+    /// Sets the requested sample rate of an adapter. A running adapter keeps its rate.
     SetSampleRate(u32),
-    /// Supplies an encoder of the given family from the adapter, or none; a running adapter keeps its supply.
+    /// Supplies an encoder of the given family from the adapter, or switches no supply on if `None`. A running adapter
+    /// keeps its supply.
     SetSupply(Option<Family>),
-    /// Stops the source; the last measurement stays.
+    /// Stops the source and keeps the last measurement.
     Stop,
-    /// Freezes the display while the source continues, or releases it.
+    /// Freezes the display while the source continues, or resumes it.
     Hold(bool),
-    /// Sets a value of the virtual encoder; a value out of range is refused with a message.
+    /// Sets a value of the virtual encoder. A value out of range is refused with a message.
     Set(Quantity, f64),
     SetOpenWire(Option<Wire>),
     /// Sets whether a resistor connects the wires of each pair.
@@ -67,7 +68,7 @@ pub struct Source {
     kind: SourceKind,
     window_ms: u32,
     runs: u32,
-    /// Number of lost samples, not counting those that a running stream counts itself.
+    /// Number of lost samples, excluding those that a running stream counts itself.
     lost: u64,
     live: Option<Live>,
 }
@@ -83,7 +84,7 @@ struct Live {
 
 /// Range of window lengths that can be measured, in milliseconds.
 const WINDOWS: std::ops::RangeInclusive<u32> = 10..=10_000;
-/// Link to the virtual adapter, whose shaft turns slowly enough for a period to be visible.
+/// Link to the virtual adapter. Its shaft turns slowly enough for a signal period to be visible.
 pub const VIRTUAL_ADAPTER: &str = "sim:?bridge=on&rpm=6";
 
 impl Default for Source {
@@ -105,7 +106,7 @@ impl Default for Source {
 }
 
 impl Source {
-    /// Creates the state with the link of the last adapter used.
+    /// Creates the state with the link of the most recently used adapter.
     pub(super) fn at(link: Option<&String>) -> Self {
         let usual = Source::default();
         Source { link: link.cloned().unwrap_or(usual.link), ..Source::default() }
@@ -115,7 +116,7 @@ impl Source {
         &self.settings
     }
 
-    /// Returns why the last setting was refused, if it was.
+    /// Returns the reason why the last setting was refused, if it was refused.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -134,7 +135,7 @@ impl Source {
         self.supply
     }
 
-    /// Returns why the adapter stopped sampling or could not start.
+    /// Returns the reason why the adapter stopped sampling or could not start.
     pub fn adapter_problem(&self) -> Option<&Text> {
         self.adapter_problem.as_ref()
     }
@@ -176,7 +177,8 @@ impl Source {
         (longest_ms < f64::from(self.window_ms)).then_some(longest_ms)
     }
 
-    /// Returns the number of samples lost since the last start: in transit, not read in time, or not displayable.
+    /// Returns the number of samples lost since the last start because they were lost in transit, not read in time, or
+    /// not displayable.
     pub fn lost(&self) -> u64 {
         self.lost + self.live.as_ref().map_or(0, |live| live.feed.lost())
     }
@@ -243,7 +245,7 @@ impl Source {
         }
     }
 
-    /// Starts the adapter; returns whether it is being opened. An invalid link is reported beside its entry.
+    /// Starts the adapter and returns whether it is being opened. An invalid link is reported beside its entry.
     fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) -> bool {
         let link = match AdapterLink::read(&self.link) {
             Ok(link) => link,

@@ -32,7 +32,7 @@ pub enum TableSource {
 }
 
 impl Origin {
-    /// Returns the short name, without folders.
+    /// Returns the short name without folders.
     pub fn name(&self) -> Text {
         match self {
             Origin::Virtual => TEXTS.text("signals.virtual"),
@@ -73,19 +73,19 @@ pub struct Results {
     pub analysis: Result<Analysis, AnalysisError>,
     pub diagnosis: Diagnosis,
     pub judge: Judge,
-    /// Mean levels of REFSIN and REFCOS in volts, if recorded.
+    /// Mean levels of REFSIN and REFCOS in volts, or `None` if they were not recorded.
     pub levels_v: Option<(f64, f64)>,
-    /// Amplitudes over frequency, or why they cannot be determined.
+    /// Amplitudes over frequency, or the reason why they cannot be determined.
     pub spectra: Result<Spectra, SpectrumError>,
-    /// DNL and INL, or why they cannot be determined; `None` without a reference angle, an ellipse or the number of
-    /// periods.
+    /// DNL and INL, or the reason why they cannot be determined; `None` without a reference angle, an ellipse or the
+    /// number of periods.
     pub nonlinearities: Option<Result<Nonlinearities, RevolutionError>>,
-    /// Lead of the absolute position over the analogue position, or why it cannot be determined; `None` without an
-    /// absolute position.
+    /// Lead of the absolute position over the analogue position, or the reason why it cannot be determined; `None`
+    /// without an absolute position.
     pub absolute_offset: Option<Result<AbsoluteOffset, OffsetError>>,
-    /// Image of all samples, sine over cosine; `None` if the values are too large for an image.
+    /// Image of all samples with sine plotted over cosine, or `None` if the values are too large for an image.
     pub raw: Option<Density>,
-    /// Image of all samples after the ellipse correction; `None` without an ellipse.
+    /// Image of all samples after the ellipse correction, or `None` without an ellipse.
     pub corrected: Option<Density>,
 }
 
@@ -96,7 +96,7 @@ pub struct Judge {
     pub periods: Option<u32>,
 }
 
-/// Cells per side of an image with many samples; with few samples, each one must be visible.
+/// Cells per side of an image with many samples. With few samples, larger cells keep each sample visible.
 const CELLS: usize = 240;
 const CELLS_OF_FEW: usize = 120;
 /// Number of samples up to which an image uses larger cells.
@@ -151,7 +151,7 @@ impl Deref for Measurement {
 }
 
 impl Results {
-    /// Returns why the capture could not be analysed, if it could not.
+    /// Returns the reason why the capture could not be analysed, or `None` if it was analysed.
     pub fn refusal(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;
         Some(explain::signal::analysis(Path::new(&self.origin.name().words(language)), error))
@@ -176,7 +176,7 @@ fn compare_with_reference(
     reference_comparison::nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
 }
 
-/// Returns an image of all samples centred on zero, with or without correction.
+/// Returns an image of all samples centred on zero, corrected if a correction is given.
 fn density(samples: Samples<'_>, correction: Option<Correction>) -> Option<Density> {
     /// Number of samples corrected at a time.
     const PORTION: usize = 1 << 14;

@@ -26,7 +26,7 @@ use crate::app::{Tab, Tool, ToolAction, ToolKind};
 
 pub(crate) const TAB: Tab = Tab::named("Signals");
 
-/// The Signals tab as an entry in the list of tools.
+/// Entry of the Signals tab in the list of tools.
 pub(crate) struct SignalsKind;
 
 impl ToolKind for SignalsKind {

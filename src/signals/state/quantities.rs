@@ -15,7 +15,7 @@ pub struct Quantity {
     pub unit: Unit,
     pub also: Option<(f64, usize, Unit)>,
     pub bound: Option<Bound>,
-    /// Whether the value is within its limit; `None` without a limit.
+    /// Whether the value is within its limit, or `None` without a limit.
     pub verdict: Option<Verdict>,
 }
 
@@ -66,7 +66,7 @@ impl Unit {
 impl Bound {
     /// Returns whether a value is within the limit, including the limit itself.
     pub fn holds(self, value: f64) -> bool {
-        /// Tolerance that keeps rounding from turning a value on the limit into one beyond it.
+        /// Tolerance that keeps rounding from moving a value on the limit beyond it.
         const SLACK: f64 = 1e-9;
         match self {
             Bound::Between(least, most) => value >= least - SLACK && value <= most + SLACK,
@@ -87,8 +87,7 @@ impl Quantity {
         self
     }
 
-    /// Judges the quantity by a limit beyond which the position is still correct, so that exceeding it is only a
-    /// warning.
+    /// Judges the quantity by a limit that may be exceeded with only a warning, because the position is still correct.
     fn bounded(mut self, bound: Bound) -> Self {
         self.bound = Some(bound);
         self.verdict = Some(if bound.holds(self.value) { Verdict::Ok } else { Verdict::Warn });
@@ -101,8 +100,8 @@ impl Quantity {
     }
 }
 
-/// Returns the quantities judged by the limits of a family. `periods` per revolution convert the frequency into a
-/// speed. Without an ellipse, the list is empty.
+/// Returns the quantities judged by the limits of a family. The number of `periods` per revolution converts the
+/// frequency into a speed. Without an ellipse, the list is empty.
 pub fn quantities(measurement: &Results, family: Family, periods: Option<u32>) -> Vec<Quantity> {
     let Ok(analysis) = &measurement.analysis else { return Vec::new() };
     let mut list = of_ellipse(analysis, family);
@@ -163,10 +162,10 @@ fn of_ellipse(analysis: &Analysis, family: Family) -> Vec<Quantity> {
     ]
 }
 
-/// Returns the position error within a period, before and after the correction. `periods` per revolution convert
-/// electrical degrees to mechanical arcseconds, which are otherwise omitted.
+/// Returns the position error within a period, before and after the correction. Mechanical arcseconds are included if
+/// the number of `periods` per revolution is known.
 pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quantity> {
-    /// Arcseconds per electrical degree at one period per revolution.
+    /// Mechanical arcseconds per electrical degree at one period per revolution.
     const ARC_SECONDS: f64 = 3600.0;
     let a_degree = periods.map(|periods| ARC_SECONDS / f64::from(periods.max(1)));
     let peak_to_peak = |word, degrees: f64| {
@@ -191,8 +190,8 @@ mod tests {
     use crate::signals::state::{Judge, Measurement, Origin};
     use std::sync::Arc;
 
-    /// Section 7 of the reference: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°; here 1000 samples over two periods in
-    /// 20 ms.
+    /// Returns the example of section 7: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°, with 1000 samples over two
+    /// periods in 20 ms.
     fn section_7() -> Measurement {
         let (alpha, turns) = (3.0_f64.to_radians(), 2.0 * std::f64::consts::TAU);
         let angle = |at: i32| f64::from(at) / 999.0 * turns;
@@ -243,7 +242,7 @@ mod tests {
         assert_eq!((least.verdict, least.bound), (Some(Verdict::Ok), Some(Bound::Between(0.4, 0.6))));
     }
 
-    /// Section 6: a sine offset of 1 % is ±0.5730°, 1.1459° peak to peak, 4.029″ at 1024 periods.
+    /// A sine offset of 1 % causes ±0.5730°, 1.1459° peak to peak, and 4.029″ at 1024 periods (section 6).
     #[test]
     fn the_error_of_section_6_is_shown_in_arcseconds() {
         let angle = |at: i32| f64::from(at) / 1000.0 * 4.0 * std::f64::consts::TAU;

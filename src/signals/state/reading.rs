@@ -50,7 +50,7 @@ pub struct Reading {
     progress: Arc<Progress>,
 }
 
-/// Progress shared between the task and the window.
+/// Reading progress shared between the task and the window.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
     done: AtomicU64,
@@ -85,7 +85,7 @@ impl Drop for Reading {
     }
 }
 
-/// Reads and measures a capture; the duration depends on the file size.
+/// Reads and measures a capture. The duration depends on the file size.
 pub(super) fn read(place: TableSource, hints: TableHints, judge: Judge, progress: &Progress) -> Read {
     let (head, result) = match &place {
         TableSource::Example(example) => {

@@ -10,7 +10,7 @@ use crate::analysis::capture::Capture;
 use crate::analysis::wiring::Wires;
 use crate::worker::stream::Batch;
 
-/// The newest samples, without gaps.
+/// Newest samples received without gaps.
 #[derive(Default)]
 pub(super) struct RecentSamples {
     chunks: VecDeque<Arc<Channels>>,
@@ -19,7 +19,7 @@ pub(super) struct RecentSamples {
     period_ns: i64,
 }
 
-/// The newest samples spanning a given number of milliseconds.
+/// Newest samples that span a given number of milliseconds.
 pub(super) struct Window {
     chunks: Vec<Arc<Channels>>,
     /// Number of samples in the first chunk that are too old.

@@ -18,7 +18,7 @@ pub struct Nonlinearities {
     pub raw: Part,
     /// Values with offsets, gain ratio and phase error corrected.
     pub corrected: Part,
-    /// Number of reference revolutions that the samples cover; from 1 on, the INL is valid for a whole revolution.
+    /// Number of reference revolutions covered by the samples. The INL is valid for a whole revolution if at least 1.
     pub revolutions: f64,
 }
 
@@ -29,13 +29,13 @@ pub struct Part {
     pub differential_deg: f64,
     /// INL as ± mechanical degrees.
     pub integral_deg: f64,
-    /// Points of reference angle and total deviation in mechanical degrees: minimum and maximum of each section.
+    /// Reference angle and total deviation in mechanical degrees at the minimum and maximum of each section.
     pub deviation: Vec<(f64, f64)>,
-    /// Points of reference angle and mean deviation over a period, both in mechanical degrees.
+    /// Reference angle and mean deviation over a period, in mechanical degrees.
     pub mean: Vec<(f64, f64)>,
 }
 
-/// The offset of an absolute position relative to the analogue position.
+/// Offset of an absolute position relative to the analogue position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AbsoluteOffset {
     /// Average lead of the absolute position in 1/32 period.
@@ -95,7 +95,7 @@ impl Part {
     }
 }
 
-/// Returns DNL and INL as ± values.
+/// Returns DNL and INL as quantities with ± values.
 pub fn nonlinearity_quantities(nonlinearities: &Nonlinearities) -> Vec<Quantity> {
     /// Arcseconds per degree.
     const ARC_SECONDS: f64 = 3600.0;
@@ -143,8 +143,8 @@ mod tests {
 
     use super::*;
 
-    /// Returns 1.25 revolutions of 64 periods, 1 % offset of the sine, an eccentricity of 0.01°, an absolute position that
-    /// is 3 steps ahead.
+    /// Returns a capture of 1.25 revolutions of 64 periods with 1 % sine offset, an eccentricity of 0.01°, and an
+    /// absolute position that is 3 steps ahead.
     fn capture() -> Capture {
         let count = 20_000;
         let turn = |at: i32| 1.25 * f64::from(at) / f64::from(count);

@@ -13,16 +13,16 @@ use crate::worker::stream::Batch;
 #[derive(Debug)]
 pub struct Scope {
     pub recorder: Recorder,
-    /// The reason why nothing can be drawn, if any.
+    /// Reason why nothing can be drawn, if any.
     pub refused: Option<TimeAxisError>,
     group: GroupId,
 }
 
-/// The reason why a capture's times cannot serve as an axis.
+/// Reason why the times of a capture cannot serve as an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeAxisError {
     GoBack,
-    /// The times exceed the range of nanoseconds, 292 years from zero; milliseconds may have been read as seconds.
+    /// The times exceed the range of nanoseconds, 292 years from zero. Milliseconds may have been read as seconds.
     TooFar,
 }
 
@@ -33,7 +33,7 @@ const FARTHEST_S: f64 = 9.2e9;
 const KEPT: usize = 500_000;
 /// Initially displayed time span in nanoseconds.
 const SPAN: i64 = 10_000_000;
-/// Number of samples handed over at a time.
+/// Number of samples transferred at a time.
 const PORTION: usize = 1 << 16;
 
 /// Names and headings of the differential columns, in volts.
@@ -106,7 +106,7 @@ impl Scope {
         self.recorder.break_before_next(self.group);
     }
 
-    /// Adds received samples; returns how many of them could not be stored.
+    /// Adds received samples and returns how many of them could not be stored.
     pub(super) fn add(&mut self, batch: &Batch<Channels>) -> u64 {
         if batch.lost > 0 {
             self.interrupt();

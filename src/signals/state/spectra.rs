@@ -8,7 +8,7 @@ pub struct Spectra {
     pub sine: ChannelSpectrum,
     pub cosine: ChannelSpectrum,
     pub spacing_hz: f64,
-    /// Number of samples used; if there are more than one transform takes, only the last ones.
+    /// Number of samples used. If there are more than one transform takes, only the last samples are used.
     pub samples: usize,
 }
 
@@ -16,7 +16,7 @@ pub struct Spectra {
 pub struct ChannelSpectrum {
     /// Frequency in hertz and peak amplitude in volts, in order of frequency.
     pub lines: Vec<(f64, f64)>,
-    /// The highest peaks, highest first.
+    /// Highest peaks, in descending order.
     pub peaks: Vec<SpectralLine>,
 }
 
@@ -26,8 +26,8 @@ const LINES: usize = 1_000;
 const PEAKS: usize = 6;
 /// Fraction of the highest peak below which a peak is not labelled.
 const LEAST_PEAK: f64 = 1e-4;
-/// Multiple of the median of all lines below which a peak is noise; in a million lines of noise, the highest reaches
-/// 4.5.
+/// Multiple of the median of all lines below which a peak is considered noise. In a million lines of noise, the highest
+/// line reaches 4.5.
 const NOISE: f64 = 6.0;
 
 impl Spectra {
@@ -73,7 +73,7 @@ fn median(values: &[f64]) -> f64 {
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// Converts a peak amplitude to a level: its rms value in decibels relative to one volt.
+/// Converts a peak amplitude in volts to its rms level in decibels relative to one volt.
 pub fn dbv(peak_v: f64) -> f64 {
     /// Lowest level in dB that a double can distinguish from zero next to one volt.
     const LEAST: f64 = -160.0;
@@ -84,7 +84,8 @@ pub fn dbv(peak_v: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// 100 kHz; a sine of 1 kHz with 0.5 V on both channels, and 8 kHz with 20 mV on the sine.
+    /// Reducing the spectra keeps every peak of a 100 kHz capture with 1 kHz at 0.5 V on both channels and 8 kHz at 20
+    /// mV on the sine.
     #[test]
     fn reduced_spectra_keep_every_peak() {
         let time_s: Vec<f64> = (0..50_000).map(|at| f64::from(at) * 1e-5).collect();

@@ -14,7 +14,7 @@ pub enum SynchroniseAction {
     Edit(Box<Form>),
     /// Uses the offset measured from the readings.
     UseOffset,
-    /// Uses the offset found in a capture, in 1/32 period and without the half step.
+    /// Uses the offset found in a capture, in 1/32 period, excluding the half step.
     UseCaptured(f64),
     /// Discards the readings from which the offset is measured.
     Forget,
@@ -22,40 +22,40 @@ pub enum SynchroniseAction {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
-    /// The absolute position in steps: decimal, or hexadecimal with `0x` or `h`.
+    /// Absolute position in steps, decimal or hexadecimal with `0x` or `h`.
     pub absolute: String,
     pub phase_input: PhaseInput,
-    /// Phase in periods or degrees.
+    /// Phase of the analogue position in periods or degrees.
     pub phase: String,
     pub sine_v: String,
     pub cosine_v: String,
     pub periods: String,
     pub turns: String,
-    /// Lead of the absolute position when both positions are correct, in 1/32 period.
+    /// Lead of the absolute position in 1/32 period when both positions are correct.
     pub offset: String,
     /// Whether the absolute position refers to the middle of its step.
     pub half_step: bool,
-    /// Quadrature counter in quarters of a period; empty without a counter.
+    /// Quadrature counter value in quarters of a period; empty without a counter.
     pub quarters: String,
     /// Timing uncertainty of a check without latch, in milliseconds.
     pub jitter_ms: String,
 }
 
-/// How the analogue position is entered.
+/// Format in which the analogue position is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhaseInput {
-    /// As a fraction of a period, 0 to 1.
+    /// Fraction of a period, 0 to 1.
     Periods,
-    /// In electrical degrees, 0 to 360.
+    /// Electrical degrees, 0 to 360.
     Degrees,
-    /// As sine and cosine in volts, with their mean removed.
+    /// Sine and cosine in volts, with their mean removed.
     Volts,
 }
 
 #[derive(Debug, Default)]
 pub struct Synchronise {
     pub form: Form,
-    /// The reason why the last reading of an encoder failed, if it did.
+    /// Reason why the last reading of an encoder failed, if it failed.
     pub problem: Option<Text>,
     readings: Vec<(u64, Phase)>,
     origin: Option<SineCosineOrigin>,
@@ -66,11 +66,12 @@ pub struct Synchronisation {
     pub absolute: u64,
     pub phase: Phase,
     pub period: u64,
-    /// Step within the period, 0 to 31.
+    /// Step of the absolute position within the period, 0 to 31.
     pub step: u64,
-    /// Lead over the analogue position within the period, in 1/32 period; offset and half step affect only the result.
+    /// Lead of the absolute over the analogue position within the period, in 1/32 period. Offset and half step affect
+    /// only the result.
     pub difference_steps: f64,
-    /// The fine position, or why it cannot be determined.
+    /// Fine position, or the reason why it cannot be determined.
     pub result: Result<SynchronisedPosition, AmbiguousPeriod>,
     pub periods: u32,
 }
@@ -102,7 +103,7 @@ impl Form {
     /// Combines the absolute and analogue positions.
     ///
     /// # Errors
-    /// Returns why the first invalid entry is invalid.
+    /// Returns the reason for the first invalid entry.
     pub fn synchronisation(&self) -> Result<Synchronisation, Text> {
         let (periods, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
@@ -123,7 +124,7 @@ impl Form {
     /// Returns the fine position from the quadrature counter, or `None` without a counter.
     ///
     /// # Errors
-    /// Returns why the first invalid entry is invalid.
+    /// Returns the reason for the first invalid entry.
     pub fn quadrature(&self) -> Result<Option<f64>, Text> {
         if self.quarters.trim().is_empty() {
             return Ok(None);
@@ -135,11 +136,11 @@ impl Form {
         Ok(Some(period as f64 + phase.periods()))
     }
 
-    /// Returns the speed in revolutions per minute below which a check without latch is reliable: the shaft then moves
-    /// less than half a period within the timing uncertainty.
+    /// Returns the speed in revolutions per minute below which a check without latch is reliable, because the shaft
+    /// moves less than half a period within the timing uncertainty.
     ///
     /// # Errors
-    /// Returns why the first invalid entry is invalid.
+    /// Returns the reason for the first invalid entry.
     pub fn unlatched_rpm(&self) -> Result<f64, Text> {
         let (periods, _) = self.synchroniser()?;
         let jitter_ms = within(TEXTS.text("synchronise.jitter"), &self.jitter_ms, 0.001, 10_000.0)?;
@@ -174,7 +175,7 @@ impl Form {
 }
 
 impl Synchronisation {
-    /// Returns the fine position in degrees of the shaft within a revolution, if known.
+    /// Returns the fine position in shaft degrees within a revolution, if known.
     pub fn degrees(&self) -> Option<f64> {
         let fine = self.result.ok()?;
         Some(fine.periods().rem_euclid(f64::from(self.periods)) / f64::from(self.periods) * 360.0)
@@ -214,7 +215,7 @@ impl Synchronise {
         }
     }
 
-    /// Takes the readings of an encoder at rest since the previous call.
+    /// Takes the readings collected since the previous call from an encoder at rest.
     pub(crate) fn follow(&mut self, source: &mut dyn SineCosineSource) {
         match source.take_reading() {
             Some(Ok(reading)) => self.take(reading, source.origin()),
@@ -257,7 +258,7 @@ impl Synchronise {
         self.readings.len()
     }
 
-    /// Returns the lead of the absolute position in the readings, in 1/32 period, as it must be entered, including a
+    /// Returns the offset measured from the readings in 1/32 period, in the form in which it is entered, including a
     /// selected half step.
     pub fn measured(&self) -> Option<f64> {
         if self.readings.len() < LEAST_READINGS {
@@ -266,7 +267,7 @@ impl Synchronise {
         measure_offset(self.readings.iter().copied()).map(|offset| self.with_half_step(offset))
     }
 
-    /// Returns an offset as it must be entered, including a selected half step.
+    /// Returns an offset in the form in which it is entered, including a selected half step.
     pub fn with_half_step(&self, offset: f64) -> f64 {
         offset + if self.form.half_step { 0.5 } else { 0.0 }
     }
@@ -283,7 +284,7 @@ mod tests {
         Form { absolute, phase, periods: typed(periods), turns: typed(turns), ..Form::default() }
     }
 
-    /// Rows of section 4: P, a5, d, k, fine position, residual.
+    /// Typed values match the rows of section 4: P, a5, d, k, fine position, residual.
     #[test]
     fn typed_rows_match_section_4() {
         let rows = [
@@ -325,7 +326,7 @@ mod tests {
         assert_eq!(nothing.synchronisation().unwrap_err().id(), "synchronise.no_signal");
     }
 
-    /// Section 4: counters of quarters with a phase; and 29 rpm for a millisecond with 1024 periods.
+    /// Quarter counters with a phase, and 29 rpm for a millisecond with 1024 periods, match section 4.
     #[test]
     fn counters_and_check_speed_are_computed() {
         for (quarters, phase, fine) in [("43", "0.76", 10.76), ("44", "0.98", 10.98), ("43", "0.02", 11.02)] {
@@ -358,7 +359,7 @@ mod tests {
         }
     }
 
-    /// Two readings half a step apart in opposite directions: both 2.5 steps ahead on average.
+    /// Two readings half a step apart in opposite directions are both 2.5 steps ahead on average.
     #[test]
     fn readings_measure_the_offset() {
         let mut page = Synchronise::default();

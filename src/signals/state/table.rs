@@ -11,7 +11,7 @@ pub struct Table {
     pub hints: TableHints,
     /// Format of the table, or `None` if it cannot be detected.
     pub layout: Option<Layout>,
-    /// The REFSIN and REFCOS columns while only one of them is selected.
+    /// Columns of REFSIN and REFCOS while only one of them is selected.
     pub half_chosen: (Option<usize>, Option<usize>),
 }
 
@@ -22,7 +22,7 @@ pub enum Column {
     Cosine,
     RefSine,
     RefCosine,
-    /// Shaft angle according to a reference encoder.
+    /// Shaft angle measured by a reference encoder.
     ReferenceAngle,
     Absolute,
 }
@@ -34,7 +34,7 @@ const WIDTH: usize = 160;
 const MOST_COLUMNS: usize = 64;
 
 impl Table {
-    /// Creates a table from the first bytes of its file.
+    /// Creates a table from the first bytes of a file.
     pub(super) fn of(place: TableSource, head: &[u8], hints: TableHints) -> Self {
         let text = decode_head(head);
         let shown = |line: &[u8]| {
@@ -55,7 +55,7 @@ impl Table {
         self.hints.columns.or(self.layout.as_ref().map(|layout| layout.columns))
     }
 
-    /// Returns the number of the column used for the given quantity, counted from 1.
+    /// Returns the column number used for the given quantity, counted from 1.
     pub fn column(&self, column: Column) -> Option<usize> {
         let columns = self.columns()?;
         match column {
@@ -84,7 +84,7 @@ impl Table {
         Some(name.as_str()).filter(|name| !name.is_empty())
     }
 
-    /// Selects another column. Returns `false` if the table cannot be reread yet because the other reference column is
+    /// Selects another column. Returns `false` if the table cannot be reread yet because the second reference column is
     /// missing.
     pub(super) fn choose(&mut self, column: Column, number: Option<usize>) -> bool {
         let mut columns = self.columns().unwrap_or(Columns::PLAIN);

@@ -5,7 +5,7 @@ use super::{Done, TAB};
 use crate::app::action::{Action, Done as StudioDone};
 use crate::app::tasks::{Mailbox, Tasks};
 
-/// A message that is sent if the task ends without returning.
+/// Guard that sends a message if the task ends without returning.
 struct CompletionGuard {
     mailbox: Mailbox,
     failed: Option<Done>,
@@ -29,7 +29,7 @@ fn action(done: Done) -> Action {
     Action::Done(StudioDone::tool(TAB, done))
 }
 
-/// Runs a task on a thread and returns `failed` if the task gives no result.
+/// Runs a task on a thread and returns `failed` if the task produces no result.
 pub(super) fn run(tasks: &Tasks, name: &str, failed: Done, task: impl FnOnce() -> Done + Send + 'static) {
     let promise = CompletionGuard { mailbox: tasks.mailbox(), failed: Some(failed) };
     tasks.run(name, move || {

@@ -16,7 +16,7 @@ const RATES: [u32; 10] = [1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 
 /// Width of the link entry in points.
 const LINK: f32 = 280.0;
 
-/// Draws the card. Returns `true` when the card is no longer needed.
+/// Draws the card. Returns `true` when the card can be closed.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) -> bool {
     let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let (mut started, mut closed) = (false, false);

@@ -27,7 +27,7 @@ pub(super) fn page_ui(
         return;
     };
     let compared = signals.comparison();
-    curves(ui, theme, &analysis.error, compared.map(AsRef::as_ref));
+    curves_ui(ui, theme, &analysis.error, compared.map(AsRef::as_ref));
     theme.gap(ui);
     split(
         ui,
@@ -46,7 +46,7 @@ pub(super) fn page_ui(
                 paragraph(ui, theme.caption(theme.words(&basis(analysis.error.basis))));
             });
         },
-        |ui, _| bars(ui, theme, &analysis.error, compared.map(AsRef::as_ref)),
+        |ui, _| bars_ui(ui, theme, &analysis.error, compared.map(AsRef::as_ref)),
     );
     theme.gap(ui);
     nonlinearity::card_ui(ui, theme, measurement, compared.map(AsRef::as_ref));
@@ -61,12 +61,12 @@ fn basis(basis: Basis) -> Text {
     }
 }
 
-/// Returns the error of the compared capture, if any.
+/// Returns the position error of the compared capture, if any.
 fn other(compared: Option<&Results>) -> Option<&PositionError> {
     compared.and_then(|own| own.analysis.as_ref().ok()).map(|own| &own.error)
 }
 
-fn curves(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Results>) {
+fn curves_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Results>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let step = 360.0 / curve.len().max(1) as f64;
         let points = curve.iter().enumerate().map(|(at, error)| (at as f64 * step, *error)).collect();
@@ -95,7 +95,7 @@ fn curves(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&R
     });
 }
 
-fn bars(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Results>) {
+fn bars_ui(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Results>) {
     let trace = |id: &'static str, curve: &[f64], colour: usize, dashed: bool| {
         let points = (1_u32..).zip(harmonics(curve)).map(|(order, peak)| (f64::from(order), peak)).collect();
         Trace { name: say(theme, id), points, colour, dashed }
@@ -119,7 +119,7 @@ fn bars(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Res
     });
 }
 
-/// Returns the raw and corrected traces of the capture and, if given, the compared one.
+/// Returns the raw and corrected traces of the capture and, if given, of the compared capture.
 fn series(
     error: &PositionError,
     compared: Option<&PositionError>,

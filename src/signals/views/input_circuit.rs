@@ -26,25 +26,25 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         (0.4, 560.0),
         form,
         |ui, form| {
-            entries(ui, theme, form, circuit.as_ref().err());
+            entries_ui(ui, theme, form, circuit.as_ref().err());
             theme.gap(ui);
-            notes(ui, theme);
+            notes_ui(ui, theme);
         },
         |ui, _| {
             if let Ok(circuit) = &circuit {
                 operating_point_ui(ui, theme, circuit);
                 theme.gap(ui);
-                table(ui, theme, circuit);
+                table_ui(ui, theme, circuit);
             }
         },
     );
     if let Ok(circuit) = &circuit {
         theme.gap(ui);
-        curves(ui, theme, circuit);
+        curves_ui(ui, theme, circuit);
     }
 }
 
-fn entries(ui: &mut Ui, theme: &Theme, form: &mut Form, refused: Option<&Text>) {
+fn entries_ui(ui: &mut Ui, theme: &Theme, form: &mut Form, refused: Option<&Text>) {
     card(ui, theme, TEXTS.text("input.entries"), |ui| {
         for (id, text, hint) in [
             ("input.periods", &mut form.periods, "1024"),
@@ -58,7 +58,7 @@ fn entries(ui: &mut Ui, theme: &Theme, form: &mut Form, refused: Option<&Text>) 
     });
 }
 
-fn notes(ui: &mut Ui, theme: &Theme) {
+fn notes_ui(ui: &mut Ui, theme: &Theme) {
     card(ui, theme, TEXTS.text("input.notes"), |ui| {
         for id in ["input.note_resistor", "input.note_adc", "input.note_lag"] {
             paragraph(ui, theme.label(say(theme, id)));
@@ -96,7 +96,7 @@ fn operating_point_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
     });
 }
 
-fn table(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
+fn table_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
     card(ui, theme, TEXTS.text("input.table"), |ui| {
         // Values are only read.
         ui.spacing_mut().interact_size.y = theme.space.groups;
@@ -125,7 +125,7 @@ fn table(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
     });
 }
 
-fn curves(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
+fn curves_ui(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
     let course = circuit.course(POINTS);
     let trace = |id, colour, dashed, value: fn(&Point) -> f64| Trace {
         name: say(theme, id),

@@ -24,7 +24,7 @@ use crate::ui::{Theme, icons, page};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
     Scope,
-    /// The Lissajous figure and the measured values with their limits.
+    /// Lissajous figure, and measured values with their limits.
     #[default]
     Quality,
     Error,
@@ -42,7 +42,7 @@ impl TabPage for Page {
     ];
 }
 
-/// An entered string that has not taken effect yet, and the reason if it is invalid.
+/// Text of an entry that has not taken effect yet, with the reason if it is invalid.
 type Draft = Option<(String, Option<Text>)>;
 
 #[derive(Default)]
@@ -128,7 +128,7 @@ fn page_ui(
     });
 }
 
-/// Returns a message from this folder's catalogue or the common one, in the window's language.
+/// Returns a message in the window's language, from this folder's catalogue or the common one.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -10,11 +10,11 @@ use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, problem};
 use crate::ui::widgets::{Chart, Trace, chart};
 
-/// Draws the card, including the values of a compared capture if given.
+/// Draws the card, including the values of a compared capture, if given.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, measurement: &Results, compared: Option<&Results>) {
     card(ui, theme, TEXTS.text("nonlinearity.title"), |ui| match &measurement.nonlinearities {
         Some(Ok(nonlinearities)) => {
-            curve(ui, theme, nonlinearities);
+            curve_ui(ui, theme, nonlinearities);
             ui.add_space(theme.space.inside);
             let other = compared.and_then(|own| own.nonlinearities.as_ref()?.as_ref().ok());
             let other = other.map(nonlinearity_quantities);
@@ -35,7 +35,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, measurement: &Results, compare
     });
 }
 
-fn curve(ui: &mut Ui, theme: &Theme, nonlinearities: &Nonlinearities) {
+fn curve_ui(ui: &mut Ui, theme: &Theme, nonlinearities: &Nonlinearities) {
     let trace = |id: &'static str, points: &[(f64, f64)], colour: usize, dashed: bool| Trace {
         name: say(theme, id),
         points: points.to_vec(),

@@ -7,13 +7,13 @@ use crate::signals::state::{Bound, Quantity, Unit};
 use crate::signals::views::say;
 use crate::ui::{Theme, controls};
 
-/// Width from which a value is also shown in its second unit; in narrower windows, the second unit is in the tooltip.
+/// Minimum width for showing a value in its second unit; in narrower windows, the second unit is in the tooltip.
 const WIDE: f32 = 390.0;
-/// Width from which limits have a column; in narrower windows, they are tooltips of the verdict icons.
+/// Minimum width for a column with limits; in narrower windows, limits are tooltips of the verdict icons.
 const LEAST: f32 = 350.0;
 const LIMITS: f32 = 110.0;
 
-/// Draws the rows; if a second list is given, also its values and the differences.
+/// Draws the rows. If a second list is given, its values and the differences are drawn as well.
 pub(super) fn rows_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -40,14 +40,14 @@ pub(super) fn rows_ui(
                 value(ui, theme, quantity, wide);
                 if let Some(compared) = compared {
                     let other = compared.iter().find(|other| other.word == quantity.word);
-                    comparison(ui, theme, quantity, other);
+                    comparison_ui(ui, theme, quantity, other);
                 }
                 let words = quantity.bound.map(|bound| bound_words(theme, bound, quantity.unit)).unwrap_or_default();
                 if limits {
                     ui.label(theme.caption(&words));
                 }
                 if let Some(verdict) = quantity.verdict {
-                    mark(ui, theme, verdict, &words);
+                    mark_ui(ui, theme, verdict, &words);
                 }
                 ui.end_row();
             }
@@ -70,7 +70,7 @@ fn value(ui: &mut Ui, theme: &Theme, quantity: &Quantity, wide: bool) {
     });
 }
 
-fn comparison(ui: &mut Ui, theme: &Theme, quantity: &Quantity, other: Option<&Quantity>) {
+fn comparison_ui(ui: &mut Ui, theme: &Theme, quantity: &Quantity, other: Option<&Quantity>) {
     let Some(other) = other else {
         ui.label("–");
         ui.label("");
@@ -113,7 +113,7 @@ fn unit_behind(words: String, unit: Unit) -> String {
 }
 
 /// Draws a verdict icon in its colour, with a label for screen readers and the limit as a tooltip.
-fn mark(ui: &mut Ui, theme: &Theme, verdict: Verdict, limit: &str) {
+fn mark_ui(ui: &mut Ui, theme: &Theme, verdict: Verdict, limit: &str) {
     let (icon, colour) = controls::verdict(theme, verdict);
     let id = match verdict {
         Verdict::Ok => "quality.inside",

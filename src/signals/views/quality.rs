@@ -15,7 +15,7 @@ use crate::analysis::signal_analysis::Analysis;
 use crate::app::{Action, Text, explain};
 use crate::signals::state::{Measurement, Results, Signals, SignalsAction as Signals_, forms, quantities};
 use crate::ui::controls::{card, card_with, choice, committed_entry, entry, name, paragraph, problem, split};
-use crate::ui::widgets::{Figure, Lissajous, lissajous, phosphor, series};
+use crate::ui::widgets::{Figure, Lissajous, density_image, lissajous, series};
 use crate::ui::{Theme, icons};
 
 /// Common numbers of periods per revolution.
@@ -36,18 +36,18 @@ pub(super) fn page_ui(
         (0.44, 520.0),
         (view, actions),
         |ui, (view, _)| {
-            figure(ui, theme, signals, measurement, view);
+            figure_ui(ui, theme, signals, measurement, view);
             theme.gap(ui);
-            verdict(ui, theme, signals, measurement);
+            verdict_ui(ui, theme, signals, measurement);
         },
         |ui, (view, actions)| {
             source::settings_ui(ui, theme, signals, &view.source, actions);
-            values(ui, theme, signals, measurement, view, actions);
+            values_ui(ui, theme, signals, measurement, view, actions);
         },
     );
 }
 
-fn figure(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Measurement>, view: &mut SignalsUiState) {
+fn figure_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Measurement>, view: &mut SignalsUiState) {
     let analysed = measurement.analysis.as_ref().ok();
     let corrected = view.corrected && analysed.is_some();
     let aside = |ui: &mut Ui| {
@@ -96,7 +96,7 @@ fn figure(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Arc<Measu
     });
 }
 
-/// The samples of a capture as a texture, kept until the samples or the colour change.
+/// The samples of a capture as a texture, cached until the samples or the colour change.
 #[derive(Default)]
 pub(super) struct Picture(Option<(Arc<Results>, bool, Color32, TextureHandle)>);
 
@@ -116,7 +116,7 @@ impl Picture {
             Arc::ptr_eq(own, measurement) && *own_corrected == corrected && *own_colour == colour
         };
         if !self.0.as_ref().is_some_and(same) {
-            let image = phosphor(density, colour);
+            let image = density_image(density, colour);
             let texture = ui.ctx().load_texture("", image, egui::TextureOptions::LINEAR);
             self.0 = Some((measurement.clone(), corrected, colour, texture));
         }
@@ -142,14 +142,14 @@ fn figure_text(
 pub(super) fn refused_ui(ui: &mut Ui, theme: &Theme, measurement: &Results) {
     let Some(why) = measurement.refusal(theme.language) else { return };
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
-        line(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why));
+        line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why));
         for finding in &measurement.diagnosis.findings {
             finding_ui(ui, theme, finding);
         }
     });
 }
 
-fn line(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: String) {
+fn line_ui(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: String) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
         paragraph(ui, words);
@@ -163,16 +163,16 @@ fn finding_ui(ui: &mut Ui, theme: &Theme, finding: &DiagnosisFinding) {
         Severity::Warning => (icons::WARNING, palette.warn),
         Severity::Fault => (icons::X_CIRCLE, palette.bad),
     };
-    line(ui, icon, colour, theme.words(&explain::signal::diagnosis(finding)));
+    line_ui(ui, icon, colour, theme.words(&explain::signal::diagnosis(finding)));
 }
 
-fn verdict(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement) {
+fn verdict_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement) {
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
         let findings = signals.findings();
         match measurement.refusal(theme.language) {
-            Some(why) => line(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why)),
+            Some(why) => line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&why)),
             None if findings.is_empty() => {
-                line(ui, icons::CHECK_CIRCLE, theme.palette.good, say(theme, "quality.good"));
+                line_ui(ui, icons::CHECK_CIRCLE, theme.palette.good, say(theme, "quality.good"));
             }
             None => {}
         }
@@ -185,7 +185,7 @@ fn verdict(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurem
     });
 }
 
-/// Draws the changes since another capture. A note that nothing has become worse appears only if everything could be
+/// Draws the changes since another capture. The note that nothing has become worse appears only if everything could be
 /// compared.
 fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &Changes) {
     let under = |ui: &mut Ui, id| {
@@ -194,13 +194,13 @@ fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &Changes) {
     };
     under(ui, "compare.worse");
     if changes.worse.is_empty() && changes.untold.is_empty() {
-        line(ui, icons::CHECK_CIRCLE, theme.palette.good, say(theme, "compare.nothing"));
+        line_ui(ui, icons::CHECK_CIRCLE, theme.palette.good, say(theme, "compare.nothing"));
     }
     for finding in &changes.worse {
         finding_ui(ui, theme, finding);
     }
     for untold in &changes.untold {
-        line(ui, icons::QUESTION, theme.palette.muted, theme.words(&explain::signal::untold(*untold)));
+        line_ui(ui, icons::QUESTION, theme.palette.muted, theme.words(&explain::signal::comparison_obstacle(*untold)));
     }
     if !changes.changed.is_empty() {
         under(ui, "compare.changed");
@@ -210,7 +210,7 @@ fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &Changes) {
     }
 }
 
-fn values(
+fn values_ui(
     ui: &mut Ui,
     theme: &Theme,
     signals: &Signals,
@@ -235,7 +235,7 @@ fn values(
     });
 }
 
-/// Draws the signal periods per revolution, which can be typed or selected.
+/// Draws the entry for the signal periods per revolution, which can be typed or selected.
 pub(super) fn periods_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -266,6 +266,6 @@ pub(super) fn periods_ui(
         problem(ui, theme, Some(why));
     }
     if signals.periods().is_none() {
-        line(ui, icons::QUESTION, theme.palette.warn, say(theme, "quality.periods_open"));
+        line_ui(ui, icons::QUESTION, theme.palette.warn, say(theme, "quality.periods_open"));
     }
 }

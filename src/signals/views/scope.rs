@@ -11,7 +11,7 @@ use crate::ui::controls::{card, card_with, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
 use crate::ui::{Theme, plot};
 
-/// Minimum height of the trace and height of the spectrum, in points.
+/// Minimum height of the trace and fixed height of the spectrum, in points.
 const TRACE: f32 = 300.0;
 const SPECTRUM: f32 = 200.0;
 
@@ -33,7 +33,7 @@ pub(super) fn page_ui(
     trace(ui, theme, signals, &mut view.scope, actions);
     let Some(measurement) = signals.measurement() else { return };
     theme.gap(ui);
-    spectrum(ui, theme, signals, measurement, &mut view.scope);
+    spectrum_ui(ui, theme, signals, measurement, &mut view.scope);
     if measurement.analysis.is_err() {
         theme.gap(ui);
         quality::refused_ui(ui, theme, measurement);
@@ -62,7 +62,7 @@ fn trace(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut ScopeView, ac
     });
 }
 
-fn spectrum(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement, view: &mut ScopeView) {
+fn spectrum_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement, view: &mut ScopeView) {
     let volts = view.volts;
     let mut wanted = volts;
     let aside = |ui: &mut Ui| {
@@ -84,8 +84,8 @@ fn spectrum(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measure
             }
         };
         let kept = signals.comparison().and_then(|own| own.spectra.as_ref().ok());
-        lines(ui, theme, spectra, kept, volts);
-        peaks(ui, theme, spectra, measurement);
+        lines_ui(ui, theme, spectra, kept, volts);
+        peaks_ui(ui, theme, spectra, measurement);
     });
     view.volts = wanted;
 }
@@ -94,7 +94,7 @@ fn shown(volts: bool, peak_v: f64) -> f64 {
     if volts { peak_v } else { dbv(peak_v) }
 }
 
-fn lines(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra>, volts: bool) {
+fn lines_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra>, volts: bool) {
     let trace = |id: &'static str, channel: &ChannelSpectrum, colour: usize, dashed: bool| Trace {
         name: say(theme, id),
         points: channel.lines.iter().map(|(hertz, peak)| (hertz / 1e3, shown(volts, *peak))).collect(),
@@ -133,7 +133,7 @@ fn lines(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra>, 
     paragraph(ui, theme.caption(theme.words(&text)));
 }
 
-fn peaks(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measurement) {
+fn peaks_ui(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measurement) {
     let signal_hz = measurement.analysis.as_ref().ok().and_then(|own| own.frequency_hz()).map(f64::abs);
     ui.add_space(theme.space.inside);
     ui.spacing_mut().interact_size.y = 20.0;

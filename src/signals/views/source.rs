@@ -20,7 +20,7 @@ pub(super) struct SourceUiState {
     adapter: bool,
 }
 
-/// Draws the source. Returns `true` if a capture can be shown below.
+/// Draws the source controls. Returns `true` if a capture can be shown below them.
 pub(super) fn source_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -28,11 +28,11 @@ pub(super) fn source_ui(
     view: &mut SourceUiState,
     actions: &mut Vec<Action>,
 ) -> bool {
-    reading(ui, theme, signals, actions);
+    reading_ui(ui, theme, signals, actions);
     problem(ui, theme, signals);
     let running = signals.source().is_running();
     if signals.measurement().is_some() || running {
-        present(ui, theme, signals, view, actions);
+        present_ui(ui, theme, signals, view, actions);
         ui.add_space(theme.space.between);
     }
     if view.adapter || signals.source().adapter_problem().is_some() {
@@ -48,12 +48,12 @@ pub(super) fn source_ui(
         ui.add_space(theme.space.between);
     }
     if !shown && !running {
-        nothing(ui, theme, signals, view, actions);
+        nothing_ui(ui, theme, signals, view, actions);
     }
     shown
 }
 
-/// Draws the virtual encoder's settings if they are open. Each page draws them where their effect is visible.
+/// Draws the virtual encoder's settings if they are open. Each page draws them next to what they affect.
 pub(super) fn settings_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -79,7 +79,7 @@ fn live(signals: &Signals) -> Option<SourceKind> {
     }
 }
 
-fn reading(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
+fn reading_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(reading) = signals.reading() else { return };
     ui.horizontal(|ui| {
         spinner(ui, theme);
@@ -95,7 +95,7 @@ fn reading(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Acti
     ui.add_space(theme.space.between);
 }
 
-/// Draws the reason why a capture could not be read, which other pages show as well.
+/// Draws the reason why a capture could not be read. Other pages show the reason as well.
 pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let Some(problem) = signals.problem() else { return };
     ui.horizontal_top(|ui| {
@@ -111,27 +111,27 @@ pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     ui.add_space(theme.space.between);
 }
 
-/// Draws the displayed capture on one line, with its actions.
-fn present(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
+/// Draws the displayed capture and its actions on one line.
+fn present_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     theme.card().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
         fill(ui);
         ui.horizontal_wrapped(|ui| {
-            title(ui, theme, signals);
-            source_menu(ui, theme, view, actions);
-            source_buttons(ui, theme, signals, view, actions);
+            title_ui(ui, theme, signals);
+            source_menu_ui(ui, theme, view, actions);
+            source_buttons_ui(ui, theme, signals, view, actions);
             save_capture_ui(ui, theme, signals, actions);
             if signals.table().is_some() {
-                toggle(ui, icons::TABLE, &say(theme, "signals.table"), &mut view.table.is_open);
+                toggle_ui(ui, icons::TABLE, &say(theme, "signals.table"), &mut view.table.is_open);
             }
         });
-        compared(ui, theme, signals, actions);
+        compared_ui(ui, theme, signals, actions);
     });
 }
 
-fn title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
+fn title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let palette = theme.palette;
     if live(signals).is_some() {
-        live_title(ui, theme, signals);
+        live_title_ui(ui, theme, signals);
     } else if let Some(measurement) = signals.measurement() {
         let name = theme.words(&measurement.origin.name());
         let response = ui.add(egui::Label::new(theme.heading(name)).truncate());
@@ -144,7 +144,7 @@ fn title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     ui.add_space(theme.space.between);
 }
 
-fn live_title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
+fn live_title_ui(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let palette = theme.palette;
     let source = signals.source();
     let shown = signals.measurement().map(|own| &own.origin);
@@ -190,7 +190,13 @@ fn live_title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     }
 }
 
-fn source_buttons(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
+fn source_buttons_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    signals: &Signals,
+    view: &mut SourceUiState,
+    actions: &mut Vec<Action>,
+) {
     let source = signals.source();
     let mut ask = |action| actions.push(Action::tool(Signals_::Source(action)));
     let Some(kind) = live(signals) else { return };
@@ -213,10 +219,10 @@ fn source_buttons(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut Sour
         SourceKind::Encoder => &mut view.settings,
         SourceKind::Adapter => &mut view.adapter,
     };
-    toggle(ui, icons::SLIDERS, &say(theme, "virtual.settings"), open);
+    toggle_ui(ui, icons::SLIDERS, &say(theme, "virtual.settings"), open);
 }
 
-fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
+fn toggle_ui(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
     let button = egui::Button::selectable(*open, format!("{icon}  {word}")).frame_when_inactive(true);
     if name(ui.add(button), true, word).clicked() {
         *open = !*open;
@@ -233,7 +239,7 @@ fn save_capture_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut 
     }
 }
 
-fn compared(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
+fn compared_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(kept) = signals.comparison() else { return };
     ui.horizontal(|ui| {
         let text = TEXTS.text("compare.with").with_text("name", kept.origin.name());
@@ -248,7 +254,7 @@ fn compared(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Act
     });
 }
 
-fn source_menu(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions: &mut Vec<Action>) {
+fn source_menu_ui(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     let word = say(theme, "signals.source");
     let menu = ui.menu_button(format!("{word}  {}", icons::CARET_DOWN), |ui| {
         ui.set_width(220.0);
@@ -277,8 +283,8 @@ fn source_menu(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions: &m
     name(menu.response, true, &word);
 }
 
-/// Draws an empty state with the buttons that load or start something.
-fn nothing(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
+/// Draws an empty state with buttons that load a capture or start a source.
+fn nothing_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     if signals.reading().is_some() {
         return;
     }

@@ -16,7 +16,7 @@ use crate::ui::{Theme, controls, icons};
 const ENTRY: f32 = 112.0;
 /// Side length of the ring in points.
 const RING: f32 = 200.0;
-/// Fraction taken by the left column, and minimum width for two columns.
+/// Fraction of the width taken by the left column, and minimum width for two columns.
 const COLUMNS: (f32, f32) = (0.42, 620.0);
 
 pub(super) fn page_ui(
@@ -36,10 +36,10 @@ pub(super) fn page_ui(
         theme,
         COLUMNS,
         (&mut form, &mut *actions),
-        |ui, (form, actions)| positions(ui, theme, form, state, synchronisation.as_ref().err(), device, actions),
+        |ui, (form, actions)| positions_ui(ui, theme, form, state, synchronisation.as_ref().err(), device, actions),
         |ui, _| {
             if let Ok(synchronisation) = &synchronisation {
-                result(ui, theme, synchronisation);
+                result_ui(ui, theme, synchronisation);
             }
         },
     );
@@ -50,13 +50,13 @@ pub(super) fn page_ui(
         COLUMNS,
         (&mut form, &mut *actions),
         |ui, (form, actions)| {
-            measured(ui, theme, state, actions);
+            measured_ui(ui, theme, state, actions);
             theme.gap(ui);
-            captured(ui, theme, signals, actions);
+            captured_ui(ui, theme, signals, actions);
             theme.gap(ui);
-            counter(ui, theme, form);
+            counter_ui(ui, theme, form);
         },
-        |ui, _| order(ui, theme),
+        |ui, _| order_ui(ui, theme),
     );
     if form != state.form {
         actions.push(ask(Page::Edit(Box::new(form))));
@@ -67,11 +67,11 @@ fn ask(action: Page) -> Action {
     Action::tool(Signals::Synchronise(action))
 }
 
-fn typed(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) {
+fn typed_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) {
     labelled_entry(ui, theme, TEXTS.text(id), text, ENTRY, hint);
 }
 
-fn positions(
+fn positions_ui(
     ui: &mut Ui,
     theme: &Theme,
     form: &mut Form,
@@ -81,7 +81,7 @@ fn positions(
     actions: &mut Vec<Action>,
 ) {
     card(ui, theme, TEXTS.text("synchronise.positions"), |ui| {
-        typed(ui, theme, "synchronise.absolute", &mut form.absolute, "0x2A5F");
+        typed_ui(ui, theme, "synchronise.absolute", &mut form.absolute, "0x2A5F");
         entry(ui, theme, &say(theme, "synchronise.analogue"), |ui| {
             let ways = [
                 (PhaseInput::Periods, "synchronise.in_periods"),
@@ -92,15 +92,15 @@ fn positions(
             choice(ui, &say(theme, "synchronise.analogue"), &mut form.phase_input, ways);
         });
         match form.phase_input {
-            PhaseInput::Periods | PhaseInput::Degrees => typed(ui, theme, "synchronise.phase", &mut form.phase, "0"),
+            PhaseInput::Periods | PhaseInput::Degrees => typed_ui(ui, theme, "synchronise.phase", &mut form.phase, "0"),
             PhaseInput::Volts => {
-                typed(ui, theme, "synchronise.sine", &mut form.sine_v, "0");
-                typed(ui, theme, "synchronise.cosine", &mut form.cosine_v, "0");
+                typed_ui(ui, theme, "synchronise.sine", &mut form.sine_v, "0");
+                typed_ui(ui, theme, "synchronise.cosine", &mut form.cosine_v, "0");
             }
         }
-        typed(ui, theme, "synchronise.periods", &mut form.periods, "1024");
-        typed(ui, theme, "synchronise.turns", &mut form.turns, "1");
-        typed(ui, theme, "synchronise.offset", &mut form.offset, "0");
+        typed_ui(ui, theme, "synchronise.periods", &mut form.periods, "1024");
+        typed_ui(ui, theme, "synchronise.turns", &mut form.turns, "1");
+        typed_ui(ui, theme, "synchronise.offset", &mut form.offset, "0");
         ui.checkbox(&mut form.half_step, say(theme, "synchronise.half_step"))
             .on_hover_text(say(theme, "synchronise.half_step_hint"));
         problem_below(ui, theme, refused.or(state.problem.as_ref()));
@@ -112,7 +112,7 @@ fn positions(
     });
 }
 
-fn measured(ui: &mut Ui, theme: &Theme, state: &Synchronise, actions: &mut Vec<Action>) {
+fn measured_ui(ui: &mut Ui, theme: &Theme, state: &Synchronise, actions: &mut Vec<Action>) {
     let count = state.readings();
     let mut forget = false;
     let aside = |ui: &mut Ui| {
@@ -133,7 +133,7 @@ fn measured(ui: &mut Ui, theme: &Theme, state: &Synchronise, actions: &mut Vec<A
     }
 }
 
-fn captured(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Action>) {
+fn captured_ui(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("synchronise.captured"), |ui| {
         let measurement = signals.measurement();
         let Some((own, offset)) = measurement.and_then(|own| Some((own, own.absolute_offset?))) else {
@@ -158,7 +158,7 @@ fn captured(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Actio
     });
 }
 
-fn result(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
+fn result_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
     let (verdict, words) = synchronisation.words();
     let (_, colour) = controls::verdict(theme, verdict);
     card(ui, theme, TEXTS.text("synchronise.result"), |ui| {
@@ -184,12 +184,12 @@ fn result(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
             |ui, ()| {
                 ui.vertical_centered(|ui| step_ring(ui, theme, &ring, RING.min(ui.available_width())));
             },
-            |ui, ()| numbers(ui, theme, synchronisation),
+            |ui, ()| numbers_ui(ui, theme, synchronisation),
         );
     });
 }
 
-fn numbers(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
+fn numbers_ui(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
     let number = |value, decimals, unit: &str| theme.mono(format!("{}{unit}", theme.number(value, decimals)));
     row(ui, theme, &say(theme, "synchronise.period"), theme.mono(synchronisation.period.to_string()));
     // In their colours in the ring.
@@ -217,10 +217,10 @@ fn numbers(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
     }
 }
 
-fn counter(ui: &mut Ui, theme: &Theme, form: &mut Form) {
+fn counter_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     card(ui, theme, TEXTS.text("synchronise.counter"), |ui| {
         paragraph(ui, theme.label(say(theme, "synchronise.counter_words")));
-        typed(ui, theme, "synchronise.quarters", &mut form.quarters, "1356");
+        typed_ui(ui, theme, "synchronise.quarters", &mut form.quarters, "1356");
         match form.quadrature() {
             Ok(Some(fine)) => row(ui, theme, &say(theme, "synchronise.fine"), theme.mono(theme.number(fine, 5))),
             Ok(None) => {}
@@ -228,7 +228,7 @@ fn counter(ui: &mut Ui, theme: &Theme, form: &mut Form) {
         }
         ui.add_space(theme.space.inside);
         paragraph(ui, theme.label(say(theme, "synchronise.check_words")));
-        typed(ui, theme, "synchronise.jitter", &mut form.jitter_ms, "1");
+        typed_ui(ui, theme, "synchronise.jitter", &mut form.jitter_ms, "1");
         match form.unlatched_rpm() {
             Ok(rpm) => {
                 let words = format!("{} {}", theme.number(rpm, 1), say(theme, "input.rpm"));
@@ -239,7 +239,7 @@ fn counter(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     });
 }
 
-fn order(ui: &mut Ui, theme: &Theme) {
+fn order_ui(ui: &mut Ui, theme: &Theme) {
     card(ui, theme, TEXTS.text("synchronise.order"), |ui| {
         for id in [
             "synchronise.order_read",

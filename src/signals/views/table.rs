@@ -41,15 +41,15 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
         again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "columns.detect")).clicked();
     };
     card_with(ui, theme, TEXTS.text("columns.title"), aside, |ui| {
-        lines(ui, theme, table);
+        lines_ui(ui, theme, table);
         ui.add_space(theme.space.between);
         two_columns(
             ui,
             theme,
             (&mut *view, &mut act),
-            |ui, (_, act)| columns(ui, theme, table, *act),
+            |ui, (_, act)| columns_ui(ui, theme, table, *act),
             |ui, (view, act)| {
-                form(ui, theme, table, *act);
+                form_ui(ui, theme, table, *act);
                 volts(ui, theme, table, view, *act);
             },
         );
@@ -70,8 +70,8 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
     }
 }
 
-/// Draws the first lines as they are in the file.
-fn lines(ui: &mut Ui, theme: &Theme, table: &Table) {
+/// Draws the first lines of the file unchanged.
+fn lines_ui(ui: &mut Ui, theme: &Theme, table: &Table) {
     let first = table.layout.as_ref().map_or(0, |layout| layout.first_row);
     theme.sunken().show(ui, |ui| {
         ui.set_min_width(ui.available_width().max(0.0));
@@ -86,7 +86,7 @@ fn lines(ui: &mut Ui, theme: &Theme, table: &Table) {
     });
 }
 
-fn form(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signals)) {
+fn form_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signals)) {
     let word = say(theme, "columns.delimiter");
     let mut delimiter = table.delimiter();
     entry(ui, theme, &word, |ui| {
@@ -105,7 +105,7 @@ fn form(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signals)
     });
 }
 
-fn columns(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signals)) {
+fn columns_ui(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signals)) {
     for (column, id) in COLUMNS {
         let word = say(theme, id);
         let mut number = table.column(column);

@@ -10,7 +10,7 @@ use crate::sim::sine_cosine::{Quantity, ReferenceLevel, Settings};
 use crate::ui::controls::{button, card_with, choice, entry, label_width, paragraph, problem_below, two_columns};
 use crate::ui::{Theme, icons};
 
-/// A setting with a slider: the ends of the slider (values beyond them can be typed) and the number of decimals.
+/// Slider of a setting, with its end values (values beyond them can be typed) and number of decimals.
 struct SliderSpec {
     quantity: Quantity,
     ends: (f64, f64),
@@ -67,9 +67,9 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
             ui,
             theme,
             &mut ask,
-            |ui, ask| sliders(ui, theme, source.settings(), &SIGNAL, *ask),
+            |ui, ask| sliders_ui(ui, theme, source.settings(), &SIGNAL, *ask),
             |ui, ask| {
-                sliders(ui, theme, source.settings(), &DISTURBANCES, *ask);
+                sliders_ui(ui, theme, source.settings(), &DISTURBANCES, *ask);
                 wires(ui, theme, source.settings(), *ask);
                 window(ui, theme, source, *ask);
             },
@@ -80,7 +80,13 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     }
 }
 
-fn sliders(ui: &mut Ui, theme: &Theme, settings: &Settings, list: &[SliderSpec], ask: &mut impl FnMut(SourceAction)) {
+fn sliders_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    settings: &Settings,
+    list: &[SliderSpec],
+    ask: &mut impl FnMut(SourceAction),
+) {
     /// Width of the number field beside a slider.
     const NUMBER: f32 = 96.0;
     let label = label_width(ui);

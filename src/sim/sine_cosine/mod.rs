@@ -31,11 +31,11 @@ const CYCLE: u64 = 1_000 * 1_000_000_000;
 /// Maximum number of setting changes remembered.
 const REMEMBERED: usize = 64;
 
-/// The analogue source. Its samples are numbered from 0.
+/// An analogue source whose samples are numbered from 0.
 #[derive(Clone, Debug)]
 pub struct Source {
     start: Time,
-    /// Segments in order of time, never empty.
+    /// Segments in chronological order, never empty.
     segments: VecDeque<Segment>,
 }
 
@@ -50,13 +50,13 @@ struct Segment {
 }
 
 impl Source {
-    /// Creates a source whose first sample is taken at `start`, at the angle 0.
+    /// Creates a source whose first sample is taken at `start`, at angle 0.
     pub fn new(checked: Checked, start: Time) -> Self {
         Source { start, segments: VecDeque::from([Segment { from: 0, elapsed: 0, turn: 0, checked }]) }
     }
 
-    /// Changes the settings from sample `at` on; the shaft continues from its position. A change before the latest one
-    /// replaces it.
+    /// Changes the settings, starting with sample `at`, while the shaft continues from its position. A change at or
+    /// before the latest one replaces it.
     pub fn change(&mut self, at: u64, checked: Checked) {
         let at = self.segments.back().map_or(at, |last| at.max(last.from));
         let Some(before) = self.segments.back() else { return };
@@ -74,14 +74,14 @@ impl Source {
         self.segments.back().map(|segment| segment.checked.settings())
     }
 
-    /// Returns the time of a sample, or `None` if the changes before it are no longer stored.
+    /// Returns the time of a sample, or `None` if the changes before the sample are no longer stored.
     pub fn time(&self, index: u64) -> Option<Time> {
         let segment = self.segment(index)?;
         Some(self.start.plus(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
     }
 
-    /// Returns `count` samples from `first` on, or `None` if the changes before them are no longer stored. The latest
-    /// 64 changes are.
+    /// Returns `count` samples starting at `first`, or `None` if the changes before these samples are no longer stored.
+    /// The latest 64 changes are stored.
     pub fn samples(&self, first: u64, count: usize) -> Option<Wires> {
         let column = || Vec::with_capacity(count.min(1 << 20));
         let mut wires =
@@ -112,7 +112,7 @@ impl Segment {
         self.elapsed.saturating_add(index.saturating_sub(self.from).saturating_mul(self.period()))
     }
 
-    /// Returns the parts of a turn between samples, modulo a turn.
+    /// Returns the rotation from one sample to the next in parts of a turn, modulo a turn.
     fn step(&self) -> u64 {
         let speed = (self.checked.settings().speed_rpm * 1_000.0).round() as i128;
         remainder(speed * i128::from(self.period()), TURN)
@@ -123,7 +123,7 @@ impl Segment {
         remainder(i128::from(self.turn) + samples * i128::from(self.step()), TURN)
     }
 
-    /// Appends `count` samples from `first` on.
+    /// Appends `count` samples starting at `first`.
     fn append(&self, first: u64, count: u64, wires: &mut Wires) {
         let settings = self.checked.settings();
         let model = Model::of(settings);
@@ -165,7 +165,7 @@ impl Wheel {
         self.at -= if self.at >= self.whole { self.whole } else { 0 };
     }
 
-    /// Returns the position within the turn, at least 0 and below 1.
+    /// Returns the position within the turn as a fraction, at least 0 and below 1.
     fn share(self) -> f64 {
         self.at as f64 / self.whole as f64
     }
@@ -175,7 +175,7 @@ impl Wheel {
     }
 }
 
-/// The settings in the form used to calculate each sample.
+/// Settings in the form used to calculate each sample.
 struct Model<'a> {
     settings: &'a Settings,
     periods: u64,
@@ -183,7 +183,7 @@ struct Model<'a> {
     eccentricity: f64,
     phase_error: f64,
     third: f64,
-    /// Noise of each wire, such that a difference has the configured noise.
+    /// Noise of each wire, chosen so that the difference of two wires has the configured noise.
     noise: f64,
 }
 

@@ -2,60 +2,61 @@
 
 use crate::analysis::wiring::Wire;
 
-/// Settings of the source. Voltages are peak values unless stated as rms.
+/// Settings of the analogue source. Voltages are peak values unless stated as rms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Signal periods per revolution, a whole number.
+    /// Number of signal periods per revolution, a whole number.
     pub periods: f64,
-    /// Speed in revolutions per minute, in steps of 0.001; the angle falls for negative values.
+    /// Speed in revolutions per minute, in steps of 0.001. For negative values the angle decreases.
     pub speed_rpm: f64,
-    /// Sample rate in hertz. The sample period is a whole number of nanoseconds: see [`Settings::period_ns`].
+    /// Sample rate in hertz. The sample period is a whole number of nanoseconds (see [`Settings::period_ns`]).
     pub rate_hz: f64,
-    /// R: differential amplitude of the cosine channel in volts.
+    /// Differential amplitude R of the cosine channel in volts.
     pub amplitude_v: f64,
-    /// q: offset of the sine channel in volts.
+    /// Offset q of the sine channel in volts.
     pub offset_sine_v: f64,
-    /// p: offset of the cosine channel in volts.
+    /// Offset p of the cosine channel in volts.
     pub offset_cosine_v: f64,
-    /// r: amplitude of the cosine channel divided by that of the sine channel.
+    /// Amplitude ratio r of the cosine channel to the sine channel.
     pub gain_ratio: f64,
-    /// α: delay of the sine beyond a quarter of a period after the cosine, in degrees.
+    /// Phase error α in degrees, the delay of the sine beyond a quarter of a period after the cosine.
     pub phase_error_deg: f64,
     /// Mean level of the references in volts.
     pub level_v: f64,
     /// Third harmonic in percent of the amplitude.
     pub third_harmonic_percent: f64,
-    /// Amplitude modulation once per revolution, in percent.
+    /// Once-per-revolution amplitude modulation in percent.
     pub modulation_percent: f64,
     /// White noise of each differential channel in volts rms.
     pub noise_v: f64,
     /// Frequency of the interference in hertz, in steps of 0.001.
     pub interference_hz: f64,
-    /// Amplitude of the interference on the sine channel in volts; the cosine channel has half of it with the opposite
-    /// sign.
+    /// Amplitude of the interference on the sine channel in volts. The cosine channel has half the amplitude and the
+    /// opposite sign.
     pub interference_v: f64,
     /// Mains frequency in hertz, in steps of 0.001.
     pub hum_hz: f64,
     /// Hum amplitude in volts, equal and in phase in both channels.
     pub hum_v: f64,
-    /// Eccentricity of the scale: amplitude of the once-per-revolution angle error in mechanical seconds of arc.
+    /// Eccentricity of the scale, given as the amplitude of the once-per-revolution angle error in mechanical seconds
+    /// of arc.
     pub eccentricity_arcsec: f64,
     /// Broken wire, if any.
     pub open_wire: Option<Wire>,
-    /// Whether the receiver has a resistor between the wires of a pair (120 Ω), as the manuals require.
+    /// Whether the receiver has a 120 Ω resistor between the wires of a pair, as the manuals require.
     pub terminated: bool,
     /// Level of the reference wires.
     pub references: ReferenceLevel,
-    /// Seed of the noise: equal seeds yield equal noise.
+    /// Seed of the noise. Equal seeds yield equal noise.
     pub seed: u64,
 }
 
 /// Level of REFSIN and REFCOS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReferenceLevel {
-    /// The mean level, as for HIPERFACE encoders: only SIN and COS carry the signal.
+    /// The mean level, as in HIPERFACE encoders, where only SIN and COS carry the signal.
     Level,
-    /// The inverted signal, as for encoders with complementary outputs: each wire carries half of it.
+    /// The inverted signal, as in encoders with complementary outputs, where each wire carries half of the signal.
     Complement,
 }
 
@@ -98,7 +99,7 @@ pub enum Quantity {
     Eccentricity,
 }
 
-/// A setting is outside its range.
+/// An error for a setting that is outside its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{quantity:?} must be from {least} to {most}, not {value}")]
 pub struct SettingError {
@@ -117,7 +118,7 @@ pub struct SettingError {
 pub struct Checked(Settings);
 
 impl Quantity {
-    /// All quantities in the order of the settings.
+    /// All quantities, in the order of the settings.
     pub const ALL: [Quantity; 17] = [
         Quantity::Periods,
         Quantity::Speed,
@@ -138,7 +139,7 @@ impl Quantity {
         Quantity::Eccentricity,
     ];
 
-    /// Returns the unit symbol, which is the same in every language; empty for a plain number.
+    /// Returns the unit symbol, which is the same in every language, or an empty string for a plain number.
     pub const fn unit(self) -> &'static str {
         match self {
             Quantity::Periods | Quantity::GainRatio => "",
@@ -184,14 +185,15 @@ impl Settings {
         *self.clone().place(quantity)
     }
 
-    /// Returns a copy of the settings with another value of a quantity.
+    /// Returns a copy of the settings with one quantity changed to `value`.
     #[must_use]
     pub fn with(mut self, quantity: Quantity, value: f64) -> Self {
         *self.place(quantity) = value;
         self
     }
 
-    /// Returns the sample period in whole nanoseconds: 100 kHz yields 10 000 ns, 44.1 kHz yields 22 676 ns.
+    /// Returns the sample period in whole nanoseconds. For example, 100 kHz yields 10 000 ns and 44.1 kHz yields 22 676
+    /// ns.
     pub fn period_ns(&self) -> i64 {
         (1e9 / self.rate_hz).round() as i64
     }
@@ -199,8 +201,8 @@ impl Settings {
     /// Validates the settings.
     ///
     /// # Errors
-    /// [`SettingError`] with the first setting outside its range, and the range. The number of periods is also refused
-    /// if it is not whole.
+    /// [`SettingError`] with the first setting outside its range, and the range. A number of periods that is not whole
+    /// is also refused.
     pub fn checked(self) -> Result<Checked, SettingError> {
         for quantity in Quantity::ALL {
             let (value, (least, most)) = (self.get(quantity), quantity.range());
@@ -243,8 +245,9 @@ impl Checked {
 }
 
 impl Default for Settings {
-    /// Returns the settings of a good HIPERFACE encoder with 1024 periods at 60 rev/min, sampled at 100 kHz: 0.5 V, 0.5
-    /// mV of noise. Interference has its usual frequencies: 8 kHz from a drive and 50 Hz from the mains.
+    /// Returns the settings of a good HIPERFACE encoder with 1024 periods at 60 rev/min, sampled at 100 kHz, with an
+    /// amplitude of 0.5 V and 0.5 mV of noise. The interference frequencies are set to the usual 8 kHz of a drive and
+    /// 50 Hz of the mains.
     fn default() -> Self {
         Settings {
             periods: 1024.0,

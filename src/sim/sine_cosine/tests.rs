@@ -16,7 +16,8 @@ fn near(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance, "{found} instead of {expected}");
 }
 
-/// Section 7: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°. One period in 360 samples: 1 rev/min of one period is 6°/s.
+/// Section 7: R = 0.5, p = 0.02, q = −0.03, r = 1.05, α = 3°. One period in 360 samples: 1 rev/min of one period is
+/// 6°/s.
 #[test]
 fn samples_match_section_7() {
     let source = source(Settings {
@@ -158,7 +159,8 @@ fn an_open_wire_reads_as_the_receiver_terminates_it() {
     }
 }
 
-/// Expected values from Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 + 16·100/1296000·sin(2π·0.3)) and
+/// Expected values from Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 + 16·100/1296000·sin(2π·0.3))
+/// and
 /// 0.3 turns, with the amplitude 1 + 0.1·cos(2π·0.3).
 #[test]
 fn harmonic_modulation_and_eccentricity_are_simulated() {

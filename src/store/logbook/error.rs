@@ -18,7 +18,7 @@ pub struct LogbookError {
 pub enum LogbookProblem {
     #[error(transparent)]
     Folder(FileError),
-    /// The file cannot be opened: a folder has its name, or permission is missing.
+    /// The file cannot be opened because a folder has its name or because permission is missing.
     #[error("cannot be opened")]
     NoAccess,
     /// The file can be read but not written.
@@ -32,19 +32,19 @@ pub enum LogbookProblem {
     /// The file is damaged or not a database.
     #[error("is damaged: {what}")]
     Damaged { what: String },
-    /// A newer version of the program created the file, which is left unchanged.
+    /// The file was created by a newer version of the program and is left unchanged.
     #[error("has schema {found}, written by a newer version; this version supports schemas up to {known}")]
     Newer {
         found: i64,
-        /// The latest schema that this version knows.
+        /// Latest schema that this version of the program knows.
         known: i64,
     },
-    /// The entry to conclude does not exist or has already been concluded.
+    /// The entry to be concluded does not exist or has already been concluded.
     #[error("entry {entry} is not open")]
     NotOpen { entry: EntryId },
     #[error("{what}")]
     Database {
-        /// SQLite's extended result code, or `None` if the value was refused before it reached SQLite.
+        /// Extended result code of SQLite, or `None` if the value was refused before it reached SQLite.
         code: Option<i32>,
         what: String,
     },

@@ -20,14 +20,14 @@ pub use error::{LogbookError, LogbookProblem};
 /// Maximum time to wait for another window that is writing.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// An open logbook. Opening and reading may wait for another window, so do neither on the UI thread.
+/// An open logbook. Opening and reading may wait for another window, so they must not be done on the UI thread.
 #[derive(Debug)]
 pub struct Logbook {
     path: PathBuf,
     database: Connection,
 }
 
-/// The device that an entry is about.
+/// Device to which an entry belongs.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct DeviceKey {
     /// Kind of device, such as `hiperface`.
@@ -36,7 +36,7 @@ pub struct DeviceKey {
     /// type.
     pub device_type: String,
     pub serial_number: String,
-    /// Whether the device is simulated; a simulated device never shares a count with a real one.
+    /// Whether the device is simulated. A simulated device never shares a count with a real one.
     pub is_virtual: bool,
 }
 
@@ -63,18 +63,19 @@ pub enum Outcome {
     Cancelled,
 }
 
-/// A write, with its plan and its outcome.
+/// A logged write with its plan and its outcome.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Identifier of the entry; later entries have greater ones.
+    /// Identifier of the entry. Later entries have greater identifiers.
     pub id: EntryId,
     /// Time directly before the write.
     pub at: Timestamp,
     pub description: String,
     pub planned_cycles: u64,
-    /// Path of the backup taken before the write; invalid Unicode in the path is replaced.
+    /// Path of the backup taken before the write. Invalid Unicode in the path is replaced.
     pub backup: Option<PathBuf>,
-    /// Conclusion of the write; `None` while it runs, and permanently if the program died in the meantime.
+    /// Conclusion of the write, or `None` while the write is running and permanently if the program died in the
+    /// meantime.
     pub conclusion: Option<Conclusion>,
 }
 
@@ -82,15 +83,15 @@ pub struct Entry {
 pub struct Conclusion {
     pub at: Timestamp,
     pub outcome: Outcome,
-    /// Number of write cycles spent; not zero for a write that failed half-way.
+    /// Number of write cycles spent, including those of a write that failed half-way.
     pub cycles_spent: u64,
 }
 
-/// Status codes that were cleared from a device by reading them.
+/// Status codes that were read from a device and cleared by reading.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatusEntry {
     pub at: Timestamp,
-    /// The formatted codes in the device's order.
+    /// Formatted codes in the device's order.
     pub codes: String,
 }
 
@@ -99,7 +100,7 @@ impl Logbook {
     ///
     /// # Errors
     /// Returns an error if the file is damaged, not a database, in use for longer than two seconds, not writable, or
-    /// created by a newer version of the program; the file is then left unchanged.
+    /// created by a newer version of the program. The file is then left unchanged.
     pub fn open(path: &Path) -> Result<Self, LogbookError> {
         Self::open_with_timeout(path, PATIENCE)
     }
@@ -238,7 +239,7 @@ impl Logbook {
     }
 }
 
-/// Limits the cycles of an entry to 32 bits, so that no sum of entries overflows; no EEPROM survives a thousandth of
+/// Limits the cycles of an entry to 32 bits, so that no sum of entries overflows. No EEPROM survives a thousandth of
 /// that number.
 fn saturating_cycle_count(cycles: u64) -> u32 {
     u32::try_from(cycles).unwrap_or(u32::MAX)

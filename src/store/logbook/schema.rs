@@ -11,7 +11,7 @@ use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior};
 use super::LogbookProblem;
 use crate::store::files::create_folder;
 
-/// Migrations from each schema to the next. Migrations are added but never changed, since logbooks created by them
+/// Migrations from each schema to the next. Migrations may be added but never changed, because logbooks created by them
 /// exist.
 const STEPS: [&str; 2] = [
     "
@@ -74,13 +74,13 @@ pub(super) fn parse_time(text: &str) -> rusqlite::Result<Timestamp> {
     text.parse().map_err(|error: jiff::Error| rusqlite::Error::FromSqlConversionFailure(0, Type::Text, Box::new(error)))
 }
 
-/// Converts a cycle count from the tables, since SQLite has no unsigned integers.
+/// Converts a cycle count read from the tables to unsigned, because SQLite has no unsigned integers.
 pub(super) fn parse_cycles(count: i64) -> rusqlite::Result<u64> {
     u64::try_from(count).map_err(|_| rusqlite::Error::IntegralValueOutOfRange(0, count))
 }
 
-/// Selects a mode in which readers do not wait for a writer and every commit is flushed, since an intent has to survive
-/// a power failure.
+/// Selects a mode in which readers do not wait for a writer and every commit is flushed, because an intent has to
+/// survive a power failure.
 fn use_write_ahead_log(database: &Connection) -> rusqlite::Result<()> {
     // The query returns the resulting mode; a network disk without support for WAL keeps its old one and works too.
     match database.query_row("PRAGMA journal_mode = WAL", [], |row| row.get::<_, String>(0)) {
@@ -107,7 +107,7 @@ fn migrate(database: &mut Connection) -> Result<(), LogbookProblem> {
     Ok(transaction.commit()?)
 }
 
-/// Returns how many of the migrations have been applied to the database.
+/// Returns how many migrations have been applied to the database.
 fn check_version(database: &Connection) -> Result<usize, LogbookProblem> {
     let found: i64 = database.pragma_query_value(None, "user_version", |row| row.get(0))?;
     match usize::try_from(found) {

@@ -36,7 +36,7 @@ pub(in crate::ui) fn comparison_ui(ctx: &egui::Context, theme: &Theme, studio: &
             only_ui(ui, theme, "comparison.only_right", only_right);
         });
         theme.gap(ui);
-        buttons(ui, theme, device, shown, actions);
+        buttons_ui(ui, theme, device, shown, actions);
     });
 }
 
@@ -71,7 +71,7 @@ fn only_ui(ui: &mut Ui, theme: &Theme, word: &'static str, items: &[String]) {
     }
 }
 
-fn buttons(ui: &mut Ui, theme: &Theme, device: &AnyDevice, shown: &ProfileComparison, actions: &mut Vec<Action>) {
+fn buttons_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, shown: &ProfileComparison, actions: &mut Vec<Action>) {
     at_the_right(ui, |ui| {
         let differs = !shown.comparison().differences.is_empty();
         let can_restore = differs && device.is_ready() && device.has_memory();

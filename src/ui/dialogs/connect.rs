@@ -1,5 +1,5 @@
-//! The connection dialog: a link as a form, recent links, the ports of this computer, and the search for an encoder with
-//! unknown settings.
+//! The connection dialog: a link as a form, recent links, the ports of this computer, and the search for an encoder
+//! with unknown settings.
 
 pub(crate) mod entries;
 pub(in crate::ui) mod form;
@@ -45,7 +45,7 @@ pub(in crate::ui) fn connect_ui(
         ui.horizontal(|ui| {
             ui.label(theme.heading(theme.say("connect.title")));
             theme.gap(ui);
-            devices(ui, theme, tabs, dialog.device, actions);
+            devices_ui(ui, theme, tabs, dialog.device, actions);
         });
         ui.add_space(theme.space.inside);
         // Constant height: nothing moves under the pointer.
@@ -74,7 +74,7 @@ pub(in crate::ui) fn connect_ui(
     });
 }
 
-fn devices(ui: &mut Ui, theme: &Theme, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
+fn devices_ui(ui: &mut Ui, theme: &Theme, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
     for own in tabs.of_devices() {
         let word = tabs.title(theme, own);
         let text = RichText::new(&word).font(theme.strong(theme.sizes.body));

@@ -30,7 +30,7 @@ pub(in crate::ui) fn diverged_ui(ctx: &egui::Context, theme: &Theme, studio: &St
         });
         problem(ui, theme, diverged.problem().as_ref());
         theme.gap(ui);
-        buttons(ui, theme, diverged, actions);
+        buttons_ui(ui, theme, diverged, actions);
     });
 }
 
@@ -73,7 +73,7 @@ fn shortened(value: &str) -> String {
     format!("{}…", line.chars().take(SHOWN).collect::<String>())
 }
 
-fn buttons(ui: &mut Ui, theme: &Theme, diverged: &Diverged, actions: &mut Vec<Action>) {
+fn buttons_ui(ui: &mut Ui, theme: &Theme, diverged: &Diverged, actions: &mut Vec<Action>) {
     at_the_right(ui, |ui| {
         let can_merge = diverged.can_merge();
         if primary(ui, theme, can_merge, icons::FLOPPY_DISK, &theme.say("diverged.merge")).clicked() {

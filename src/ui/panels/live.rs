@@ -46,7 +46,7 @@ pub(in crate::ui) fn live_ui(
     }
     pause_ui(ui, theme, device, paused);
     let alone = studio.settings.values_alone;
-    apart(ui, "controls", |ui| controls(ui, theme, (device, alone), views, actions));
+    apart(ui, "controls", |ui| controls_ui(ui, theme, (device, alone), views, actions));
     ui.add_space(theme.space.between);
     if !alone && !views.plot.is_large() {
         apart(ui, "plot", |ui| plot_ui(ui, theme, device, views, actions));
@@ -108,7 +108,7 @@ pub(crate) fn raw_row(ui: &mut Ui, theme: &Theme, value: String) {
     row(ui, theme, &theme.say("live.raw"), value);
 }
 
-fn controls(
+fn controls_ui(
     ui: &mut Ui,
     theme: &Theme,
     (device, alone): (&AnyDevice, bool),

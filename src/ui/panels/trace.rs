@@ -1,5 +1,5 @@
-//! The trace panel of the selected session: time, direction, bytes, meaning. The newest entry is at the bottom and stays
-//! visible until the user scrolls away; what is read then stays in its place while others come and go.
+//! The trace panel of the selected session: time, direction, bytes, meaning. The newest entry is at the bottom and
+//! stays visible until the user scrolls away; what is read then stays in its place while others come and go.
 
 use egui::{Align, RichText, Ui};
 use egui_extras::{Column, TableBuilder};

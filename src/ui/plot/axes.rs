@@ -37,8 +37,7 @@ pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
 }
 
 /// Returns a range that contains `low` to `high` and is at least `least` long. It ends at round steps, so that it does
-/// not
-/// change with every sample.
+/// not change with every sample.
 pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     let (low, high) = if high - low < least {
         let middle = f64::midpoint(low, high);

@@ -30,11 +30,11 @@ pub(super) fn paint(
     time_axis(painter, context, layout, &font);
     for lane in &layout.lanes {
         value_axis(painter, theme, lane, &font);
-        lines(painter, context, layout, lane, reduced);
-        names(painter, context, lane);
+        paint_lines(painter, context, layout, lane, reduced);
+        paint_names(painter, context, lane);
     }
-    trigger(painter, context, layout, &font);
-    cursors(painter, context, layout, &font);
+    paint_trigger(painter, context, layout, &font);
+    paint_cursors(painter, context, layout, &font);
     if let Some(place) = hovered {
         paint_pointer_readout(painter, context, layout, place);
     }
@@ -111,7 +111,7 @@ fn value_axis(painter: &Painter, theme: &Theme, lane: &Lane, font: &FontId) {
     painter.rect_stroke(rect, 0.0, Stroke::new(1.0, theme.palette.line), egui::StrokeKind::Inside);
 }
 
-fn lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane, reduced: &Reduced) {
+fn paint_lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane, reduced: &Reduced) {
     let palette = context.theme.palette;
     let clipped = painter.with_clip_rect(lane.rect.intersect(painter.clip_rect()));
     let axis = lane.axis();
@@ -127,7 +127,7 @@ fn lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane,
 }
 
 /// Paints the name and unit of each line of a lane, in the line's colour.
-fn names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
+fn paint_names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
     let theme = context.theme;
     if lane.rect.height() < LOW {
         // They would cover the line; the numbers below show them too.
@@ -148,7 +148,7 @@ fn names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
     }
 }
 
-fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
+fn paint_cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
     let palette = context.theme.palette;
     for cursor in Cursor::BOTH {
         let Some(time) = context.recorder.cursor(cursor) else { continue };
@@ -163,14 +163,14 @@ fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &Fon
         // Intersections with the lines: the raw samples being read.
         for (lane, line) in layout.lanes.iter().flat_map(|lane| lane.lines.iter().map(move |line| (lane, line))) {
             if let Some(line) = context.recorder.line(*line) {
-                dot(painter, context, layout, lane, line, time);
+                paint_dot(painter, context, layout, lane, line, time);
             }
         }
     }
 }
 
 /// Draws a dot at the raw sample nearest to the given time.
-fn dot(
+fn paint_dot(
     painter: &Painter,
     context: &Context<'_>,
     layout: &Layout,
@@ -208,13 +208,13 @@ fn paint_pointer_readout(painter: &Painter, context: &Context<'_>, layout: &Layo
     painter.galley(corner, words, Color32::PLACEHOLDER);
     for lane in &layout.lanes {
         for line in lane.lines.iter().filter_map(|id| context.recorder.line(*id)) {
-            dot(painter, context, layout, lane, line, time);
+            paint_dot(painter, context, layout, lane, line, time);
         }
     }
 }
 
 /// Paints the trigger level and the position of the trigger event.
-fn trigger(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
+fn paint_trigger(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
     let Some((trigger, state)) = context.recorder.trigger() else { return };
     let palette = context.theme.palette;
     let colour = Color32::from(palette.accent);

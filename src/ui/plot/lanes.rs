@@ -1,5 +1,5 @@
-//! The layout of a plot: lanes one below the other, or one for all; the values of each; and the reduced samples, which are
-//! recalculated only when samples or view have changed.
+//! The layout of a plot: lanes one below the other, or one for all; the values of each; and the reduced samples, which
+//! are recalculated only when samples or view have changed.
 
 use std::ops::Range;
 

@@ -19,31 +19,31 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
     if let Some(between) = recorder.cursor_distance() {
         ui.horizontal_wrapped(|ui| {
             if recorder.counts() {
-                figure(ui, theme, "Δn", &(between / SAMPLE).to_string());
+                figure_ui(ui, theme, "Δn", &(between / SAMPLE).to_string());
                 return;
             }
-            figure(ui, theme, "Δt", &axes::duration(between, theme.language));
+            figure_ui(ui, theme, "Δt", &axes::duration(between, theme.language));
             if between != 0 {
                 let hertz = 1e9 / between.abs() as f64;
-                figure(ui, theme, "1/Δt", &format!("{} Hz", theme.number(hertz, if hertz < 100.0 { 3 } else { 1 })));
+                figure_ui(ui, theme, "1/Δt", &format!("{} Hz", theme.number(hertz, if hertz < 100.0 { 3 } else { 1 })));
             }
         });
     }
     let measured = recorder.visible_series().any(|line| recorder.measure(line).is_some());
     if measured {
         if ui.available_width() > WIDE {
-            table(ui, context, hovered)
+            table_ui(ui, context, hovered)
         } else {
-            columns(ui, context, hovered)
+            columns_ui(ui, context, hovered)
         }
         return;
     }
     for line in recorder.visible_series() {
         ui.horizontal_wrapped(|ui| {
-            name(ui, theme, line);
+            name_ui(ui, theme, line);
             ui.label(small(theme, now(context, line, hovered)));
             ui.label(theme.caption(line.scale().map(|scale| theme.words(&scale.unit)).unwrap_or_default()));
-            remarks(ui, theme, line, None);
+            remarks_ui(ui, theme, line, None);
         });
     }
 }
@@ -51,7 +51,7 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
 /// Width in points from which the numbers of all lines are stacked.
 const WIDE: f32 = 640.0;
 
-fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
+fn table_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let right = |ui: &mut Ui, words: RichText| {
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(words));
@@ -77,18 +77,18 @@ fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
         row(ui, longest.into_iter().map(|(label, _)| theme.caption(label)).collect());
         ui.end_row();
         for (line, measured) in rows {
-            ui.horizontal(|ui| name(ui, theme, line));
+            ui.horizontal(|ui| name_ui(ui, theme, line));
             right(ui, small(theme, now(context, line, hovered)));
             ui.label(theme.caption(line.scale().map(|scale| theme.words(&scale.unit)).unwrap_or_default()));
             row(ui, figures(theme, line, &measured).into_iter().map(|(_, value)| small(theme, value)).collect());
-            remarks(ui, theme, line, Some(&measured));
+            remarks_ui(ui, theme, line, Some(&measured));
             ui.end_row();
         }
     });
 }
 
 /// Draws a table with one column per line and one row per number, for narrow panels.
-fn columns(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
+fn columns_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let lines: Vec<(&Series, Option<Measured>)> =
         recorder.visible_series().map(|line| (line, recorder.measure(line))).collect();
@@ -103,7 +103,7 @@ fn columns(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
         for (line, _) in &lines {
             let unit = line.scale().map(|scale| theme.words(&scale.unit)).unwrap_or_default();
             ui.horizontal(|ui| {
-                swatch(ui, theme, line);
+                swatch_ui(ui, theme, line);
                 ui.label(theme.caption(unit)).on_hover_text(theme.words(&line.name));
             });
         }
@@ -122,16 +122,16 @@ fn columns(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
         }
     });
     for (line, measured) in &lines {
-        ui.horizontal_wrapped(|ui| remarks(ui, theme, line, measured.as_ref()));
+        ui.horizontal_wrapped(|ui| remarks_ui(ui, theme, line, measured.as_ref()));
     }
 }
 
-fn name(ui: &mut Ui, theme: &Theme, line: &Series) {
-    swatch(ui, theme, line);
+fn name_ui(ui: &mut Ui, theme: &Theme, line: &Series) {
+    swatch_ui(ui, theme, line);
     ui.label(theme.caption(theme.words(&line.name)));
 }
 
-fn swatch(ui: &mut Ui, theme: &Theme, line: &Series) {
+fn swatch_ui(ui: &mut Ui, theme: &Theme, line: &Series) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
     ui.painter().rect_filled(rect.shrink(1.0), 2.0, chart::colour(theme, line));
 }
@@ -165,7 +165,7 @@ fn figures(theme: &Theme, line: &Series, measured: &Measured) -> Vec<(String, St
 }
 
 /// Draws the reason why there are no samples, and the number of invalid samples.
-fn remarks(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measured>) {
+fn remarks_ui(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measured>) {
     let caption = |words: String, colour: crate::app::Rgb| RichText::new(words).size(theme.sizes.caption).color(colour);
     if let Some(remark) = &line.remark {
         ui.label(caption(theme.words(remark), theme.palette.warn));
@@ -195,7 +195,7 @@ fn small(theme: &Theme, words: impl Into<String>) -> RichText {
     RichText::new(words).font(egui::FontId::monospace(theme.sizes.caption + 1.0))
 }
 
-fn figure(ui: &mut Ui, theme: &Theme, label: &str, value: &str) {
+fn figure_ui(ui: &mut Ui, theme: &Theme, label: &str, value: &str) {
     // Sign and number stay together at the end of a line.
     let mut job = egui::text::LayoutJob::default();
     let format = |size, colour: crate::app::Rgb| egui::TextFormat {

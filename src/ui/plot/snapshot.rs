@@ -1,5 +1,5 @@
-//! A picture of the plot: the window delivers its pixels some frames later, and a part of them is kept. The whole plot must
-//! be visible, without a menu or the pointer over it.
+//! A picture of the plot: the window delivers its pixels some frames later, and a part of them is kept. The whole plot
+//! must be visible, without a menu or the pointer over it.
 
 use std::sync::{Arc, OnceLock};
 

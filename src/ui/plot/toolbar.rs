@@ -39,17 +39,17 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
         } else if tool(ui, true, icons::FAST_FORWARD, "recorder.follow") {
             context.act(RecorderAction::Follow);
         }
-        span(ui, context);
+        span_ui(ui, context);
         if tool(ui, some, icons::ARROWS_OUT_LINE_HORIZONTAL, "recorder.fit") {
             context.act(RecorderAction::Fit);
         }
         let cursors = Cursor::BOTH.into_iter().any(|cursor| recorder.cursor(cursor).is_some());
-        if switch(ui, context, some, cursors, icons::RULER, "recorder.cursors") {
+        if switch_ui(ui, context, some, cursors, icons::RULER, "recorder.cursors") {
             context.act(RecorderAction::ShowCursors(!cursors));
         }
-        trigger_menu(ui, context, &mut view.trigger);
-        lines_menu(ui, context);
-        export_menu(ui, context, &mut view.shot);
+        trigger_menu_ui(ui, context, &mut view.trigger);
+        lines_menu_ui(ui, context);
+        export_menu_ui(ui, context, &mut view.shot);
         if let Some(large) = &mut view.large {
             let small = (icons::CORNERS_IN, "recorder.small");
             let (icon, id) = if *large { small } else { (icons::CORNERS_OUT, "recorder.large") };
@@ -58,10 +58,10 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
             }
         }
     });
-    state(ui, context);
+    state_ui(ui, context);
 }
 
-fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &str, id: &'static str) -> bool {
+fn switch_ui(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &str, id: &'static str) -> bool {
     let word = context.theme.say(id);
     let button = egui::Button::selectable(on, icon).frame_when_inactive(true).min_size(egui::vec2(28.0, 28.0));
     let response = ui.add_enabled(enabled, button);
@@ -70,7 +70,7 @@ fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &st
 }
 
 /// Draws the time span selector, which shows a preset or the span that results from zooming.
-fn span(ui: &mut Ui, context: &mut Context<'_>) {
+fn span_ui(ui: &mut Ui, context: &mut Context<'_>) {
     const SECOND: i64 = 1_000_000_000;
     if context.recorder.counts() {
         // Seconds have no meaning here; zooming selects the number of samples.
@@ -91,7 +91,7 @@ fn span(ui: &mut Ui, context: &mut Context<'_>) {
     });
 }
 
-fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form) {
+fn trigger_menu_ui(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form) {
     let icon = icons::LIGHTNING;
     let lines = context.recorder.visible_series().next().is_some();
     if !lines {
@@ -106,7 +106,7 @@ fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form
     actions.into_iter().for_each(|action| context.act(action));
 }
 
-fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
+fn lines_menu_ui(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let mut actions = Vec::new();
     icon_menu(ui, icons::LIST_CHECKS, &theme.say("recorder.lines"), |ui| {
@@ -133,7 +133,7 @@ fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
     actions.into_iter().for_each(|action| context.act(action));
 }
 
-fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Screenshot) {
+fn export_menu_ui(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Screenshot) {
     let theme = context.theme;
     let (some, owner) = (!context.recorder.is_empty(), context.owner);
     let mut chosen = None;
@@ -159,7 +159,7 @@ fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Scre
 }
 
 /// Draws the state of the operation in progress: a trigger waiting, or a table being written.
-fn state(ui: &mut Ui, context: &mut Context<'_>) {
+fn state_ui(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     if let Some((_, state)) = recorder.trigger() {
         let id = match state {

@@ -95,8 +95,7 @@ pub(super) fn shapes(
 }
 
 /// Draws one vertical bar per pixel column, from the minimum to the maximum of its samples, extended to join the end of
-/// the previous
-/// column.
+/// the previous column.
 fn dense(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen: &Pen, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     mesh.reserve_vertices(picture.pixels.len() * 4);

@@ -1,5 +1,5 @@
-//! Small static curves and bars: the position error over a period, its harmonics, a spectrum. Drawn by egui_plot, in the
-//! window's theme.
+//! Small static curves and bars: the position error over a period, its harmonics, a spectrum. Drawn by egui_plot, in
+//! the window's theme.
 //!
 //! * **Size**: the available width, the given height.
 //! * **Keyboard**: none; Tab skips it.
@@ -48,7 +48,7 @@ const BARS: f64 = 0.7;
 
 /// Draws a chart, with a legend above if there are several series.
 pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
-    legend(ui, theme, chart.traces);
+    legend_ui(ui, theme, chart.traces);
     let own = *theme;
     let (x_unit, y_unit) = (chart.x_unit.to_owned(), chart.y_unit.to_owned());
     let tooltip = move |hover: &HoverPosition<'_>| match hover {
@@ -108,7 +108,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
 }
 
 /// Draws the series names, each beside a line in the colour of the series.
-fn legend(ui: &mut Ui, theme: &Theme, traces: &[Trace]) {
+fn legend_ui(ui: &mut Ui, theme: &Theme, traces: &[Trace]) {
     if traces.len() < 2 {
         return;
     }

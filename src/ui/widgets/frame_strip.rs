@@ -77,7 +77,7 @@ pub fn frame_strip(ui: &mut Ui, theme: &Theme, strip: &FrameStrip<'_>) {
         if ui.is_rect_visible(rect) {
             let first = strip.fields.iter().take(piece.field).map(|field| field.bits).sum::<usize>() + piece.first;
             let bits = (first..first + piece.bits).map(|at| strip.bits.get(at).copied().flatten());
-            cells(ui.painter(), theme, rect, (piece, placing.cell), field, bits);
+            paint_cells(ui.painter(), theme, rect, (piece, placing.cell), field, bits);
             if piece.first == 0 {
                 words.paint(ui.painter(), theme, rect);
             }
@@ -136,7 +136,7 @@ impl Words {
 }
 
 /// Draws the bits of a piece and the bar below them that joins them.
-fn cells(
+fn paint_cells(
     painter: &Painter,
     theme: &Theme,
     rect: Rect,

@@ -92,8 +92,7 @@ const AROUND: f32 = 60.0;
 const TYPED: f32 = 240.0;
 
 /// Returns the number of lines that an editor shows in the given height. Beside the typed view, the editor fills the
-/// height;
-/// above the typed view, it leaves room for the view but shows at least sixteen lines.
+/// height; above the typed view, it leaves room for the view but shows at least sixteen lines.
 pub fn hex_lines(height: f32, beside: bool) -> usize {
     if beside {
         ((height - AROUND) / LINE).clamp(4.0, 64.0) as usize
@@ -122,7 +121,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
         let narrow = ui.available_width() < grid.width + theme.space.groups * 2.0;
         let frame = theme.sunken().show(ui, |ui| {
             let area = ScrollArea::horizontal().id_salt(id.with("across")).scroll([narrow, false]);
-            area.show(ui, |ui| body(ui, theme, id, &grid, model, view)).inner
+            area.show(ui, |ui| body_ui(ui, theme, id, &grid, model, view)).inner
         });
         let response = frame.inner;
         if response.has_focus() {
@@ -130,12 +129,12 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
         }
         tell(ui, &response, label, model, view);
         ui.add_space(theme.space.inside);
-        status(ui, theme, &grid, model, view);
+        status_ui(ui, theme, &grid, model, view);
     });
     edits
 }
 
-fn body(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) -> Response {
+fn body_ui(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) -> Response {
     let (header, _) = ui.allocate_exact_size(Vec2::new(grid.width, grid.row + theme.space.inside), Sense::hover());
     paint::header(ui, theme, grid, header, model, view);
     let shown = grid.lines().clamp(1, model.lines.max(1));
@@ -224,7 +223,7 @@ fn tell(ui: &Ui, response: &Response, label: &str, model: &HexModel<'_>, view: &
 }
 
 /// Draws the cursor location, or the reason why an action was refused.
-fn status(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
+fn status_ui(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
     ui.horizontal(|ui| {
         ui.set_min_height(grid.row);
         ui.spacing_mut().item_spacing.x = theme.space.groups;

@@ -81,14 +81,14 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
     let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
     painter.rect_filled(rect, theme.radius, theme.palette.sunken);
     let place = PlotArea { rect, range_v: range(figure) };
-    grid(&painter, theme, &place);
-    rings(&painter, theme, &place, figure);
-    labels(&painter, theme, &place);
+    paint_grid(&painter, theme, &place);
+    paint_rings(&painter, theme, &place, figure);
+    paint_labels(&painter, theme, &place);
     for own in figure.figures {
-        samples(&painter, &place, own);
+        paint_samples(&painter, &place, own);
     }
     for own in figure.figures {
-        curve(&painter, &place, own, series(theme, own.colour));
+        paint_curve(&painter, &place, own, series(theme, own.colour));
     }
     if let Some(pos) = response.hover_pos() {
         paint_readout(&painter, theme, &place, pos);
@@ -97,7 +97,7 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
 
 /// Returns a single-colour picture of a sample density. More samples are brighter, and even a single sample stays
 /// visible.
-pub fn phosphor(density: &Density, colour: Color32) -> ColorImage {
+pub fn density_image(density: &Density, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a share of full brightness.
     const LEAST: f32 = 0.4;
     let side = density.side();
@@ -131,7 +131,7 @@ fn marks(place: &PlotArea) -> impl Iterator<Item = (i32, f64)> {
     (-count..=count).map(move |number| (number, f64::from(number) * step))
 }
 
-fn grid(painter: &Painter, theme: &Theme, place: &PlotArea) {
+fn paint_grid(painter: &Painter, theme: &Theme, place: &PlotArea) {
     let line = Stroke::new(1.0, theme.palette.line);
     for (_, volts) in marks(place) {
         painter.vline(place.at((volts, 0.0)).x, place.rect.y_range(), line);
@@ -139,7 +139,7 @@ fn grid(painter: &Painter, theme: &Theme, place: &PlotArea) {
     }
 }
 
-fn labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
+fn paint_labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
     let step = step(place);
     let font = FontId::proportional(theme.sizes.caption);
     let muted = Color32::from(theme.palette.muted);
@@ -165,7 +165,7 @@ fn labels(painter: &Painter, theme: &Theme, place: &PlotArea) {
     text(right - Vec2::splat(inside), Align2::RIGHT_BOTTOM, cosine);
 }
 
-fn rings(painter: &Painter, theme: &Theme, place: &PlotArea, figure: &Lissajous<'_>) {
+fn paint_rings(painter: &Painter, theme: &Theme, place: &PlotArea, figure: &Lissajous<'_>) {
     let good = Color32::from(theme.palette.good);
     let (inner, outer) = (place.circle(figure.ok_v.0), place.circle(figure.ok_v.1));
     let mut band = Mesh::default();
@@ -187,7 +187,7 @@ fn rings(painter: &Painter, theme: &Theme, place: &PlotArea, figure: &Lissajous<
     }
 }
 
-fn samples(painter: &Painter, place: &PlotArea, figure: &Figure) {
+fn paint_samples(painter: &Painter, place: &PlotArea, figure: &Figure) {
     let Some((texture, square)) = figure.picture else { return };
     let Square { cosine_v, sine_v, half_v } = square;
     let corners = [(cosine_v - half_v, sine_v + half_v), (cosine_v + half_v, sine_v - half_v)];
@@ -196,7 +196,7 @@ fn samples(painter: &Painter, place: &PlotArea, figure: &Figure) {
     painter.image(texture, rect, whole, Color32::WHITE);
 }
 
-fn curve(painter: &Painter, place: &PlotArea, figure: &Figure, colour: Color32) {
+fn paint_curve(painter: &Painter, place: &PlotArea, figure: &Figure, colour: Color32) {
     let points: Vec<Pos2> = figure.curve.iter().map(|point| place.at(*point)).collect();
     if figure.dashed {
         painter.extend(Shape::dashed_line(&points, Stroke::new(1.5, colour), 7.0, 4.0));

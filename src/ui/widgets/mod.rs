@@ -26,7 +26,7 @@ pub use hold_button::{HoldButton, hold_button};
 pub(in crate::ui) use hold_button::{
     HoldSurroundings, has_hold_button_keyboard, is_hold_button_held, surround_hold_buttons,
 };
-pub use lissajous::{Figure, Lissajous, lissajous, phosphor};
+pub use lissajous::{Figure, Lissajous, density_image, lissajous};
 pub use register_table::{
     RegisterBits, RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterOutput, RegisterRow,
     RegisterTable, RegisterView, register_table,

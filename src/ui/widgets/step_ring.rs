@@ -66,8 +66,8 @@ pub fn step_ring(ui: &mut Ui, theme: &Theme, ring: &StepRing<'_>, side: f32) {
     }
     let dial = Dial { middle: rect.center(), radius: side / 2.0 - theme.space.groups };
     let painter = ui.painter();
-    segments(painter, theme, dial, ring.step);
-    quarters(painter, theme, dial);
+    paint_segments(painter, theme, dial, ring.step);
+    paint_quarters(painter, theme, dial);
     if let Some(apart) = ring.apart {
         let arc = dial.arc(ring.phase, ring.phase + apart, 1.0 - 1.7 * WIDTH);
         painter.add(Shape::line(arc, PathStroke::new(3.0, ring.colour)));
@@ -77,7 +77,7 @@ pub fn step_ring(ui: &mut Ui, theme: &Theme, ring: &StepRing<'_>, side: f32) {
     painter.circle_filled(dial.at(ring.phase, 1.0 - WIDTH), 3.5, hand.color);
 }
 
-fn segments(painter: &Painter, theme: &Theme, dial: Dial, own: u64) {
+fn paint_segments(painter: &Painter, theme: &Theme, dial: Dial, own: u64) {
     let width = WIDTH * dial.radius;
     for step in 0..STEPS {
         let (from, to) = (f64::from(step) + GAP, f64::from(step) + 1.0 - GAP);
@@ -88,7 +88,7 @@ fn segments(painter: &Painter, theme: &Theme, dial: Dial, own: u64) {
 }
 
 /// Labels every eighth step with its number.
-fn quarters(painter: &Painter, theme: &Theme, dial: Dial) {
+fn paint_quarters(painter: &Painter, theme: &Theme, dial: Dial) {
     let font = FontId::monospace(theme.sizes.caption);
     for (step, align) in
         [(0, Align2::CENTER_BOTTOM), (8, Align2::LEFT_CENTER), (16, Align2::CENTER_TOP), (24, Align2::RIGHT_CENTER)]

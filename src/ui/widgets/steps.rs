@@ -120,8 +120,8 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
                 ui.add_space(RAIL);
                 ui.vertical(|ui| {
                     fill(ui);
-                    middle.y = title(ui, theme, step);
-                    event = event.or(content(ui, theme, model, step));
+                    middle.y = title_ui(ui, theme, step);
+                    event = event.or(content_ui(ui, theme, model, step));
                 });
             });
             // Again when it grows: its gauges and buttons must be visible.
@@ -131,7 +131,7 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
                 ui.data_mut(|data| data.insert_temp(at, (number, height)));
                 drawn.response.scroll_to_me(None);
             }
-            dot(ui.painter(), theme, middle, number, step);
+            paint_dot(ui.painter(), theme, middle, number, step);
             dots.push(middle);
             ui.add_space(theme.space.between + theme.space.inside);
         }
@@ -144,7 +144,7 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
 }
 
 /// Draws the title, which may have several lines, and returns the vertical centre of its first line.
-fn title(ui: &mut Ui, theme: &Theme, step: &StepRow) -> f32 {
+fn title_ui(ui: &mut Ui, theme: &Theme, step: &StepRow) -> f32 {
     let palette = theme.palette;
     let ink = match step.state {
         StepState::ToCome | StepState::Skipped => palette.muted,
@@ -160,7 +160,7 @@ fn title(ui: &mut Ui, theme: &Theme, step: &StepRow) -> f32 {
     response.rect.top() + half
 }
 
-fn content(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> Option<StepsEvent> {
+fn content_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> Option<StepsEvent> {
     let palette = theme.palette;
     if !step.note.is_empty() {
         let ink = match step.state {
@@ -175,17 +175,17 @@ fn content(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> Opt
     }
     gauge::gauges_ui(ui, theme, &step.gauges);
     if let Some(share) = step.progress {
-        progress(ui, theme, &step.title, share);
+        progress_ui(ui, theme, &step.title, share);
     }
     if step.state != StepState::Waiting {
         return None;
     }
-    buttons(ui, theme, model)
+    buttons_ui(ui, theme, model)
 }
 
 /// Draws the buttons. Start is at the end of the text, followed by Skip and the obstacle, so that Start does not
 /// move while a motor is brought up to speed.
-fn buttons(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
+fn buttons_ui(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     if model.start.is_none() && model.skip.is_none() {
         return None;
@@ -217,7 +217,7 @@ fn buttons(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> 
     event
 }
 
-fn progress(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
+fn progress_ui(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width().max(0.0), 6.0), Sense::hover());
     let done = Rect::from_min_size(rect.min, Vec2::new(rect.width() * share, rect.height()));
@@ -230,7 +230,7 @@ fn progress(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
     });
 }
 
-fn dot(painter: &Painter, theme: &Theme, middle: Pos2, number: usize, step: &StepRow) {
+fn paint_dot(painter: &Painter, theme: &Theme, middle: Pos2, number: usize, step: &StepRow) {
     let palette = theme.palette;
     let (icon, colour) = step.state.mark(theme);
     let (font, ink) = match step.state {

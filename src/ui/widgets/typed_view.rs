@@ -30,14 +30,14 @@ pub fn typed_view(ui: &mut Ui, theme: &Theme, bytes: &[u8]) {
     let columns = Columns { name: theme.space.groups * 4.0, value, row: theme.space.inside * 5.0 };
     theme.sunken().show(ui, |ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
-        header(ui, theme, &columns);
+        header_ui(ui, theme, &columns);
         for row in bits::typed(bytes) {
-            line(ui, theme, &columns, &row);
+            line_ui(ui, theme, &columns, &row);
         }
     });
 }
 
-fn header(ui: &mut Ui, theme: &Theme, columns: &Columns) {
+fn header_ui(ui: &mut Ui, theme: &Theme, columns: &Columns) {
     let size = Vec2::new(columns.name + columns.value * 2.0, columns.row + theme.space.inside);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let font = FontId::proportional(theme.sizes.caption);
@@ -55,7 +55,7 @@ fn header(ui: &mut Ui, theme: &Theme, columns: &Columns) {
     ui.painter().hline(rect.x_range(), y, Stroke::new(1.0, theme.palette.line));
 }
 
-fn line(ui: &mut Ui, theme: &Theme, columns: &Columns, row: &TypedRow) {
+fn line_ui(ui: &mut Ui, theme: &Theme, columns: &Columns, row: &TypedRow) {
     let size = Vec2::new(columns.name + columns.value * 2.0, columns.row);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let name = name(theme, row.kind);

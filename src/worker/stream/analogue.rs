@@ -12,15 +12,15 @@ use crate::units::Moment;
 
 /// Duration of a batch at full rate, in nanoseconds.
 const BATCH_NS: i64 = 10_000_000;
-/// Maximum delay that is caught up, in nanoseconds.
+/// Maximum delay for which the source catches up, in nanoseconds.
 const LATE_NS: i64 = 250_000_000;
 
-/// The settings of due samples are no longer stored, because the source was changed too often in the meantime.
+/// An error for samples whose settings are no longer stored, because the source was changed too often in the meantime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the settings of samples that are due are forgotten")]
 pub struct StaleSettings;
 
-/// The virtual source on a clock.
+/// A virtual analogue source driven by a clock.
 #[derive(Debug)]
 pub struct Analogue {
     source: Source,
@@ -28,7 +28,7 @@ pub struct Analogue {
 }
 
 impl Analogue {
-    /// Creates a source that starts at `start` on the clock of its stream.
+    /// Creates a source that starts at `start` according to the clock of its stream.
     pub fn new(checked: Checked, start: Moment) -> Self {
         Analogue { source: Source::new(checked, Time::from(start)), next: 0 }
     }

@@ -1,5 +1,5 @@
-//! Drives of a hub that disobey over the connection: they ignore their limits, a target or a pause, or turn the wrong way.
-//! The device is in Python, and its record shows the commands; the other drive is never moved.
+//! Drives of a hub that disobey over the connection: they ignore their limits, a target or a pause, or turn the wrong
+//! way. The device is in Python, and its record shows the commands; the other drive is never moved.
 
 use std::fs;
 use std::path::PathBuf;

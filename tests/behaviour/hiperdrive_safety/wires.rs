@@ -1,5 +1,5 @@
-//! Connections between a host and a target that can be cut: this proxy passes on the stream and the packets, whose ports
-//! are replaced when the connection is opened.
+//! Connections between a host and a target that can be cut: this proxy passes on the stream and the packets, whose
+//! ports are replaced when the connection is opened.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream, UdpSocket};
@@ -134,8 +134,8 @@ impl Drop for Wires {
 }
 
 impl Shared {
-    /// Passes on a stream, in which a frame arrives in one piece. The port in an address item of this type becomes that of
-    /// a socket of the proxy.
+    /// Passes on a stream, in which a frame arrives in one piece. The port in an address item of this type becomes that
+    /// of a socket of the proxy.
     fn pass_stream(&self, mut from: TcpStream, mut to: TcpStream, item: u16, ours: usize) {
         let mut buffer = [0; 4096];
         while let Ok(count) = from.read(&mut buffer) {

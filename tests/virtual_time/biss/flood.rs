@@ -46,8 +46,8 @@ impl ByteLink for Flood {
     }
 }
 
-/// Issue 22.11: of noise on either connection the trace keeps a limited number of bytes, and a job ends even if the noise
-/// does not.
+/// Issue 22.11: of noise on either connection the trace keeps a limited number of bytes, and a job ends even if the
+/// noise does not.
 #[test]
 fn a_flood_of_noise_takes_bounded_memory_and_time() {
     for (way, noise) in [

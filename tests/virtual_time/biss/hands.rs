@@ -1,5 +1,5 @@
-//! A simulated user at the motor of a virtual encoder, who follows the requests and presses Start when possible; and the
-//! changes for the tests of procedures.
+//! A simulated user at the motor of a virtual encoder, who follows the requests and presses Start when possible; and
+//! the changes for the tests of procedures.
 
 use std::time::Duration;
 
@@ -179,9 +179,9 @@ impl Bench {
     }
 }
 
-/// Returns the exchanges of an undisturbed run at which a cut makes a difference: all but those before the first operation,
-/// which only read, and the repeated ones, for the position while the user is waited for and for the status during a run.
-/// Every eighth of these is enough.
+/// Returns the exchanges of an undisturbed run at which a cut makes a difference: all but those before the first
+/// operation, which only read, and the repeated ones, for the position while the user is waited for and for the status
+/// during a run. Every eighth of these is enough.
 pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     let mut bench = original.copied();
     let mut hands = Hands::on(&bench);

@@ -196,8 +196,8 @@ fn everything_restorable_is_saved_over_both_interfaces() {
     }
 }
 
-/// Issue 22.15, reference 5.3: in mode 04 the data registers show written and unsaved values. They are reported and marked,
-/// and not compared; reading leaves them unchanged, since returning to operation discards them.
+/// Issue 22.15, reference 5.3: in mode 04 the data registers show written and unsaved values. They are reported and
+/// marked, and not compared; reading leaves them unchanged, since returning to operation discards them.
 #[test]
 fn unsaved_registers_are_marked_and_not_compared() {
     for way in WAYS {
@@ -315,8 +315,8 @@ fn samples_and_watched_registers_are_read_one_by_one() {
     }
 }
 
-/// UBICOM reference 4: the word has no error and no warning bit, so that the registers are read, each once per second; a
-/// frame has both. Every position includes them.
+/// UBICOM reference 4: the word has no error and no warning bit, so that the registers are read, each once per second;
+/// a frame has both. Every position includes them.
 #[test]
 fn an_error_during_polling_marks_the_positions() {
     for way in WAYS {

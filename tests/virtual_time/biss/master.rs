@@ -1,5 +1,5 @@
-//! Registers and position over the configuration pin: echo, byte order, noise, silence, refusals, and writes whose answer
-//! is lost.
+//! Registers and position over the configuration pin: echo, byte order, noise, silence, refusals, and writes whose
+//! answer is lost.
 
 use std::time::Duration;
 

@@ -1,5 +1,5 @@
-//! The five procedures and the mounting run on the virtual encoder: their steps, measurements, refusals and failures, and
-//! the return to operation with the password cleared at every end.
+//! The five procedures and the mounting run on the virtual encoder: their steps, measurements, refusals and failures,
+//! and the return to operation with the password cleared at every end.
 
 use std::time::Duration;
 

@@ -89,8 +89,8 @@ impl Stand {
     }
 }
 
-/// Checks that numbers and times are continuous, and the position follows the shaft: 50 revolutions per second are 327.68
-/// steps per frame.
+/// Checks that numbers and times are continuous, and the position follows the shaft: 50 revolutions per second are
+/// 327.68 steps per frame.
 fn check(runs: &[FrameRun]) {
     let first = &runs[0];
     let mut before: Option<(Moment, u64)> = None;

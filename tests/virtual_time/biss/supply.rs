@@ -29,8 +29,8 @@ fn the_supply_is_switched_off_unless_found_on_or_kept() {
     }
 }
 
-/// Issue 22.16: the same for streamed signals: a supply switched on for them is switched off, and one that was on before
-/// stays on.
+/// Issue 22.16: the same for streamed signals: a supply switched on for them is switched off, and one that was on
+/// before stays on.
 #[test]
 fn streaming_signals_restores_the_supply() {
     let volts = SupplyVoltage { least: 4_750, given: 5_000, greatest: 12_500 };

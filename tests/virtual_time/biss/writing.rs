@@ -198,7 +198,8 @@ fn an_encoder_with_unknown_wear_is_written_only_by_force() {
     assert_eq!(bench.flash_cycles() - before, 1);
 }
 
-/// Manual 6.1: 1000 write cycles. The logbook counts; a plan that would exceed them is refused, and carried out if forced.
+/// Manual 6.1: 1000 write cycles. The logbook counts; a plan that would exceed them is refused, and carried out if
+/// forced.
 #[test]
 fn a_worn_encoder_is_written_only_by_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");

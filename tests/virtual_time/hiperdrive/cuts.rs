@@ -143,8 +143,8 @@ fn cancelling_takes_effect_between_two_operations() {
     assert_eq!(seen.into_iter().collect::<Vec<_>>(), [1, 2, 3]);
 }
 
-/// 400 steps per turn instead of 65536 (reference 5), and limits of ten turns: half of the change would be another position
-/// than either. The maximum speed is written between them.
+/// 400 steps per turn instead of 65536 (reference 5), and limits of ten turns: half of the change would be another
+/// position than either. The maximum speed is written between them.
 #[test]
 fn cancelling_never_separates_a_scale_from_its_limits() {
     const PLACE: [(u16, i64); 4] = [(154, 400), (156, 256), (158, -4_000), (160, 4_000)];

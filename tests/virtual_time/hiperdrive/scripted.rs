@@ -315,8 +315,8 @@ fn reading_the_limits_of_a_drive_can_be_cancelled() {
     assert!(matches!(ended, Err(Error::NoReply { .. })), "{ended:?}");
 }
 
-/// ForwardOpen as in the reference, except for the parts that differ between connections: numbers of both directions, of
-/// the connection and of its originator.
+/// ForwardOpen as in the reference, except for the parts that differ between connections: numbers of both directions,
+/// of the connection and of its originator.
 const OPEN: &str = "54 02 20 06 24 01 03 FA 00 00 00 00 .. .. .. .. .. .. 34 12 .. .. .. .. 01 00 00 00 \
     10 27 00 00 16 48 10 27 00 00 12 48 01 04 20 04 24 68 2C 64 2C 65";
 const OPENED: &str = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";

@@ -171,8 +171,8 @@ fn services_wait_for_completion() {
     assert_eq!((prepared.kind, prepared.plan.write_cycles()), (ChangeKind::Service(Service::FactoryAll), 1));
 }
 
-/// Issue 21.8: the manual allows 2 s with an adapter and 8 s with a hub until 47 = −4 is answered (6.2). The program waits
-/// for that time, sends it once, and does not use it to measure the speed of the network.
+/// Issue 21.8: the manual allows 2 s with an adapter and 8 s with a hub until 47 = −4 is answered (6.2). The program
+/// waits for that time, sends it once, and does not use it to measure the speed of the network.
 #[test]
 fn a_presence_test_may_take_the_time_of_the_manual() {
     for (query, ms) in [("reset=2000", 2000), ("hub=4&reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
@@ -187,8 +187,8 @@ fn a_presence_test_may_take_the_time_of_the_manual() {
     }
 }
 
-/// Issue 21.8: a reply slower than the manual allows, or a connection that falls silent meanwhile, ends in time (CLI.md:
-/// within 10 s), the request is sent once, and the report says that the result is not known.
+/// Issue 21.8: a reply slower than the manual allows, or a connection that falls silent meanwhile, ends in time
+/// (CLI.md: within 10 s), the request is sent once, and the report says that the result is not known.
 #[test]
 fn an_unanswered_presence_test_times_out() {
     // The number of frames before it.

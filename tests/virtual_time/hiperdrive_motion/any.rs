@@ -1,8 +1,8 @@
-//! Random sessions of a user with a drive, thousands of steps long, with all faults in between: the drive fails, ignores
-//! its limits, turns the wrong way, is turned by hand; another master writes limits; lines are cut.
+//! Random sessions of a user with a drive, thousands of steps long, with all faults in between: the drive fails,
+//! ignores its limits, turns the wrong way, is turned by hand; another master writes limits; lines are cut.
 //!
-//! A word that commands motion is sent only with a fresh act of the user, in its direction and within the limits: a model
-//! separate from the dead-man checks this ([`Model`]).
+//! A word that commands motion is sent only with a fresh act of the user, in its direction and within the limits: a
+//! model separate from the dead-man checks this ([`Model`]).
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Permit;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock, MotionRequest};
@@ -74,8 +74,8 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
     }
 }
 
-/// Issue 21.14: bench and model check each word. This test checks that after the last request for motion the drive stops
-/// within the time of the ladder and of braking, and remains stopped.
+/// Issue 21.14: bench and model check each word. This test checks that after the last request for motion the drive
+/// stops within the time of the ladder and of braking, and remains stopped.
 #[test]
 fn any_session_ends_at_a_standstill() {
     let mut moved = 0u64;

@@ -1,8 +1,8 @@
 //! Drives that ignore their limits or turn the wrong way: the dead-man detects it in their positions (issues 21.4 and
 //! 21.5).
 //!
-//! A turn has 65536 steps, a degree 182.04. At 35 rpm a drive makes 38.2 steps per millisecond, 382 in an interval of 10
-//! ms.
+//! A turn has 65536 steps, a degree 182.04. At 35 rpm a drive makes 38.2 steps per millisecond, 382 in an interval of
+//! 10 ms.
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, MotionRequest, Permit, Phase, Refusal};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, StatusBit};
@@ -47,8 +47,8 @@ fn bench_outside(beyond: i32, defect: Option<Defect>) -> Bench {
     bench
 }
 
-/// Runs until the word commands no motion: returns the number of intervals after the report that first showed a position
-/// beyond `limit`, and the position then.
+/// Runs until the word commands no motion: returns the number of intervals after the report that first showed a
+/// position beyond `limit`, and the position then.
 fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
     let mut past = None;
     for _ in 0..6000 {
@@ -121,7 +121,8 @@ fn a_run_ends_when_its_limits_become_unknown() {
     assert!(matches!(bench.man.ended(), Some((_, Ended::Locked(_)))), "{:?}", bench.man.ended());
 }
 
-/// Issue 21.4, case *already outside*: the inward direction is allowed, further outward is refused before anything is sent.
+/// Issue 21.4, case *already outside*: the inward direction is allowed, further outward is refused before anything is
+/// sent.
 #[test]
 fn from_outside_only_inward_motion_is_allowed() {
     for (beyond, inward, outward) in [
@@ -273,8 +274,8 @@ fn a_jog_in_the_wrong_direction_is_stopped_immediately() {
     }
 }
 
-/// Issue 21.5: a move that does not stop at its target is stopped there, and one whose target is a limit is stopped beyond
-/// that limit.
+/// Issue 21.5: a move that does not stop at its target is stopped there, and one whose target is a limit is stopped
+/// beyond that limit.
 #[test]
 fn a_move_that_passes_its_target_is_stopped() {
     for target in [TURN / 2, TURN, -TURN] {

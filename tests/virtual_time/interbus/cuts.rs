@@ -163,8 +163,8 @@ fn a_faulty_gateway_is_tolerated() {
     assert!(matches!(stand.run(InterbusJob::Survey), Ok(InterbusOutput::Surveyed(_))));
 }
 
-/// Issue 22.6: reading is cut off while a cam program is selected, and nothing more can be sent. The next run returns the
-/// encoder to its earlier mode, not to the program in which it was left.
+/// Issue 22.6: reading is cut off while a cam program is selected, and nothing more can be sent. The next run returns
+/// the encoder to its earlier mode, not to the program in which it was left.
 #[test]
 fn an_interrupted_cam_read_is_led_back_by_the_next_run() {
     let save = || InterbusJob::Save { programs: true };

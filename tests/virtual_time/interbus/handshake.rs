@@ -1,5 +1,5 @@
-//! The handshake word by word, from the tables of reference 4 and 5: the awaited answers, words that are no answer, and all
-//! invalid ones.
+//! The handshake word by word, from the tables of reference 4 and 5: the awaited answers, words that are no answer, and
+//! all invalid ones.
 
 use std::time::Duration;
 
@@ -139,8 +139,8 @@ fn a_word_is_stable_by_time_and_not_by_read_count() {
     }
 }
 
-/// Issue 22.2: manual 5.3, "Encoder sends old confirmation": it may belong to an earlier word, with other data than sent,
-/// with the manufacturer's bit, and late. It does not prove another master.
+/// Issue 22.2: manual 5.3, "Encoder sends old confirmation": it may belong to an earlier word, with other data than
+/// sent, with the manufacturer's bit, and late. It does not prove another master.
 #[test]
 fn a_stale_echo_is_skipped() {
     // 0.4 to 0.8 s at 5 ms per read; the example's own C2000100 was never sent.
@@ -166,8 +166,8 @@ fn a_persistent_echo_is_named_after_the_timeout() {
     assert_eq!(cause.to_string(), expected);
 }
 
-/// Issue 22.1, reference 6.11a: the processing word may carry the sent data (manual 10.4, X). An encoder that is busy for
-/// `busy` milliseconds and then refuses had not accepted the word.
+/// Issue 22.1, reference 6.11a: the processing word may carry the sent data (manual 10.4, X). An encoder that is busy
+/// for `busy` milliseconds and then refuses had not accepted the word.
 #[test]
 fn a_processing_word_with_the_data_sent_is_no_echo_of_cam_0() {
     for (word, echo) in
@@ -196,8 +196,8 @@ fn reading_cams(script: Script) -> Script {
         .fold(script, |script, (out, value)| script.on(*out, &[*value]).on(*out, &[*value]))
 }
 
-/// Issue 22.1: a word that was acknowledged and not accepted is sent again before `80000000` stores it, each time watched
-/// for longer; if it is never accepted, no operation is reported as done.
+/// Issue 22.1: a word that was acknowledged and not accepted is sent again before `80000000` stores it, each time
+/// watched for longer; if it is never accepted, no operation is reported as done.
 #[test]
 fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
     let script = reading_cams(
@@ -329,8 +329,8 @@ fn swapped_words_are_suspected() {
     assert_eq!(error.to_string(), "IN 12340000 makes sense as 00001234 only: the word order may be swapped");
 }
 
-/// The manual does not define what ends a mode: an encoder that returns to its position with `00000000` is kept in its mode
-/// with the word that keeps it.
+/// The manual does not define what ends a mode: an encoder that returns to its position with `00000000` is kept in its
+/// mode with the word that keeps it.
 #[test]
 fn an_encoder_that_would_leave_its_mode_is_kept_in_it() {
     for (mode, holds) in [(5, RUN), (2, 0x2040_0001)] {

@@ -24,8 +24,8 @@ use super::support::{program, station};
 /// The position if the script contains nothing else.
 pub(crate) const POSITION: u32 = 1234;
 
-/// An encoder that acknowledges every word at once, except for those of the script: each of these gives its IN words cycle
-/// by cycle, and the last one from then on. A value of a read-out remains until `00000000` or `80000000`.
+/// An encoder that acknowledges every word at once, except for those of the script: each of these gives its IN words
+/// cycle by cycle, and the last one from then on. A value of a read-out remains until `00000000` or `80000000`.
 #[derive(Default)]
 pub(crate) struct Script {
     /// By OUT word; of several lists the first is for the first time that it is written.

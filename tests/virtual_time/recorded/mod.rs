@@ -1,6 +1,6 @@
-//! The data of a write, and of every early end of it, byte for byte as in the recordings under `tests/fixtures/wire`: one
-//! file per kind of write. A recording shows the complete write; for each early end it has the number of lines that equal
-//! the complete write, the number of lines after them, a sum of all, and the result.
+//! The data of a write, and of every early end of it, byte for byte as in the recordings under `tests/fixtures/wire`:
+//! one file per kind of write. A recording shows the complete write; for each early end it has the number of lines that
+//! equal the complete write, the number of lines after them, a sum of all, and the result.
 //!
 //! With `ENCODER_STUDIO_RECORD=1` the files are written again: only if the data are meant to change, and the difference
 //! belongs in the same commit.
@@ -62,8 +62,8 @@ impl Ready {
     }
 }
 
-/// Compares a write and its early ends with its recording. `points` are the sent frames at which it ends early, from 0; all
-/// of them if there are none.
+/// Compares a write and its early ends with its recording. `points` are the sent frames at which it ends early, from 0;
+/// all of them if there are none.
 fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Ready) {
     let undisturbed = ready();
     let (tap, first) = (undisturbed.tap.clone(), undisturbed.tap.lock().unwrap().sent.len());

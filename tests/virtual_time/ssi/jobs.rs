@@ -50,8 +50,8 @@ fn the_supply_stays_off_unless_requested() {
     assert_eq!((hello(&mut stand).supply, stand.count(Operation::Supply)), (None, 0));
 }
 
-/// ATM60 with factory settings, 12 bits of turns and 13 of steps in Gray; the shaft is at turn 1234h, 270°: turn 234h of
-/// 4096, step 1800h of 8192, of which 0x469800 ^ 0x234C00 is the Gray code.
+/// ATM60 with factory settings, 12 bits of turns and 13 of steps in Gray; the shaft is at turn 1234h, 270°: turn 234h
+/// of 4096, step 1800h of 8192, of which 0x469800 ^ 0x234C00 is the Gray code.
 #[test]
 fn a_word_is_read_with_the_requested_clocks() {
     let mut stand = Stand::new("", "ssi=atm60,code=gray&position=0x24698000");

@@ -111,7 +111,7 @@ pub(super) fn step_with_write(desk: &mut Desk) {
 #[track_caller]
 pub(super) fn next(desk: &mut Desk, step: AxisStep) {
     let (axis, seen) = (axis(desk), seen(desk));
-    assert_eq!(axis.may_go_on(&seen), Ok(()), "{:?}", axis.step());
+    assert_eq!(axis.check_can_continue(&seen), Ok(()), "{:?}", axis.step());
     run(desk, Run::Next);
     assert_eq!(self::axis(desk).step(), step);
 }
@@ -219,7 +219,7 @@ pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     step_with_writes(&mut desk, 152, rough);
     desk.until("the drive is there", |studio| {
         let own = studio.hiperdrive().unwrap();
-        own.axis().unwrap().may_go_on(&own.seen(own.drive())).is_ok()
+        own.axis().unwrap().check_can_continue(&own.seen(own.drive())).is_ok()
     });
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));

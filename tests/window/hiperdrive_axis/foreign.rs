@@ -54,13 +54,13 @@ fn a_position_change_while_disconnected_is_reported() {
     command(&mut desk, DeviceCommand::Read);
     desk.until("it is told", |studio| {
         let own = studio.hiperdrive().unwrap();
-        words::unexplained(own.axis().unwrap(), &own.seen(own.drive())).is_some()
+        words::unexplained_change_text(own.axis().unwrap(), &own.seen(own.drive())).is_some()
     });
     assert_eq!(axis(&desk).invalidated_text(), None);
-    let told = words::unexplained(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
+    let told = words::unexplained_change_text(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
     assert!(
         told.starts_with("The position changed by -0.")
-            && told.contains("either the axis was moved or its reference was set again"),
+            && told.contains("Either the axis was moved or its reference was set again"),
         "{told}"
     );
 }

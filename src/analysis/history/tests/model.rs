@@ -84,8 +84,8 @@ impl Model {
         (ranges.into_iter().map(pixel).collect(), raw)
     }
 
-    /// Returns the first sample of a pixel column: the first after its edge, or the beginning of 512, 64 or 8 samples that
-    /// is no earlier than a sixteenth of a column before the edge.
+    /// Returns the first sample of a pixel column: the first after its edge, or the beginning of 512, 64 or 8 samples
+    /// that is no earlier than a sixteenth of a column before the edge.
     fn edge(&self, first: usize, grid: &Grid, pixel: usize) -> usize {
         let edge = grid.edge(pixel);
         let exact = self.between(first, edge, edge).start;

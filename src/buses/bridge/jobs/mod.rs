@@ -17,7 +17,7 @@ use crate::worker::stream::{Batch, Producer, SampleCount};
 pub(crate) use open::FORMAT;
 pub use open::open_adapter;
 
-/// The configuration of a stream, and the interpretation of its packets.
+/// The configuration of a stream and the interpretation of its packets.
 pub trait Stretch: Send + 'static {
     type Samples: SampleCount;
 
@@ -32,14 +32,14 @@ pub struct SineCosine {
     pub sample_hz: u32,
 }
 
-/// Both signals in volts, equally long.
+/// Sine and cosine signals in volts, with equal numbers of samples.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pair {
     pub sine_v: Vec<f64>,
     pub cosine_v: Vec<f64>,
 }
 
-/// Why an adapter does not stream, or no longer does.
+/// The reason why an adapter does not stream, or has stopped streaming.
 #[derive(Debug, thiserror::Error)]
 pub enum BridgeError {
     #[error(transparent)]
@@ -48,7 +48,7 @@ pub enum BridgeError {
     Tap(#[from] TapError),
 }
 
-/// Opens the wire to an adapter.
+/// A function that opens the connection to an adapter.
 pub type Open = Box<dyn FnOnce() -> Result<Box<dyn ByteLink>, OpenError> + Send>;
 
 pub struct Bridge<S> {
@@ -61,13 +61,13 @@ pub struct Bridge<S> {
 }
 
 impl<S: Stretch> Bridge<S> {
-    /// Creates a producer for the adapter on the connection opened by `open`; a reply may arrive `margin` later than
-    /// the protocol specifies. The encoder supply stays off unless `supply` is given.
+    /// Creates a producer for the adapter on the connection opened by `open`. A reply may arrive `margin` later than
+    /// the protocol specifies, and the encoder supply stays off unless `supply` is given.
     pub fn new(stretch: S, supply: Option<SupplyVoltage>, margin: Duration, open: Open) -> Self {
         Bridge { stretch, supply, open: Some(open), wire: None, tap: Tap::new(margin), streaming: Arc::default() }
     }
 
-    /// Returns the adapter and its actual settings, available once it streams.
+    /// Returns the adapter and its actual settings, which are available once the adapter is streaming.
     pub fn streaming(&self) -> Arc<OnceLock<Streaming>> {
         self.streaming.clone()
     }

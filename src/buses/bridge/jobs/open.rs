@@ -13,9 +13,9 @@ use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
 use crate::worker::open::{inside, margin, open_bytes, simulated, wrong_target_error};
 
-/// Link parameter of the virtual adapter that sessions require but streams do not.
+/// Link parameter of the virtual adapter, required by sessions but not by streams.
 const BRIDGE: &str = "bridge";
-/// The format of an adapter's serial port, which matters only behind a converter.
+/// Character format of an adapter's serial port, which matters only behind a converter.
 pub(crate) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200, parity: Parity::None };
 
 parameters! {
@@ -27,8 +27,10 @@ parameters! {
 }
 
 /// Returns the margin for late replies, and the function that opens the connection on any thread. `devices` can be
-/// attached to a virtual adapter.⎏⎏# Errors⎏The link does not lead to an adapter, or a parameter is unsupported;
-/// nothing has been opened.
+/// attached to a virtual adapter.
+///
+/// # Errors
+/// The link does not lead to an adapter, or a parameter is unsupported; nothing has been opened.
 pub fn open_adapter(
     url: &LinkUrl,
     clock: Arc<dyn Clock>,

@@ -81,7 +81,8 @@ impl<S: Stretch> Bench<S> {
         panic!("it goes on")
     }
 
-    /// Returns the number of bytes that the adapter sends in a second without a request, in addition to those in transit.
+    /// Returns the number of bytes that the adapter sends in a second without a request, in addition to those in
+    /// transit.
     pub(crate) fn sends_by_itself(&self) -> usize {
         let mut device = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {
@@ -93,7 +94,8 @@ impl<S: Stretch> Bench<S> {
     }
 }
 
-/// Checks that every number is either present or counted as lost before the next batch; returns how many there are of both.
+/// Checks that every number is either present or counted as lost before the next batch; returns how many there are of
+/// both.
 pub(crate) fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
     let (mut next, mut there, mut lost) = (0, 0, 0);
     for batch in batches {

@@ -4,33 +4,33 @@
 
 use crate::analysis::Time;
 
-/// Offset of a streaming adapter's clock from the local one.
+/// Tracks the offset between a streaming adapter's clock and the local clock.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drift {
     /// Offset added to the adapter's time, in nanoseconds, or `None` before the first packet.
     ahead_ns: Option<i128>,
-    /// Minimum offset of the packets in the current section and in the previous one.
+    /// Minimum packet offsets of the current section and of the previous one.
     least: Option<(i128, Option<i128>)>,
     since_ns: i128,
-    /// The packet before, by the adapter's clock.
+    /// Time of the previous packet by the adapter's clock, in nanoseconds.
     before_ns: i128,
 }
 
 /// Length of a section in nanoseconds, long enough for at least one packet to arrive without delay.
 const STRETCH_NS: i128 = 10_000_000_000;
-/// Nanoseconds by which transit times over USB vary.
+/// Variation of transit times over USB, in nanoseconds.
 const SLACK_NS: i128 = 2_000_000;
-/// Reciprocal of the maximum correction rate: faster than the difference between oscillators, too slow to affect a
-/// speed, and less than one of the 255 samples of a packet.
+/// Reciprocal of the maximum correction rate. The rate is faster than the difference between oscillators, too slow to
+/// affect a speed, and less than one of the 255 samples of a packet.
 const SLOWNESS: i128 = 4000;
-/// Size of a jump in nanoseconds above which it is not drift: a clock was stopped or set.
+/// Offset change in nanoseconds above which a clock was stopped or set, so the change is not drift.
 const JUMP_NS: i128 = 1_000_000_000;
 
 impl Drift {
-    /// Returns our time for `own_ns` of the adapter's, which cannot be later than `latest`.
+    /// Returns the local time for `own_ns` on the adapter's clock, limited to `latest`.
     pub(super) fn time(&mut self, own_ns: i128, latest: Time) -> Time {
         let most = i128::from(latest.nanoseconds()) - own_ns;
-        let lead = self.least_lead(own_ns, most);
+        let lead = self.minimum_lead(own_ns, most);
         let elapsed = (own_ns - self.before_ns).max(0);
         self.before_ns = own_ns;
         let ahead = match self.ahead_ns {
@@ -45,8 +45,8 @@ impl Drift {
         Time::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
     }
 
-    /// Returns the minimum offset of the current and the previous section.
-    fn least_lead(&mut self, own_ns: i128, most: i128) -> i128 {
+    /// Returns the minimum offset of the current and previous sections.
+    fn minimum_lead(&mut self, own_ns: i128, most: i128) -> i128 {
         let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
         let (least, before) = match self.least {
             Some((least, before)) if fits => (least.min(most), before),
@@ -65,11 +65,11 @@ mod tests {
     use super::*;
 
     const MS: i64 = 1_000_000;
-    /// A hundred samples of 50 µs.
+    /// Duration of a packet with a hundred samples of 50 µs.
     const PACKET: i64 = 5 * MS;
 
-    /// Simulates hours of packets, each delayed by 0.3 ms to 6 ms, of an adapter whose clock has this rate relative to the
-    /// local one.
+    /// Simulates hours of packets, each delayed by 0.3 ms to 6 ms, from an adapter whose clock deviates from the local
+    /// clock by the given rate.
     fn drift(parts_per_million: i64, hours: i64) {
         let (mut drift, mut before) = (Drift::default(), None);
         let mut random = 1_u64;

@@ -10,26 +10,26 @@ use crate::buses::bridge::protocol::{Continuity, Data, Gap, Message, Packet, Rep
 use crate::link::line::LineError;
 use crate::units::Moment;
 
-/// Kind of stream. The clock and sampling have been configured before.
+/// Kind of stream to start. The clock and sampling must already be configured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Streamed {
     /// SSI words at the given interval in microseconds.
     Ssi { period_us: u32 },
     /// BiSS frames at the given interval in microseconds.
     Biss { period_us: u32 },
-    /// Sine and cosine, with the interval of sampling in nanoseconds.
+    /// Sine and cosine at the given sampling interval in nanoseconds.
     Analog { period_ns: i64 },
 }
 
 /// Consecutive samples of a stream.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Portion {
-    /// Number of the first sample, counted from the start of the stream, including missing ones.
+    /// Index of the first sample, counted from the start of the stream, including missing samples.
     pub first: u64,
-    /// Time of the first sample, by the local clock.
+    /// Local time of the first sample.
     pub time: Time,
     pub period_ns: i64,
-    /// Number of samples missing before the first one.
+    /// Number of samples missing before the first sample.
     pub lost: u64,
     /// Samples; at least one.
     pub data: Data,
@@ -41,9 +41,9 @@ pub(crate) struct Flow {
     period_ns: i64,
     continuity: Continuity,
     next: u64,
-    /// Number of samples missing before the next one.
+    /// Number of samples missing before the next sample.
     missing: u64,
-    /// Lower bound for the time of any sample.
+    /// Earliest possible time of any sample.
     not_before: Time,
     heard_at: Moment,
     last: Option<Time>,
@@ -82,8 +82,10 @@ impl Streamed {
 }
 
 impl Flow {
-    /// Starts a stream, whose samples are later than `after`.⎏⎏# Errors⎏See [`AdapterError`]; a refusal as busy means
-    /// that the stream is already running.
+    /// Starts a stream whose samples are later than `after`.
+    ///
+    /// # Errors
+    /// See [`AdapterError`]; a busy refusal means that the stream is already running.
     pub(crate) fn begin(
         adapter: &mut Adapter<'_, '_>,
         streamed: Streamed,
@@ -130,8 +132,11 @@ impl Flow {
         self.period_ns
     }
 
-    /// Returns the next samples, or `None` if none have arrived by `until`.⎏⎏# Errors⎏[`AdapterError::Mute`],
-    /// [`AdapterError::Restarted`], [`AdapterError::Data`], errors of the connection, or cancellation.
+    /// Returns the next samples, or `None` if none have arrived by `until`.
+    ///
+    /// # Errors
+    /// [`AdapterError::Mute`], [`AdapterError::Restarted`], [`AdapterError::Data`], a connection error, or
+    /// cancellation.
     pub(crate) fn next(&mut self, adapter: &mut Adapter<'_, '_>, until: Moment) -> Result<Option<Portion>, Failure> {
         let mut bytes = Vec::new();
         loop {
@@ -159,7 +164,7 @@ impl Flow {
         }
     }
 
-    /// Ends the stream at the adapter. Data still in transit are dropped.
+    /// Ends the adapter's stream and drops data still in transit.
     ///
     /// # Errors
     /// See [`AdapterError`].
@@ -167,7 +172,7 @@ impl Flow {
         adapter.ask(&self.streamed.stop()).map(drop)
     }
 
-    /// Returns whether the adapter has ended the stream itself. An adapter that knows of no stream was reset, and must
+    /// Returns whether the adapter has already ended the stream. An adapter that reports no stream was reset and must
     /// be configured again; other failures must be retried.
     pub(crate) fn ended(ended: Result<(), Failure>) -> Result<bool, Failure> {
         match ended {
@@ -182,7 +187,7 @@ impl Flow {
         SILENT + period.saturating_mul(SILENT_SAMPLES)
     }
 
-    /// Returns the samples of a packet, if the packet belongs to this stream.
+    /// Returns the samples of a packet, or `None` if the packet does not belong to this stream.
     fn take(&mut self, packet: &Packet, now: Moment) -> Result<Option<Portion>, AdapterError> {
         let data = match Message::parse(packet) {
             Ok(Message::Data(data)) if self.streamed.contains_samples(&data) => data,
@@ -208,8 +213,8 @@ impl Flow {
         Ok(Some(Portion { first, time, period_ns: self.period_ns, lost, data }))
     }
 
-    /// Returns the time of the first sample. The last sample cannot be later than its arrival, nor the first one
-    /// earlier than the start of the stream.
+    /// Returns the time of the first sample. The last sample cannot be later than its arrival, and the first sample
+    /// cannot be earlier than the start of the stream.
     fn time(&mut self, data: &Data, count: usize, now: Moment) -> Time {
         let t0_us = match data {
             Data::Ssi(data) => data.t0_us,

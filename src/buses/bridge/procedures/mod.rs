@@ -25,14 +25,14 @@ pub use power::SupplyAfter;
 pub(crate) use power::warn_of_supply;
 pub use tap::{StreamRequest, Streaming, Tap, TapError};
 
-/// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).
+/// BiSS time-out in microseconds, longer than the 18 µs that an encoder needs to notice the end of a frame (manual,
+/// table 3).
 pub(crate) const BISS_TIME_OUT_US: u16 = 20;
 
-/// Clocks that can be requested; an adapter uses the nearest supported one.
+/// Clock frequencies that can be requested. An adapter uses the nearest supported one.
 pub(crate) const CLOCK: Whole<u32> = Whole(Quantity::Hertz, 80_000..=10_000_000);
 
-/// Time after the reply time during which data continues to arrive, be it noise or a stream, before the reply is
-/// considered missing.
+/// Time after the reply time during which noise or stream data may still arrive before the reply is considered missing.
 const ENDLESS: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]
@@ -47,7 +47,7 @@ pub struct AdapterState {
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AdapterError {
-    /// No reply to two requests.
+    /// The adapter has not replied to two requests.
     #[error("the adapter does not answer")]
     Silent,
     #[error("the adapter uses version {got} of the bridge protocol, this program version {expected}")]
@@ -60,18 +60,18 @@ pub enum AdapterError {
     NoAnalog { name: String },
     #[error("the adapter {name} cannot supply an encoder")]
     NoSupply { name: String },
-    /// The adapter supplies more than the encoder tolerates, and was told to switch the supply off.
+    /// The adapter supplies more than the encoder tolerates and was told to switch the supply off.
     #[error("the adapter supplied {measured} mV instead of {given} mV; the encoder tolerates {greatest} mV")]
     Overvoltage {
         /// Requested voltage in millivolts.
         given: u16,
         measured: u16,
-        /// Millivolts that the encoder tolerates.
+        /// Highest voltage in millivolts that the encoder tolerates.
         greatest: u16,
     },
     #[error("the adapter no longer sends data")]
     Mute,
-    /// The sample numbers of a stream started again.
+    /// The sample numbers of a stream have restarted.
     #[error("the adapter has restarted")]
     Restarted,
     /// Streamed data does not conform to this version.
@@ -111,7 +111,7 @@ impl From<LineError> for Failure {
     }
 }
 
-/// A reply, and the interval in which it was made.
+/// A reply with the interval in which the adapter created it.
 pub(crate) struct TimedReply {
     pub(crate) reply: Reply,
     sent_at: Moment,
@@ -119,7 +119,7 @@ pub(crate) struct TimedReply {
 }
 
 impl AdapterState {
-    /// Returns the identity of the adapter, or `None` before it was read.
+    /// Returns the identity of the adapter, or `None` if it has not been read yet.
     pub const fn hello(&self) -> Option<&Hello> {
         self.hello.as_ref()
     }
@@ -130,7 +130,7 @@ impl AdapterState {
     }
 
     /// Discards the identity, so that it is read again. The known state of the encoder supply is kept, since HELLO does
-    /// not switch it.
+    /// not change it.
     pub(crate) fn forget(&mut self) {
         *self = AdapterState { power: self.power, ..AdapterState::default() };
     }
@@ -155,7 +155,7 @@ impl AdapterState {
         self.has_spoken
     }
 
-    /// Returns the local time at which the adapter's clock was at `t_us`, according to the reply with this time.
+    /// Returns the local time at which the adapter's clock was at `t_us`, based on the timing of the given reply.
     pub(crate) fn moment_of(&mut self, t_us: u64, answered: &TimedReply) -> Moment {
         self.clocks.moment_of(t_us, answered.sent_at, answered.received_at)
     }
@@ -169,8 +169,10 @@ pub(crate) struct Adapter<'m, 'a> {
 }
 
 impl Adapter<'_, '_> {
-    /// Identifies the adapter, once per session, because HELLO ends streams. The supply is not switched.⎏⎏#
-    /// Errors⎏Includes [`AdapterError::Version`].
+    /// Identifies the adapter once per session, because HELLO ends streams. The supply is not switched.
+    ///
+    /// # Errors
+    /// Includes [`AdapterError::Version`].
     pub(crate) fn hello(&mut self) -> Result<(), Failure> {
         if self.adapter.hello.is_none() {
             // The empty packet before it ends anything that the adapter may have received from another host.
@@ -187,9 +189,11 @@ impl Adapter<'_, '_> {
         Ok(())
     }
 
-    /// Switches the encoder supply on; returns the measured millivolts and milliamperes. If the voltage exceeds what
-    /// the encoder tolerates, the supply is switched off again.⎏⎏# Errors⎏Includes [`AdapterError::NoSupply`] and
-    /// [`AdapterError::Overvoltage`].
+    /// Switches the encoder supply on and returns the measured millivolts and milliamperes. If the voltage exceeds what
+    /// the encoder tolerates, the supply is switched off again.
+    ///
+    /// # Errors
+    /// Includes [`AdapterError::NoSupply`] and [`AdapterError::Overvoltage`].
     pub(crate) fn supply(&mut self, voltage: SupplyVoltage) -> Result<(u16, u16), Failure> {
         if let Some(hello) = self.adapter.hello().filter(|hello| !hello.capabilities.has(Capabilities::SUPPLY)) {
             return Err(AdapterError::NoSupply { name: hello.name.clone() }.into());
@@ -208,8 +212,10 @@ impl Adapter<'_, '_> {
         Ok((measured, milliampere))
     }
 
-    /// Switches the encoder supply off at the end of a session, unless it is to remain on.⎏⎏# Errors⎏See
-    /// [`AdapterError`].
+    /// Switches the encoder supply off at the end of a session, unless it is to remain on.
+    ///
+    /// # Errors
+    /// See [`AdapterError`].
     pub(crate) fn leave_supply(&mut self) -> Result<(), Failure> {
         if self.adapter.switches_supply_off() { self.switch_off() } else { Ok(()) }
     }
@@ -220,7 +226,7 @@ impl Adapter<'_, '_> {
         Ok(())
     }
 
-    /// Sends a request; once more if no reply arrives. Only for requests that may be repeated.
+    /// Sends a request, and repeats it once if no reply arrives. Only for requests that may be repeated.
     ///
     /// # Errors
     /// See [`AdapterError`].
@@ -237,7 +243,10 @@ impl Adapter<'_, '_> {
         Err(AdapterError::Silent.into())
     }
 
-    /// Sends a request once; returns `None` if no reply arrives.⎏⎏# Errors⎏See [`AdapterError`].
+    /// Sends a request once. Returns `None` if no reply arrives.
+    ///
+    /// # Errors
+    /// See [`AdapterError`].
     pub(crate) fn ask_once(&mut self, request: &Request) -> Result<Option<TimedReply>, Failure> {
         self.exchange(request, &[])
     }
@@ -284,7 +293,7 @@ impl Adapter<'_, '_> {
         }
     }
 
-    /// Returns the reply in a packet, if it belongs to this request; late replies have another sequence number.
+    /// Returns the reply in a packet if it answers this request. Late replies have a different sequence number.
     fn judge(&mut self, request: &Request, seq: u8, packet: &Packet) -> Result<Option<Reply>, AdapterError> {
         let operation = request.operation();
         let parsed = Message::parse(packet);
@@ -304,7 +313,7 @@ impl Adapter<'_, '_> {
     }
 }
 
-/// Bounds of the offset between the adapter's clock and the local one, in nanoseconds: an adapter samples after the
+/// Bounds in nanoseconds of the offset between the adapter's clock and the local clock. An adapter samples after the
 /// request was sent and before the reply arrived.
 #[derive(Clone, Copy, Debug, Default)]
 struct Clocks {

@@ -4,11 +4,11 @@ use crate::parameter::Words;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SupplyAfter {
-    /// As found: a supply switched on by this session is switched off.
+    /// Restore the previous state: a supply switched on by this session is switched off.
     #[default]
     AsFound,
     On,
-    /// Off, even if the supply was on before.
+    /// Switch the supply off, even if it was on before the session.
     Off,
 }
 
@@ -39,7 +39,7 @@ impl Power {
     }
 }
 
-/// Logs that the supply could not be left as requested, since the ended session no longer reports results.
+/// Logs that the supply could not be left as requested, because an ended session can no longer report results.
 pub(crate) fn warn_of_supply(left: Result<(), impl std::fmt::Display>) {
     if let Err(error) = left {
         tracing::warn!("the encoder's supply could not be switched off: {error}");
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
     use crate::parameter::Values;
 
-    /// Issue 22.16: off, unless it was on before or something else was selected.
+    /// The supply is switched off unless it was on before or another choice was made (issue 22.16).
     #[test]
     fn the_supply_ends_as_found_or_as_chosen() {
         use SupplyAfter::{AsFound, Off, On};

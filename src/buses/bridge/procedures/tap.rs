@@ -9,12 +9,12 @@ use crate::link::line::{LineError, LineState, SerialLine};
 use crate::link::{Ctx, LinkError};
 use crate::units::{Moment, SupplyVoltage};
 
-/// A stream, and the sampling of its signals.
+/// A stream to start, with the sampling of its signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StreamRequest {
     Biss {
         clock_hz: u32,
-        /// Position, error and warning, without the CRC.
+        /// Number of bits for position, error and warning, excluding the CRC.
         data_bits: u8,
         crc_bits: u8,
         /// Sampling interval in microseconds.
@@ -25,7 +25,7 @@ pub enum StreamRequest {
     },
 }
 
-/// Time until the signals of an encoder are valid: HIPERFACE, figure 38, up to 900 ms.
+/// Time until the signals of an encoder are valid; HIPERFACE encoders need up to 900 ms (figure 38).
 const POWER_UP: Duration = Duration::from_secs(1);
 
 /// A streaming adapter and its actual settings.
@@ -33,7 +33,7 @@ const POWER_UP: Duration = Duration::from_secs(1);
 pub struct Streaming {
     pub hello: Hello,
     pub period_ns: i64,
-    /// Full scale of sine and cosine in microvolts, the voltage of the value 32 767; otherwise 0.
+    /// Full scale of sine and cosine, as the voltage in microvolts of the value 32 767; 0 for other streams.
     pub full_scale_microvolt: u32,
     /// Measured encoder supply in millivolts and milliamperes, or `None` if the adapter does not supply the encoder.
     pub supplied: Option<(u16, u16)>,
@@ -49,7 +49,7 @@ pub enum TapError {
     Adapter(#[from] AdapterError),
 }
 
-/// The host's side of an adapter that streams.
+/// Host side of a streaming adapter.
 #[derive(Clone, Debug)]
 pub struct Tap {
     line: LineState,
@@ -70,16 +70,17 @@ impl From<Failure> for TapError {
 }
 
 impl Tap {
-    /// Creates a tap for an unidentified adapter, whose replies may arrive later than the protocol specifies by the
-    /// given margin.
+    /// Creates a tap for an adapter that is not identified yet. `margin` is added to the reply times of the protocol.
     pub fn new(margin: Duration) -> Self {
         Tap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None }
     }
 
     /// Identifies the adapter, switches the encoder supply on if requested, configures the adapter and starts the
-    /// stream.⎏⎏# Errors⎏[`AdapterError::Version`], [`NoSsi`](AdapterError::NoSsi), [`NoBiss`](AdapterError::NoBiss),
-    /// [`NoAnalog`](AdapterError::NoAnalog) or [`NoSupply`](AdapterError::NoSupply), a refusal, or errors of the
-    /// connection.
+    /// stream.
+    ///
+    /// # Errors
+    /// [`AdapterError::Version`], [`NoSsi`](AdapterError::NoSsi), [`NoBiss`](AdapterError::NoBiss),
+    /// [`NoAnalog`](AdapterError::NoAnalog) or [`NoSupply`](AdapterError::NoSupply), a refusal, or a connection error.
     pub fn begin(
         &mut self,
         ctx: Ctx<'_>,
@@ -121,8 +122,10 @@ impl Tap {
         Ok(Streaming { hello, period_ns, full_scale_microvolt, supplied })
     }
 
-    /// Returns the next samples, or `None` if none have arrived by `until` or no stream is running.⎏⎏# Errors⎏The
-    /// reason why the stream has ended.
+    /// Returns the next samples, or `None` if none have arrived by `until` or no stream is running.
+    ///
+    /// # Errors
+    /// Returns the reason why the stream has ended.
     pub fn next(&mut self, ctx: Ctx<'_>, until: Moment) -> Result<Option<Portion>, TapError> {
         let Some(flow) = &mut self.flow else { return Ok(None) };
         let mut line = SerialLine::new(ctx);
@@ -130,8 +133,10 @@ impl Tap {
         Ok(flow.next(&mut adapter, until)?)
     }
 
-    /// Ends the stream, even after cancellation, and restores the encoder supply to its original state.⎏⎏#
-    /// Errors⎏Errors of the adapter or the connection.
+    /// Ends the stream, even after cancellation, and restores the encoder supply to its original state.
+    ///
+    /// # Errors
+    /// Returns errors of the adapter or the connection.
     pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), TapError> {
         let mut line = SerialLine::new(ctx);
         line.shield(true);
@@ -143,7 +148,7 @@ impl Tap {
 }
 
 impl StreamRequest {
-    /// Never faster than the adapter can.
+    /// Returns the configuration request, limited to the speeds that the adapter supports.
     fn configure(self, hello: &Hello) -> Request {
         match self {
             StreamRequest::Biss { clock_hz, data_bits, crc_bits, .. } => Request::BissConfig {

@@ -10,7 +10,7 @@ pub enum CobsError {
     /// The byte 00 occurs at this index, although it only terminates packets.
     #[error("00 stands within the packet, at byte {0}")]
     Zero(usize),
-    /// The code byte at this index requires more bytes than follow.
+    /// The code byte at this index requires more bytes than remain.
     #[error("the packet ends {0} bytes too early")]
     Short(usize),
 }
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The examples of the usual description of COBS, without their 00 at the end.
+    /// The examples from the usual description of COBS, without the terminating 00, are encoded and decoded correctly.
     #[test]
     fn published_examples_encode_and_decode() {
         let counting = |first: u8, count: u8| (0..count).map(|at| first.wrapping_add(at)).collect::<Vec<u8>>();

@@ -2,30 +2,30 @@
 
 use super::data::Data;
 
-/// Expected position in a stream.
+/// A tracker for the expected position in a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Continuity {
     next: u32,
 }
 
-/// The gap before a packet.
+/// The gap in front of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gap {
     /// The packet follows without a gap.
     None,
-    /// This number of samples is missing.
+    /// The given number of samples is missing.
     Missing(u32),
-    /// The samples precede earlier ones: the stream was restarted, or the packet is late.
+    /// The samples precede earlier ones, because the stream was restarted or the packet is late.
     Backwards,
 }
 
 impl Continuity {
-    /// Creates the check for the start of a stream, where the first sample has the number 0.
+    /// Creates the tracker for the start of a stream, where the first sample has the number 0.
     pub const fn at_start() -> Self {
         Continuity { next: 0 }
     }
 
-    /// Returns the gap before these samples and expects the next packet after them.
+    /// Returns the gap before the samples in `data` and advances the expected position past them.
     pub fn follow(&mut self, data: &Data) -> Gap {
         let (first, count, lost) = data.extent();
         let ahead = first.wrapping_sub(self.next);

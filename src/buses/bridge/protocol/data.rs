@@ -15,7 +15,7 @@ pub enum Data {
     Analog(AnalogData),
 }
 
-/// SSI words at equal intervals.
+/// SSI words sampled at equal intervals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SsiData {
     /// Number of the first word, counted from the start of the stream, modulo 2³².
@@ -28,11 +28,11 @@ pub struct SsiData {
     pub lost: u16,
     /// Width of a value on the wire, 1…8 bytes.
     pub width: u8,
-    /// Right-justified values; at most 255.
+    /// Right-justified values, at most 255 of them.
     pub values: Vec<u64>,
 }
 
-/// BiSS frames at equal intervals.
+/// BiSS frames sampled at equal intervals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissData {
     /// Number of the first frame, counted from the start of the stream, modulo 2³².
@@ -45,7 +45,7 @@ pub struct BissData {
     pub lost: u16,
     /// Width of a value on the wire without its status, 1…8 bytes.
     pub width: u8,
-    /// Status, data and CRC of each frame, right-justified; at most 255.
+    /// Status and right-justified data and CRC of each frame, at most 255 frames.
     pub values: Vec<(BissStatus, u64)>,
 }
 
@@ -58,7 +58,7 @@ pub struct AnalogData {
     pub t0_us: u64,
     /// Number of samples that the adapter has lost since its previous packet.
     pub lost: u16,
-    /// Pairs of sine and cosine as fractions of full scale; at most 255.
+    /// Pairs of sine and cosine as fractions of full scale, at most 255 pairs.
     pub samples: Vec<(i16, i16)>,
 }
 
@@ -67,7 +67,7 @@ impl Data {
     const BISS: u8 = 0xA5;
     const ANALOG: u8 = 0xB2;
 
-    /// Returns the number of the first sample, the sample count, and the number of samples lost before them.
+    /// Returns the number of the first sample, the sample count, and the number of samples lost before the first.
     pub const fn extent(&self) -> (u32, usize, u16) {
         match self {
             Data::Ssi(data) => (data.first_index, data.values.len(), data.lost),

@@ -3,7 +3,7 @@
 /// The reason why a body does not match its operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BodyError {
-    /// The length does not match the operation.
+    /// The body length does not match the operation.
     #[error("operation 0x{op:02X}: a body of {got} bytes has the wrong length")]
     Length {
         /// Operation code.
@@ -40,7 +40,7 @@ pub enum BodyError {
     },
 }
 
-/// The rest of a body to be read.
+/// The remaining bytes of a body to be parsed.
 pub(super) struct Fields<'a> {
     op: u8,
     whole: usize,
@@ -81,7 +81,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// Returns a number of `width` bytes, at most eight.
+    /// Parses a number of `width` bytes, at most eight.
     pub(super) fn wide(&mut self, width: u8) -> Result<u64, BodyError> {
         let bytes = self.bytes(width.into())?;
         Ok(bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)))
@@ -98,7 +98,7 @@ impl<'a> Fields<'a> {
         std::mem::take(&mut self.rest)
     }
 
-    /// Returns the value if no bytes remain.
+    /// Returns `value` if no bytes remain.
     pub(super) fn end<T>(self, value: T) -> Result<T, BodyError> {
         if self.rest.is_empty() { Ok(value) } else { Err(self.length()) }
     }
@@ -120,7 +120,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Appends a string of at most 255 bytes with its length; longer strings are truncated between characters.
+/// Appends a string of at most 255 bytes with its length. Longer strings are truncated at a character boundary.
 pub(super) fn push_text(body: &mut Vec<u8>, text: &str) {
     let end = (0..=text.len().min(255)).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
     // At most 255.

@@ -32,5 +32,5 @@ pub use request::{Operation, Request, SsiFlags};
 
 /// Version of the protocol used by this program.
 pub const VERSION: u8 = 1;
-/// An unanswered request is repeated once after this, and given up after as much again.
+/// Time after which an unanswered request is repeated once. The request is given up after the same time again.
 pub const REPEAT_AFTER: Duration = Duration::from_millis(200);

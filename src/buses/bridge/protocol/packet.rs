@@ -8,11 +8,11 @@ pub const MAX_BODY: usize = 512;
 /// A packet with a valid checksum.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packet {
-    /// Sequence number, chosen by the host and repeated in the reply; unsolicited packets are counted separately.
+    /// Sequence number, chosen by the host and repeated in the reply. Unsolicited packets are counted separately.
     pub seq: u8,
-    /// Operation code; bit 7 is set in a reply.
+    /// Operation code, in which bit 7 is set for a reply.
     pub op: u8,
-    /// Body of up to [`MAX_BODY`] bytes.
+    /// Body of at most [`MAX_BODY`] bytes.
     pub body: Vec<u8>,
 }
 
@@ -38,7 +38,7 @@ pub enum PacketError {
 impl Packet {
     /// Bytes around the body.
     const OVERHEAD: usize = 4;
-    /// A stuffed packet never has more.
+    /// Maximum length of a stuffed packet in bytes.
     pub(super) const MAX_STUFFED: usize = MAX_BODY + Self::OVERHEAD + (MAX_BODY + Self::OVERHEAD) / 254 + 1;
 
     /// Parses the bytes between two terminators.
@@ -85,7 +85,7 @@ pub fn crc16(bytes: &[u8]) -> u16 {
     })
 }
 
-/// CRC remainders of all values of the upper eight register bits.
+/// CRC remainders for all values of the upper eight register bits.
 const TABLE: [u16; 256] = table();
 
 #[expect(clippy::indexing_slicing, reason = "iterators cannot run while compiling; the index is that of the loop")]
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The check value of the catalogue of parametrised CRC algorithms.
+    /// The CRC matches the check value in the catalogue of parametrised CRC algorithms.
     #[test]
     fn published_check_value_matches() {
         assert_eq!(crc16(b"123456789"), 0x29B1);

@@ -2,16 +2,16 @@
 
 use super::packet::{Packet, PacketError};
 
-/// Received bytes that do not yet form a complete packet.
+/// A buffer of received bytes that do not yet form a complete packet.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     bytes: Vec<u8>,
-    /// Start of the search for the next 00.
+    /// Index at which the search for the next 00 starts.
     searched: usize,
-    /// Whether the current packet is too long, so that its bytes are dropped until it ends.
+    /// Whether the current packet is too long, in which case its bytes are dropped until the packet ends.
     overlong: bool,
     dropped: u64,
-    /// Last damaged packet, until it is taken.
+    /// Last damaged packet that has not been taken yet.
     broken: Option<Vec<u8>>,
 }
 
@@ -53,7 +53,7 @@ impl Receiver {
         }
     }
 
-    /// Returns the bytes of the last damaged packet, if any since the previous call.
+    /// Returns the bytes of the last damaged packet since the previous call, if any.
     pub const fn take_broken(&mut self) -> Option<Vec<u8>> {
         self.broken.take()
     }

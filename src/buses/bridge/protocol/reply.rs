@@ -66,7 +66,7 @@ pub enum Reply {
         t_us: u64,
         /// Frame status.
         status: BissStatus,
-        /// Data and CRC, right-justified; the CRC has not been checked.
+        /// Right-justified data and CRC. The CRC has not been checked.
         raw: u64,
     },
     /// Value of a register.
@@ -88,7 +88,7 @@ pub enum Reply {
     AnalogConfig {
         /// Sample rate in hertz.
         sample_hz: u32,
-        /// Full scale in microvolts, the voltage of the value 32 767.
+        /// Full-scale voltage in microvolts, corresponding to the value 32 767.
         full_scale_microvolt: u32,
         /// Resolution of the converter in bits.
         bits: u8,
@@ -98,14 +98,14 @@ pub enum Reply {
         /// Whether the stream is running.
         on: bool,
     },
-    /// Actual setting of the serial line.
+    /// Actual settings of the serial line.
     UartConfig {
         /// Baud rate.
         baud: u32,
     },
     /// Bytes received on the serial line.
     UartTransfer {
-        /// Start of the first start bit of the reply, by the clock of the analogue samples, in microseconds.
+        /// Start of the first start bit of the reply in microseconds, by the clock of the analogue samples.
         t_us: u64,
         /// Received bytes.
         rx: Vec<u8>,
@@ -129,15 +129,15 @@ pub struct Hello {
     pub firmware: String,
 }
 
-/// Capabilities of an adapter; unknown bits are preserved.
+/// The capabilities of an adapter. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities(u32);
 
-/// Status of reading a BiSS frame; unknown values are preserved.
+/// The status of reading a BiSS frame. Unknown values are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BissStatus(u8);
 
-/// Code of a refusal; unknown codes are preserved.
+/// The code of a refusal. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorCode(u8);
 
@@ -154,10 +154,11 @@ impl Capabilities {
     pub const UART: Capabilities = Capabilities(1 << 4);
     /// Switchable encoder supply.
     pub const SUPPLY: Capabilities = Capabilities(1 << 5);
-    /// State rather than capability: the encoder supply is on. Adapters that do not report it leave this bit clear.
+    /// State bit rather than a capability, set while the encoder supply is on. Adapters that do not report the state
+    /// leave this bit clear.
     pub const SUPPLIED: Capabilities = Capabilities(1 << 6);
 
-    /// Creates a set of capabilities from its word; every value is valid.
+    /// Creates a set of capabilities from its word. Every value is valid.
     pub const fn new(word: u32) -> Self {
         Capabilities(word)
     }
@@ -167,7 +168,7 @@ impl Capabilities {
         self.0
     }
 
-    /// Returns whether all of `others` are included.
+    /// Returns whether this set includes all of `others`.
     pub const fn has(self, others: Capabilities) -> bool {
         self.0 & others.0 == others.0
     }
@@ -194,7 +195,7 @@ impl BissStatus {
         BissStatus(byte)
     }
 
-    /// Returns the status as a byte.
+    /// Returns the byte of the status.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -203,7 +204,7 @@ impl BissStatus {
 impl ErrorCode {
     /// The adapter does not support the operation.
     pub const NOT_SUPPORTED: ErrorCode = ErrorCode(1);
-    /// The adapter does not accept a value of the request.
+    /// The adapter does not accept a value in the request.
     pub const BAD_ARGUMENT: ErrorCode = ErrorCode(2);
     /// A stream is running.
     pub const BUSY: ErrorCode = ErrorCode(3);
@@ -219,21 +220,21 @@ impl ErrorCode {
         ErrorCode(byte)
     }
 
-    /// Returns the error code as a byte.
+    /// Returns the byte of the error code.
     pub const fn byte(self) -> u8 {
         self.0
     }
 }
 
 impl Message {
-    /// The operation of a refusal.
+    /// Operation code of a reply that refuses a request.
     const ERROR: u8 = 0xFF;
 
     /// Parses a packet from an adapter.
     ///
     /// # Errors
-    /// [`BodyError`] if the operation is unknown or its body is invalid; [`BodyError::Version`] for a HELLO of another
-    /// version, whatever else it contains.
+    /// [`BodyError`] if the operation is unknown or its body is invalid; [`BodyError::Version`] for a HELLO with a
+    /// different version, whatever else it contains.
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         if packet.op == Self::ERROR {
             let mut fields = Fields::new(packet.op, &packet.body);
@@ -246,7 +247,7 @@ impl Message {
         Reply::parse(packet).map(Message::Reply)
     }
 
-    /// Returns the packet for the host.
+    /// Returns the packet to send to the host.
     pub fn emit(&self, seq: u8) -> Packet {
         match self {
             Message::Reply(reply) => reply.emit(seq),
@@ -261,7 +262,7 @@ impl Message {
 }
 
 impl Reply {
-    /// Returns the operation to which this is the reply.
+    /// Returns the operation that this reply answers.
     pub const fn operation(&self) -> Operation {
         match self {
             Reply::Hello(_) => Operation::Hello,

@@ -3,7 +3,7 @@
 use super::fields::{BodyError, Fields};
 use super::packet::Packet;
 
-/// Operations with their codes in a request.
+/// Operations of the protocol, with their request codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Operation {
@@ -46,7 +46,7 @@ pub enum Request {
     Supply {
         /// Whether to switch the supply on.
         on: bool,
-        /// Voltage in millivolts. Request only a voltage that the description of the encoder allows.
+        /// Voltage in millivolts. Request only a voltage that the encoder's description allows.
         millivolt: u16,
     },
     /// Configure the SSI clock.
@@ -57,7 +57,7 @@ pub enum Request {
         clock_hz: u32,
         /// Pause between two words, in microseconds.
         pause_us: u16,
-        /// Clock edge at which the data line is sampled.
+        /// Flags that select the clock edge at which the data line is sampled.
         flags: SsiFlags,
     },
     /// Read an SSI word.
@@ -71,7 +71,7 @@ pub enum Request {
     BissConfig {
         /// Clock in hertz.
         clock_hz: u32,
-        /// Number of bits of position, error and warning, without the CRC.
+        /// Number of bits for position, error and warning, excluding the CRC.
         data_bits: u8,
         /// Width of the CRC in bits.
         crc_bits: u8,
@@ -131,12 +131,12 @@ pub enum Request {
     },
 }
 
-/// Sampling of the SSI data line; unknown bits are preserved.
+/// Flags for sampling the SSI data line; unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SsiFlags(u8);
 
 impl SsiFlags {
-    /// Bit 0: sampling at the falling clock edge, as usual.
+    /// Bit 0: the data line is sampled at the falling clock edge, as usual.
     pub const FALLING_EDGE: SsiFlags = SsiFlags(0x01);
 
     /// Creates a set of flags from its byte; every value is valid.
@@ -144,7 +144,7 @@ impl SsiFlags {
         SsiFlags(byte)
     }
 
-    /// Returns the flags as a byte.
+    /// Returns the byte of the flags.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -174,7 +174,7 @@ impl Operation {
         Operation::UartTransfer,
     ];
 
-    /// The bit that is set in the operation code of a reply.
+    /// Bit that is set in the operation code of a reply.
     pub const REPLY_BIT: u8 = 0x80;
 
     /// Returns the operation code of a request.
@@ -182,7 +182,7 @@ impl Operation {
         self as u8
     }
 
-    /// Returns the operation with this code.
+    /// Returns the operation with this code, or `None` if the code is unknown.
     pub fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|operation| operation.byte() == byte)
     }
@@ -209,7 +209,7 @@ impl Request {
         }
     }
 
-    /// Returns the packet for the adapter.
+    /// Returns the packet to send to the adapter.
     pub fn emit(&self, seq: u8) -> Packet {
         let mut body = Vec::new();
         match self {

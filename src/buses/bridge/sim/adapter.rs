@@ -39,14 +39,14 @@ pub struct Adapter {
     requests: u32,
     pushed: u8,
     now: Moment,
-    /// Time until which the last reply is in transit.
+    /// Time at which transmission of the last reply ends.
     replied: Moment,
-    /// Bytes by time of arrival.
+    /// Bytes for the host, ordered by time of arrival.
     to_host: Queue<Vec<u8>>,
     inbox: Vec<u8>,
 }
 
-/// Why a request is refused.
+/// Reason why a request is refused.
 type Refusal = (ErrorCode, &'static str);
 
 const NOT_CONFIGURED: Refusal = (ErrorCode::BAD_ARGUMENT, "not configured yet");
@@ -61,11 +61,12 @@ impl Adapter {
     const CONTROL_CYCLES: u32 = 47;
     /// Maximum number of pending replies, limited by the memory of a small controller. Further requests are lost.
     const WAITING: usize = 16;
-    /// The encoder's supply (manual, chapter 2).
+    /// Range of the encoder's supply voltage in millivolts (manual, chapter 2).
     const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
     const SUPPLY_MILLIWATT: u32 = 300;
 
-    /// Creates the virtual adapter from `config` with the given devices; of several at one connector, the last is used.
+    /// Creates the virtual adapter from `config` with the given devices. If several devices use one connector, the last
+    /// one is used.
     pub(super) fn new(config: &Config, shared: &Shared, shaft: &Shaft, attached: Vec<AttachedDevice>) -> Self {
         let mut adapter = Adapter {
             bus: Bus::new(config, shared, shaft),
@@ -103,7 +104,7 @@ impl Adapter {
         adapter
     }
 
-    /// Returns the BiSS device, if it has type `T`, so that tests can inspect it and set its temperature or errors.
+    /// Returns the BiSS device if it has type `T`, so that tests can inspect it and set its temperature or errors.
     pub fn device<T: BissDevice>(&self) -> Option<&T> {
         let device: &dyn Any = &**self.bus.biss.as_ref()?;
         device.downcast_ref()
@@ -118,7 +119,7 @@ impl Adapter {
         self.bus.motor()
     }
 
-    /// Turns that shaft at another speed from `now` on.
+    /// Changes the speed of the adapter's own shaft from `now` on.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
         self.advance(now);
         self.bus.set_rpm(self.now, rpm);
@@ -140,7 +141,7 @@ impl Adapter {
         }
     }
 
-    /// Replaces the faults; the counts of requests and stores are kept.
+    /// Replaces the configured faults and keeps the counts of requests and stores.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.faults = faults.clone();
         if let Some(device) = &mut self.bus.biss {
@@ -208,7 +209,7 @@ impl Adapter {
         self.send(self.replied, &reply);
     }
 
-    /// Returns how long the adapter works on a request, without the transmission.
+    /// Returns how long the adapter works on a request, excluding transmission.
     fn time(&self, request: &Request) -> Duration {
         let frame = self.biss.map_or(Duration::ZERO, |setting| setting.frame());
         match request.operation() {

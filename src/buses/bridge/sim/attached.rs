@@ -6,17 +6,17 @@ use std::any::Any;
 use crate::sim::{ByteDevice, ConfigError, Faults, Motor};
 use crate::units::Moment;
 
-/// A BiSS device with position and registers. Its motor turns the shaft shared by all encoders of an adapter, and it
-/// determines their supply.
+/// A BiSS device with a position and registers. Its motor turns the shaft shared by all encoders of an adapter, and the
+/// device determines their supply.
 pub trait BissDevice: Any + Send {
-    /// Returns a second device with the same settings.
+    /// Creates another device with the same settings.
     fn another(&self) -> Box<dyn BissDevice>;
 
-    /// Returns the bits after the control bit of the frame taken at a moment, and their number, or `None` while the
+    /// Returns the bits that follow the control bit of the frame latched at `at`, and their number, or `None` while the
     /// device does not acknowledge.
     fn frame(&mut self, at: Moment) -> Option<(u64, u8)>;
 
-    /// Returns the shaft position in steps, and the number of steps per revolution, or `None` without power.
+    /// Returns the shaft position in steps and the number of steps per revolution, or `None` without power.
     fn place(&mut self, at: Moment) -> Option<(u64, u64)>;
 
     fn motor(&self) -> Motor;
@@ -27,7 +27,7 @@ pub trait BissDevice: Any + Send {
 
     fn disconnect(&mut self);
 
-    /// Restores the power of a device that has lost it.
+    /// Restores power to a device that has lost it.
     fn connect(&mut self, now: Moment);
 
     /// Returns whether the device has power; it may still be starting up.
@@ -46,19 +46,19 @@ pub trait BissDevice: Any + Send {
     fn write_register(&mut self, now: Moment, address: u8, value: u8) -> bool;
 }
 
-/// An encoder whose words are clocked out.
+/// An encoder that is read by clocking out its position word.
 pub trait SsiDevice: Send {
-    /// Returns a second device with the same settings.
+    /// Creates another device with the same settings.
     fn another(&self) -> Box<dyn SsiDevice>;
 
-    /// Returns the word taken at a moment and its number of bits, for a shaft position in steps and the number of steps
+    /// Returns the word latched at `at` and its number of bits, for a shaft position in steps and the number of steps
     /// per revolution.
     fn word(&mut self, at: Moment, place: (u64, u64)) -> (u64, u8);
 }
 
 /// The device at the end of the serial line.
 pub trait SerialDevice: ByteDevice {
-    /// Returns a second device with the same settings.
+    /// Creates another device with the same settings.
     fn another(&self) -> Box<dyn SerialDevice>;
 
     fn turn(&mut self, now: Moment, rpm: f64);
@@ -82,19 +82,21 @@ impl Clone for Box<dyn SerialDevice> {
     }
 }
 
-/// A device that hangs on an adapter, by the connector.
+/// A device attached to an adapter, grouped by connector.
 pub enum AttachedDevice {
     Biss(Box<dyn BissDevice>),
     Ssi(Box<dyn SsiDevice>),
     Serial(Box<dyn SerialDevice>),
 }
 
-/// A kind of device that can hang on an adapter.
+/// A kind of device that can be attached to an adapter.
 pub trait AttachableKind: Sync {
-    /// Returns the settings of the device in a `sim:` link.
+    /// Returns the keys of the device's settings in a `sim:` link.
     fn keys(&self) -> &'static [&'static str];
 
-    /// Creates the device from its settings, or returns `None` if they request none.⎏⎏# Errors⎏Names the key and the
-    /// allowed values.
+    /// Creates the device from its settings, or returns `None` if they do not request a device.
+    ///
+    /// # Errors
+    /// Names the key and the allowed values.
     fn attach_device(&self, pairs: &[(String, String)]) -> Result<Option<AttachedDevice>, ConfigError>;
 }

@@ -14,7 +14,7 @@ use crate::units::Moment;
 pub(super) struct Bus {
     pub(super) biss: Option<Box<dyn BissDevice>>,
     pub(super) ssi: Option<Box<dyn SsiDevice>>,
-    /// The shaft that turns while nothing is attached to BiSS.
+    /// Shaft that turns while no device is attached to the BiSS connector.
     shaft: Shaft,
     pub(super) is_supplied: bool,
     line: EncoderWiring,
@@ -39,7 +39,7 @@ impl Bus {
         self.biss.as_ref().map_or_else(|| self.shaft.motor().clone(), |device| device.motor())
     }
 
-    /// Turns that shaft at another speed from `now` on.
+    /// Changes the speed of the adapter's own shaft from `now` on.
     pub(super) fn set_rpm(&mut self, now: Moment, rpm: f64) {
         match &mut self.biss {
             Some(device) => device.set_rpm(now, rpm),
@@ -48,12 +48,12 @@ impl Bus {
         self.follow_motor(now);
     }
 
-    /// Lets the adapter's own shaft follow its motor from `now` on; a device follows at its next access.
+    /// Lets the adapter's own shaft follow its motor from `now` on. An attached device follows at its next access.
     pub(super) fn follow_motor(&mut self, now: Moment) {
         self.shaft.follow(now);
     }
 
-    /// Returns the shaft position in steps, and the number of steps per revolution, or `None` without power.
+    /// Returns the shaft position in steps and the number of steps per revolution, or `None` without power.
     fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
         match &mut self.biss {
             Some(device) => device.place(at),
@@ -68,7 +68,7 @@ impl Bus {
         self.biss.as_mut()
     }
 
-    /// Returns `bits` bits after the control bit of a BiSS frame taken at a moment.
+    /// Returns the `bits` bits that follow the control bit of a BiSS frame latched at `at`.
     pub(super) fn frame(&mut self, at: Moment, bits: u8) -> (BissStatus, u64) {
         match (self.line, self.biss.as_mut().and_then(|device| device.frame(at))) {
             (EncoderWiring::Low, _) => (BissStatus::STUCK_LOW, 0),
@@ -80,7 +80,7 @@ impl Bus {
         }
     }
 
-    /// Returns the first `bits` bits of an SSI word taken at a moment.
+    /// Returns the first `bits` bits of an SSI word latched at `at`.
     pub(super) fn word(&mut self, at: Moment, bits: u8) -> u64 {
         // Without power neither encoder sends.
         let place = self.place(at);
@@ -100,7 +100,7 @@ impl Bus {
     }
 }
 
-/// Returns `wanted` bits of a frame of `bits` bits in transmission order; the line is low after the end of the frame.
+/// Returns `wanted` bits of a frame of `bits` bits in transmission order. The line is low after the end of the frame.
 fn clock_out_bits(frame: u64, bits: u8, wanted: u8) -> u64 {
     let shifted =
         if wanted >= bits { frame.checked_shl((wanted - bits).into()) } else { Some(frame >> (bits - wanted)) };

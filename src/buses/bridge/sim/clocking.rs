@@ -4,9 +4,9 @@ use std::time::Duration;
 
 pub(super) const MAX_CLOCK_HZ: u32 = 10_000_000;
 const MIN_CLOCK_HZ: u32 = 80_000;
-/// Frequency of which available clocks are integer fractions.
+/// Crystal frequency in hertz; all available clocks are integer fractions of it.
 const CRYSTAL_HZ: u32 = 60_000_000;
-/// Longest time that the encoder works on a frame.
+/// Longest time in microseconds that the encoder takes to acknowledge a frame.
 const ACKNOWLEDGE_US: u32 = 7;
 
 #[derive(Clone, Copy)]
@@ -17,7 +17,7 @@ pub(super) struct BissSetting {
 }
 
 impl BissSetting {
-    /// Returns the duration of acknowledge, start and control bit, frame, time-out.
+    /// Returns the total duration of acknowledge, start and control bit, frame, and time-out.
     pub(super) fn frame(self) -> Duration {
         let clocks = u64::from(self.bits) + 2;
         let clocked = Duration::from_nanos((clocks * 1_000_000_000).div_ceil(self.clock_hz.max(1).into()));
@@ -39,14 +39,15 @@ impl SsiSetting {
         Duration::from_nanos(nanoseconds.div_ceil(self.clock_hz.max(1).into()))
     }
 
-    /// Returns the minimum period of word and pause, in whole microseconds.
+    /// Returns the minimum period of a word and its pause, in whole microseconds.
     pub(super) fn least_period_us(self) -> u32 {
         let microseconds = self.burst().as_nanos().div_ceil(1000);
         u32::try_from(microseconds).unwrap_or(u32::MAX).saturating_add(self.pause_us.into())
     }
 }
 
-/// Returns the fastest available clock not above the requested one, or `None` below the slowest.
+/// Returns the fastest available clock not above the requested one, or `None` if the request is below the slowest
+/// clock.
 pub(super) fn actual_clock(clock_hz: u32) -> Option<u32> {
     let wanted = clock_hz.min(MAX_CLOCK_HZ);
     (wanted >= MIN_CLOCK_HZ).then(|| CRYSTAL_HZ / CRYSTAL_HZ.div_ceil(wanted))

@@ -7,11 +7,11 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED};
 
 parameters! {
-    /// Settings of a virtual adapter. By default there are no faults, and the encoder is supplied externally.
+    /// Settings of a virtual adapter. By default, there are no faults and the encoder is supplied externally.
     pub(super) struct Config: ConfigError {
         pub(super) line: EncoderWiring = EncoderWiring::Good,
             "line" => Words(&[("good", EncoderWiring::Good), ("open", EncoderWiring::Open), ("low", EncoderWiring::Low), ("high", EncoderWiring::High)]);
-        /// The share of frames with a bit inverted.
+        /// Share of frames in which a bit is inverted.
         pub(super) noise: f64 = 0.0, "noise" => Decimal(Quantity::DamagedFrames, 0.0..=1.0);
         pub(super) switched_supply: bool = false, "supply" => Words(&[("external", false), ("switched", true)]);
         /// Version of the bridge protocol as reported by the adapter.
@@ -20,7 +20,7 @@ parameters! {
 }
 
 parameters! {
-    /// Settings that attached devices may share: the noise seed, and faults of the line and the device.
+    /// Settings that attached devices may share: the noise seed and the faults of line and device.
     pub(super) struct Shared: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -28,7 +28,7 @@ parameters! {
 }
 
 parameters! {
-    /// Shaft settings, used if no attached device has them.
+    /// Shaft settings, used if no attached device has its own.
     pub(super) struct Shaft: ConfigError {
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
     }

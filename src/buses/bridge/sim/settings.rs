@@ -6,8 +6,8 @@ use super::config::{Config, Shaft, Shared};
 use crate::parameter::{Entry, Parameters};
 use crate::sim::{ConfigError, VirtualDevice};
 
-/// Returns the settings of an adapter with these devices: those of the adapter and of devices with few settings in
-/// alphabetical order, then those of the last device.
+/// Returns the setting keys of an adapter with these devices: first those of the adapter and of devices with few
+/// settings in alphabetical order, then those of the last device.
 pub fn keys(devices: &[&dyn AttachableKind]) -> Vec<&'static str> {
     let (last, others) = devices.split_last().map_or((None, devices), |(last, others)| (Some(last), others));
     let mut keys = Config::KEYS.to_vec();
@@ -20,19 +20,22 @@ pub fn keys(devices: &[&dyn AttachableKind]) -> Vec<&'static str> {
     keys
 }
 
-/// Returns the form entries of an adapter: shaft speed, whether of its own shaft or that of a device, and faults.
+/// Returns the form entries of an adapter: its faults and the shaft speed, regardless of which device owns the shaft.
 pub fn entries() -> Vec<Entry> {
     [Shaft::entries(), Shared::entries()].concat()
 }
 
-/// Returns whether the shaft belongs to the adapter, because no attached device has a setting for its speed.
+/// Returns whether the adapter owns the shaft, because no attached device has a speed setting.
 fn turns_itself(devices: &[&dyn AttachableKind]) -> bool {
     devices.iter().all(|device| Shaft::KEYS.iter().all(|key| !device.keys().contains(key)))
 }
 
 impl Adapter {
     /// Creates the adapter with these devices from percent-decoded keys and values. If a key occurs twice, its last
-    /// value counts.⎏⎏# Errors⎏Names the key and the allowed values.
+    /// value counts.
+    ///
+    /// # Errors
+    /// Names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)], devices: &[&dyn AttachableKind]) -> Result<Self, ConfigError> {
         let known = keys(devices);
         if let Some((key, _)) = pairs.iter().find(|(key, _)| !known.contains(&key.as_str())) {

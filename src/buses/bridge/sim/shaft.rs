@@ -3,14 +3,14 @@
 use crate::sim::Motor;
 use crate::units::Moment;
 
-/// A shaft with its motor. A copy has a separate motor.
+/// A shaft with its motor. Copies have separate motors.
 #[derive(Debug)]
 pub(super) struct Shaft {
     motor: Motor,
-    /// Speed of the motor since then.
+    /// Motor speed in revolutions per minute since the last change.
     rpm: f64,
     since: Moment,
-    /// Revolutions from the zero of the shaft at that moment.
+    /// Revolutions from the shaft's zero at the time of the last change.
     revolutions: f64,
 }
 
@@ -25,7 +25,7 @@ impl Shaft {
     /// Number of revolutions after which the position wraps.
     const TURNS: f64 = 65_536.0;
 
-    /// Creates a shaft at its zero that turns at the given speed.
+    /// Creates a shaft that starts at zero and turns at the given speed.
     pub(super) fn turning(rpm: f64) -> Self {
         Shaft { motor: Motor::at(rpm), rpm, since: Moment::START, revolutions: 0.0 }
     }
@@ -34,7 +34,7 @@ impl Shaft {
         &self.motor
     }
 
-    /// Follows the motor from `now` on.
+    /// Makes the shaft follow its motor from `now` on.
     pub(super) fn follow(&mut self, now: Moment) {
         let rpm = self.motor.rpm();
         if rpm != self.rpm {
@@ -42,7 +42,7 @@ impl Shaft {
         }
     }
 
-    /// Returns the position in steps, and the steps per revolution.
+    /// Returns the position in steps and the number of steps per revolution.
     pub(super) fn place(&mut self, at: Moment) -> (u64, u64) {
         self.follow(at);
         // Not negative, below 2^41.
@@ -66,7 +66,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// 60 rpm: a revolution of 2^25 steps per second; 65 536 revolutions in all.
+    /// At 60 rpm the shaft makes a revolution of 2^25 steps per second, and wraps after 65 536 revolutions.
     #[test]
     fn a_turning_shaft_has_the_expected_position() {
         let mut shaft = Shaft::turning(60.0);

@@ -8,9 +8,9 @@ use crate::buses::bridge::protocol::{AnalogData, BissData, BissStatus, Data, MAX
 use crate::sim::sine_cosine::{Checked, Source};
 use crate::units::Moment;
 
-/// Longest wait for a packet to fill.
+/// Maximum time to wait for a packet to fill.
 const FLUSH: Duration = Duration::from_millis(5);
-/// Amount of data that the adapter buffers for a host that does not fetch it.
+/// Duration of data that the adapter buffers for a host that does not fetch it.
 const BACKLOG: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,13 +24,13 @@ struct Pace {
     start: Moment,
     period: Duration,
     capacity: u64,
-    /// First sample of the next packet.
+    /// Index of the first sample in the next packet.
     first: u64,
     lost: u64,
 }
 
 impl Pace {
-    /// Creates a stream with the given numbers of bytes before the samples and per sample.
+    /// Creates a stream with the given numbers of bytes before the samples (`head`) and per sample (`size`).
     fn new(start: Moment, period: Duration, head: usize, size: usize) -> Self {
         let fit = (MAX_BODY - head) / size.max(1);
         let in_time = FLUSH.as_nanos() / period.as_nanos().max(1);
@@ -60,8 +60,8 @@ impl Pace {
         }
     }
 
-    /// Returns the number and time of the first sample in the next packet, and the number of samples lost before it;
-    /// advances to the following packet.
+    /// Returns the number and time of the first sample in the next packet, and the number of samples lost before it.
+    /// Then advances to the following packet.
     fn next(&mut self) -> (u32, u64, u16) {
         let first = (self.first % (1 << 32)) as u32;
         let t0_us = u64::try_from(self.moment(self.first).since_start().as_micros()).unwrap_or(u64::MAX);
@@ -83,7 +83,7 @@ pub(super) struct ClockedStream {
 impl ClockedStream {
     const HEAD: usize = 20;
 
-    /// Creates `bits` of each value.
+    /// Creates a stream of values with `bits` bits each.
     pub(super) fn new(kind: Kind, start: Moment, period: Duration, bits: u8) -> Self {
         let width = bits.div_ceil(8).clamp(1, 8);
         let size = usize::from(width) + usize::from(kind == Kind::Biss);
@@ -94,7 +94,7 @@ impl ClockedStream {
         self.pace.due()
     }
 
-    /// Takes the samples up to a time, before later changes, and returns the complete packets with their times.
+    /// Takes the samples due up to `to`, before later changes apply, and returns the complete packets with their times.
     pub(super) fn run(&mut self, to: Moment, mut take: impl FnMut(Moment) -> (BissStatus, u64)) -> Vec<(Moment, Data)> {
         let mut packets = Vec::new();
         let before = self.pace.first;
@@ -135,7 +135,7 @@ pub(super) struct Analog {
 }
 
 impl Analog {
-    /// A value of 32 767, in microvolts.
+    /// Voltage in microvolts that corresponds to a raw value of 32 767.
     pub(super) const FULL_SCALE_MICROVOLT: u32 = 1_250_000;
     const HEAD: usize = 15;
 
@@ -154,7 +154,7 @@ impl Analog {
         self.source.change(u64::try_from(index).unwrap_or(u64::MAX), settings);
     }
 
-    /// Returns the packets that are complete by a moment, each with its time. An encoder without supply has no signals.
+    /// Returns the packets completed up to `to`, each with its time. An encoder without supply has no signals.
     pub(super) fn run(&mut self, to: Moment, is_supplied: bool) -> Vec<(Moment, Data)> {
         let mut packets = Vec::new();
         self.pace.skip(to);
@@ -177,7 +177,7 @@ impl Analog {
     }
 }
 
-/// Converts a voltage to a fraction of full scale; values beyond it are clamped.
+/// Converts a voltage to a raw fraction of full scale; values beyond full scale are clamped.
 fn raw(volts: f64) -> i16 {
     // Saturates like the converter.
     (volts * 1e6 / f64::from(Analog::FULL_SCALE_MICROVOLT) * 32_767.0).round() as i16

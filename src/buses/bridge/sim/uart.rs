@@ -14,15 +14,15 @@ pub(super) struct Uart {
 }
 
 pub(super) struct Transfer {
-    /// Start of the first start bit, or the end of the wait without a reply.
+    /// Start of the first start bit, or the end of the wait if there was no reply.
     pub(super) start: Moment,
     pub(super) rx: Vec<u8>,
-    /// When the adapter has stopped waiting.
+    /// Time at which the adapter stopped waiting.
     pub(super) end: Moment,
 }
 
 impl Uart {
-    /// Maximum number of received bytes in a reply, in addition to its time.
+    /// Maximum number of received bytes in a reply, not counting its time stamp.
     const MAX_RX: usize = MAX_BODY - 8;
 
     pub(super) fn new(line: Box<dyn SerialDevice>) -> Self {
@@ -33,7 +33,7 @@ impl Uart {
         self.line.turn(now, rpm);
     }
 
-    /// Sets baud rate and parity; returns `false` if they are not supported.
+    /// Sets baud rate and parity. Returns `false` if they are not supported.
     pub(super) fn configure(&mut self, now: Moment, baud: u32, parity: u8) -> bool {
         let parity = match parity {
             0 => Some(Parity::None),
@@ -48,8 +48,8 @@ impl Uart {
         true
     }
 
-    /// Sends and receives bytes, or returns `None` before the line is configured. The line runs ahead of the adapter's
-    /// time until its reply.
+    /// Sends and receives bytes, or returns `None` before the line is configured. The simulated line runs ahead of the
+    /// adapter's time until the reply is complete.
     pub(super) fn transfer(&mut self, now: Moment, timeout: Duration, idle: Duration, tx: &[u8]) -> Option<Transfer> {
         let character = self.format?.character_time();
         self.line.poll(now);

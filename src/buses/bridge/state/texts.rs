@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// Text catalogue of the adapter; other names are those of common texts.
+/// Text catalogue of the adapter. Names that it does not define are looked up in the common texts.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/bridge.ron"));

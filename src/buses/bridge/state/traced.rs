@@ -5,13 +5,13 @@ use crate::app::{Explained, Text, TraceFault};
 use crate::buses::bridge::protocol::{Message, Packet, Reply, Request};
 use crate::buses::bridge::state::TEXTS;
 
-/// Parses the packet in transmitted bytes, or returns `None` if they do not contain one.
+/// Parses the packet contained in transmitted bytes, or returns `None` if they do not contain one.
 pub fn packet(bytes: &[u8]) -> Option<Packet> {
     let stuffed = bytes.split(|byte| *byte == 0).find(|stuffed| !stuffed.is_empty())?;
     Packet::parse(stuffed).ok()
 }
 
-/// Explains a received packet that is damaged or a refusal, or returns `None` for others.
+/// Explains a received packet that is damaged or a refusal, or returns `None` for other packets.
 pub fn received(bytes: &[u8]) -> Option<Explained> {
     let Some(packet) = packet(bytes) else { return Some(Explained::broken(TEXTS.text("trace.no_packet"))) };
     match Message::parse(&packet) {

@@ -18,11 +18,11 @@ use crate::cli::output::{Output, count};
 pub(crate) struct DecodedBytes {
     pub(crate) lines: Vec<String>,
     pub(crate) more: Map<String, Json>,
-    /// Process data of a cyclic packet, and whether they are directed to the target.
+    /// Process data of a cyclic packet, and whether the packet is sent to the target.
     pub(crate) data: Option<(Vec<u8>, bool)>,
 }
 
-/// Function that returns the name and value of an attribute of a class, or the reason why there is none.
+/// A function that returns the name and value of an attribute of a class, or the reason why there is none.
 pub(crate) type AttributeWords = fn(u16, u16, &[u8]) -> Option<(String, std::result::Result<String, String>)>;
 
 #[derive(Clone, Copy)]
@@ -67,7 +67,7 @@ fn decode(output: &Output, words: &[String]) -> Result {
     show(output, &explained)
 }
 
-/// Decodes a packet, or returns `None` for bytes that do not begin like one.
+/// Decodes a packet, or returns `None` if the bytes do not begin like a packet.
 pub(crate) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
     if let Some(explained) = cyclic(bytes) {
         return Some(Ok(explained));
@@ -83,7 +83,8 @@ fn packet(kind: &str) -> Map<String, Json> {
     Map::from_iter([("packet".to_owned(), json!(kind))])
 }
 
-/// Describes a cyclic packet. Its length reveals whether there is a header, since process data are whole 32-bit words.
+/// Describes a cyclic packet. Its length reveals whether there is a header, since process data consist of whole 32-bit
+/// words.
 fn cyclic(bytes: &[u8]) -> Option<DecodedBytes> {
     let plain = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok()?;
     let with = IoPacket::parse(bytes, RealTimeFormat::Header).ok().filter(|packet| {
@@ -107,8 +108,8 @@ fn cyclic(bytes: &[u8]) -> Option<DecodedBytes> {
     Some(DecodedBytes { lines, more, data: Some((data, to_target)) })
 }
 
-/// Decodes consecutive frames, or returns `None` if the first command is unknown. Process data of idle drives look like
-/// NOP, which does not occur in captures.
+/// Decodes consecutive frames, or returns `None` if the first command is unknown. NOP of a known device also yields
+/// `None`, because NOP does not occur in captures but process data of idle drives look like NOP.
 fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
     let [low, high, ..] = bytes else { return None };
     let command = Command::new(u16::from_le_bytes([*low, *high]));

@@ -1,6 +1,6 @@
 //! Filtering of cyclic packets: duplicates and packets overtaken by newer ones are dropped.
 
-/// The packets received on one connection.
+/// A tracker for the packets received on one connection.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PacketTracker {
     newest: Option<u32>,
@@ -8,20 +8,21 @@ pub struct PacketTracker {
     stale: u64,
 }
 
-/// The verdict on a received packet.
+/// The classification of a received packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PacketVerdict {
     /// The packet is new.
     New {
-        /// Number of preceding packets that have not arrived. They may still arrive, and are stale then.
+        /// Number of preceding packets that have not arrived. If they arrive later, they are stale.
         missing: u32,
     },
-    /// The packet, or a newer one, has already been received.
+    /// This packet, or a newer one, has already been received.
     Stale,
 }
 
 impl PacketTracker {
-    /// Classifies a packet by its sequence number. Numbers wrap: a newer one is ahead by less than half of their range.
+    /// Classifies a packet by its sequence number. Numbers wrap around, so a newer packet is ahead by less than half of
+    /// their range.
     pub fn take(&mut self, sequence: u32) -> PacketVerdict {
         let ahead = match self.newest {
             None => 1,
@@ -37,7 +38,7 @@ impl PacketTracker {
         PacketVerdict::New { missing }
     }
 
-    /// Returns the number of packets that did not arrive, or arrived too late.
+    /// Returns the number of packets that did not arrive or arrived too late.
     pub const fn lost(&self) -> u64 {
         self.lost
     }
@@ -73,7 +74,7 @@ mod tests {
     }
 
     proptest! {
-        /// In any order of packets, the sequence of accepted ones never goes back.
+        /// Accepted sequence numbers never go back, whatever the order of the packets.
         #[test]
         fn accepted_sequence_numbers_only_increase(start: u32, order in proptest::collection::vec(0u32..1000, 1..200)) {
             let mut arrivals = PacketTracker::default();

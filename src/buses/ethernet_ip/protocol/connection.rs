@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// The 16 bits that describe one direction of a connection. Unknown bits are preserved.
+/// The 16-bit parameters of one direction of a connection. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct NetworkParameters(u16);
 
@@ -13,7 +13,7 @@ pub enum NetworkType {
     Null,
     /// 1: to all listeners.
     Multicast,
-    /// 2: to the other node only.
+    /// 2: to one other node only.
     PointToPoint,
     /// 3: reserved.
     Reserved,
@@ -32,7 +32,7 @@ pub enum NetworkPriority {
     Urgent,
 }
 
-/// Transport class and trigger: when data are produced, and by which node.
+/// Transport class and trigger, which determine when data are produced and by which node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Transport(u8);
 
@@ -49,14 +49,15 @@ pub enum Trigger {
     Unknown(u8),
 }
 
-/// Connection time-out multiplier: the connection ends after 4 · 2ⁿ intervals without data.
+/// Connection time-out multiplier. The connection ends after 4 · 2ⁿ intervals without data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ConnectionTimeout(u8);
 
-/// Time-out of a request in two bytes: priority and tick length, and number of ticks.
+/// Time-out of a request in two bytes. The first holds priority and tick length, the second the number of ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RequestTimeout {
-    /// Bits 3 to 0: exponent n of the tick length, 2ⁿ milliseconds; other bits are preserved.
+    /// Priority and tick length. Bits 3 to 0 are the exponent n of the tick length of 2ⁿ milliseconds, and other bits
+    /// are preserved.
     pub priority_and_tick: u8,
     /// Number of ticks.
     pub ticks: u8,
@@ -70,8 +71,8 @@ impl NetworkParameters {
     /// Maximum connection size in bytes.
     pub const MOST: u16 = SIZE;
 
-    /// Creates the parameters of an exclusive-owner connection with a fixed size, or `None` beyond 511 bytes. The size
-    /// includes the sequence count and the run/idle header.
+    /// Creates the parameters of an exclusive-owner connection with a fixed size, or returns `None` beyond 511 bytes.
+    /// The size includes the sequence count and the run/idle header.
     pub const fn new(kind: NetworkType, priority: NetworkPriority, size: u16) -> Option<Self> {
         let kind = match kind {
             NetworkType::Null => 0,
@@ -135,7 +136,7 @@ impl NetworkParameters {
 }
 
 impl Transport {
-    /// Class 1, cyclic, client: used for cyclic data.
+    /// Transport class 1 with cyclic trigger, as the client. Used for cyclic data.
     pub const CYCLIC: Transport = Transport(0x01);
 
     /// Parses the byte.
@@ -148,7 +149,7 @@ impl Transport {
         self.0
     }
 
-    /// Returns the transport class: 1 for data with a sequence count and without a reply, 3 for messages.
+    /// Returns the transport class, which is 1 for data with a sequence count and without a reply, and 3 for messages.
     pub const fn class(self) -> u8 {
         self.0 & 0x0F
     }
@@ -173,7 +174,7 @@ impl ConnectionTimeout {
     /// Maximum exponent: 512 intervals.
     const MOST: u8 = 7;
 
-    /// Creates the multiplier with this exponent, or `None` beyond 7.
+    /// Creates the multiplier with the given exponent, or returns `None` beyond 7.
     pub const fn new(number: u8) -> Option<Self> {
         if number <= ConnectionTimeout::MOST { Some(ConnectionTimeout(number)) } else { None }
     }
@@ -183,19 +184,19 @@ impl ConnectionTimeout {
         self.0
     }
 
-    /// Returns the multiplier, 4 to 512 intervals.
+    /// Returns the multiplier, from 4 to 512 intervals.
     pub const fn intervals(self) -> u32 {
         4 << self.0
     }
 
-    /// Returns the time-out of a connection with this interval.
+    /// Returns the time-out of a connection with the given interval.
     pub const fn after(self, interval: Duration) -> Duration {
         interval.saturating_mul(self.intervals())
     }
 }
 
 impl RequestTimeout {
-    /// 250 ticks of 8 ms: two seconds.
+    /// Time-out of two seconds, as 250 ticks of 8 ms.
     pub const TWO_SECONDS: RequestTimeout = RequestTimeout { priority_and_tick: 3, ticks: 250 };
 
     /// Returns the time-out as a duration.

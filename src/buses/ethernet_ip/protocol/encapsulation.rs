@@ -4,31 +4,31 @@ use super::fields::{Fields, PacketError, PacketField, Structure};
 use super::items::{Item, Items};
 use super::status::EncapsulationStatus;
 
-/// Command of a frame. Unknown commands are preserved.
+/// The command of a frame. Unknown commands are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Command(u16);
 
 /// An encapsulation frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Command, which the reply repeats.
+    /// Command code, repeated in the reply.
     pub command: Command,
     /// Session handle, assigned by the target in the RegisterSession reply; otherwise 0.
     pub session: u32,
-    /// Status; 0 in a request.
+    /// Status, which is 0 in a request.
     pub status: EncapsulationStatus,
     /// Sender context, chosen by the originator and repeated in the reply.
     pub context: [u8; 8],
     /// Options; always 0.
     pub options: u32,
-    /// The data after the header, at most [`Frame::MAX_DATA`] bytes: [`Frame::emit`] truncates longer data.
+    /// Data after the header, at most [`Frame::MAX_DATA`] bytes. [`Frame::emit`] truncates longer data.
     pub data: Vec<u8>,
 }
 
 /// Content of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// No data: a list request, the end of a session, or a refusal.
+    /// No data, as in a list request, the end of a session, or a refusal.
     Empty,
     /// RegisterSession, request or reply.
     Register {
@@ -39,11 +39,11 @@ pub enum Body {
     },
     /// The requested list.
     List(Items),
-    /// SendRRData or SendUnitData, request or reply.
+    /// SendRRData or SendUnitData, as a request or a reply.
     Data {
         /// Interface handle, 0 for CIP.
         interface: u32,
-        /// Time-out in seconds; 0 if CIP has its own.
+        /// Time-out in seconds, or 0 if CIP has its own time-out.
         timeout_s: u16,
         /// Address item and data item.
         items: Items,
@@ -66,22 +66,22 @@ const NAMES: [(Command, &str); 8] = [
 impl Command {
     /// No operation.
     pub const NOP: Command = Command(0x00);
-    /// Requests the list of services.
+    /// Command that requests the list of services.
     pub const LIST_SERVICES: Command = Command(0x04);
-    /// Requests the identity; may be broadcast.
+    /// Command that requests the identity. It may be broadcast.
     pub const LIST_IDENTITY: Command = Command(0x63);
-    /// Requests the list of interfaces other than CIP.
+    /// Command that requests the list of interfaces other than CIP.
     pub const LIST_INTERFACES: Command = Command(0x64);
     /// Opens a session.
     pub const REGISTER_SESSION: Command = Command(0x65);
     /// Closes a session.
     pub const UNREGISTER_SESSION: Command = Command(0x66);
-    /// Carries an unconnected request or reply.
+    /// Command that carries an unconnected request or reply.
     pub const SEND_RR_DATA: Command = Command(0x6F);
-    /// Carries a message of an explicit connection.
+    /// Command that carries a message of an explicit connection.
     pub const SEND_UNIT_DATA: Command = Command(0x70);
 
-    /// Creates a command from its code; every value is valid.
+    /// Creates a command from its code. Every value is valid.
     pub const fn new(number: u16) -> Self {
         Command(number)
     }
@@ -139,13 +139,13 @@ impl Frame {
         Frame { status: EncapsulationStatus::OK, options: 0, data: body.emit(), ..self.clone() }
     }
 
-    /// Creates a reply that refuses the request.
+    /// Creates a reply that refuses this request.
     pub fn refusal(&self, status: EncapsulationStatus) -> Self {
         Frame { status, options: 0, data: Vec::new(), ..self.clone() }
     }
 
-    /// Returns whether this frame is the reply to `request`: command and context are equal, and so is the session once
-    /// there is one.
+    /// Returns whether this frame is the reply to `request`. Command and context must be equal, and so must the session
+    /// handle once there is a session.
     pub fn answers(&self, request: &Frame) -> bool {
         let session = request.session == 0 || request.session == self.session;
         self.command == request.command && self.context == request.context && session
@@ -182,7 +182,7 @@ impl Frame {
         fields.end(Frame { command, session, status, context, options, data })
     }
 
-    /// Returns the frame as bytes.
+    /// Returns the encoded frame.
     pub fn emit(&self) -> Vec<u8> {
         let data = self.data.get(..Frame::MAX_DATA).unwrap_or(&self.data);
         let mut bytes = Vec::with_capacity(Frame::HEADER + data.len());
@@ -227,7 +227,7 @@ impl Frame {
 const WHAT: Structure = Structure::Encapsulation;
 
 impl Body {
-    /// Returns the data as bytes.
+    /// Returns the encoded data.
     pub fn emit(&self) -> Vec<u8> {
         match self {
             Body::Empty => Vec::new(),

@@ -1,6 +1,6 @@
 //! Parsing and emitting packets field by field.
 
-/// A structure of EtherNet/IP, named in errors.
+/// An EtherNet/IP structure, as named in errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "each has its English name")]
 pub enum Structure {
@@ -48,7 +48,7 @@ pub enum Structure {
     Path,
 }
 
-/// A field with a restricted range of values, named in errors.
+/// A field with a restricted range of values, as named in errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "each has its English name")]
 pub enum PacketField {
@@ -75,7 +75,7 @@ pub enum PacketError {
         /// Number of bytes available.
         got: usize,
     },
-    /// Bytes remain after the structure.
+    /// Extra bytes remain after the structure.
     #[error("{what} has {left} extra bytes")]
     Long {
         /// The structure being parsed.
@@ -95,7 +95,7 @@ pub enum PacketError {
     },
 }
 
-/// The rest of the bytes to be parsed.
+/// The remaining bytes to be parsed.
 #[derive(Clone)]
 pub(super) struct Fields<'a> {
     what: Structure,
@@ -140,7 +140,7 @@ impl<'a> Fields<'a> {
         self.rest.is_empty()
     }
 
-    /// Returns the value if no bytes remain.
+    /// Returns `value` if no bytes remain.
     pub(super) fn end<T>(self, value: T) -> Result<T, PacketError> {
         match self.rest.len() {
             0 => Ok(value),
@@ -157,8 +157,8 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Appends a SHORT_STRING, whose length fits into one byte. Non-ASCII bytes become question marks, in both directions;
-/// strings longer than 255 bytes are truncated.
+/// Appends a SHORT_STRING, whose length fits into one byte. Non-ASCII bytes become question marks in both directions,
+/// and strings longer than 255 bytes are truncated.
 pub(super) fn push_short_text(bytes: &mut Vec<u8>, text: &str) {
     let ascii: Vec<u8> = ascii(text).take(0xFF).collect();
     // At most 255.
@@ -166,7 +166,7 @@ pub(super) fn push_short_text(bytes: &mut Vec<u8>, text: &str) {
     bytes.extend(ascii);
 }
 
-/// Returns the characters of a string as they are sent.
+/// Returns the characters of a string as bytes to send.
 pub(super) fn ascii(text: &str) -> impl Iterator<Item = u8> {
     text.chars().map(|c| if c.is_ascii() { c as u8 } else { b'?' })
 }

@@ -24,11 +24,11 @@ pub struct Owner {
 pub struct ForwardOpen {
     /// Time-out of the request.
     pub timeout: RequestTimeout,
-    /// Requested connection id; 0 leaves the choice to the target.
+    /// Requested connection ID of packets to the target, or 0 to let the target choose.
     pub to_target_id: u32,
-    /// Connection id of packets to the originator.
+    /// Connection ID of packets to the originator.
     pub to_originator_id: u32,
-    /// The originator and the connection.
+    /// Identification of the originator and the connection.
     pub owner: Owner,
     /// Time without data after which the connection ends.
     pub connection_timeout: ConnectionTimeout,
@@ -49,9 +49,9 @@ pub struct ForwardOpen {
 /// A successful reply to ForwardOpen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ForwardOpened {
-    /// Connection id of packets to the target.
+    /// Connection ID of packets to the target.
     pub to_target_id: u32,
-    /// Connection id of packets to the originator.
+    /// Connection ID of packets to the originator.
     pub to_originator_id: u32,
     /// Owner of the connection.
     pub owner: Owner,
@@ -118,7 +118,7 @@ impl ForwardOpen {
     /// Parses the data after the path of the request.
     ///
     /// # Errors
-    /// [`PacketError`] if it is incomplete, too long, or its time-out is an invalid number.
+    /// [`PacketError`] if the data are incomplete, too long, or contain an invalid time-out number.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ForwardOpen, data);
         let timeout = RequestTimeout::take(&mut fields)?;
@@ -201,7 +201,7 @@ impl ForwardOpened {
 }
 
 impl ForwardRefused {
-    /// Parses the data of a refusal; many devices send none.
+    /// Parses the data of a refusal, which many devices send empty.
     ///
     /// # Errors
     /// [`PacketError`] if the data are incomplete or too long.
@@ -236,7 +236,7 @@ impl ForwardClose {
     /// Parses the data after the path of the request.
     ///
     /// # Errors
-    /// [`PacketError`] if it is incomplete or too long.
+    /// [`PacketError`] if the data are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::ForwardClose, data);
         let timeout = RequestTimeout::take(&mut fields)?;
@@ -282,7 +282,7 @@ impl ForwardClosed {
     }
 }
 
-/// Parses application data: length in words, a reserved byte, and the words.
+/// Parses application data, which consist of a length in words, a reserved byte, and the words.
 fn application(fields: &mut Fields<'_>) -> Result<Vec<u16>, PacketError> {
     let words = fields.u8()?;
     fields.u8()?;

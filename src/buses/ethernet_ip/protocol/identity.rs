@@ -6,7 +6,7 @@ use super::items::SocketAddress;
 /// Attributes 1 to 7 of the identity object.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// Vendor ID in ODVA's list. Halstrup-Walcher is 1010.
+    /// Vendor ID assigned by ODVA. Halstrup-Walcher is 1010.
     pub vendor: u16,
     /// Device type.
     pub device_type: u16,
@@ -34,13 +34,13 @@ pub struct Revision {
 /// Identity item, type 000Ch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IdentityItem {
-    /// Version of the encapsulation protocol: 1.
+    /// Version of the encapsulation protocol, which is 1.
     pub version: u16,
     /// Address for explicit messages.
     pub socket: SocketAddress,
     /// Identity of the device.
     pub identity: Identity,
-    /// Device state, attribute 8: 3 is operational, 255 unknown.
+    /// Device state, attribute 8, where 3 is operational and 255 is unknown.
     pub state: u8,
 }
 
@@ -48,7 +48,7 @@ impl Identity {
     /// Class code of the identity object.
     pub const CLASS: u16 = 0x01;
 
-    /// Parses attributes 1 to 7 of a Get_Attributes_All reply; ignores attributes that a device appends.
+    /// Parses attributes 1 to 7 of a Get_Attributes_All reply and ignores any attributes that a device appends.
     ///
     /// # Errors
     /// [`PacketError`] if the attributes are incomplete.
@@ -61,7 +61,7 @@ impl Identity {
         (1..=7).filter_map(|attribute| self.attribute(attribute)).flatten().collect()
     }
 
-    /// Returns an attribute in the format of Get_Attribute_Single, or `None` if it does not exist.
+    /// Returns an attribute in the format of Get_Attribute_Single, or `None` if the attribute does not exist.
     pub fn attribute(&self, number: u16) -> Option<Vec<u8>> {
         let bytes = match number {
             1 => self.vendor.to_le_bytes().to_vec(),

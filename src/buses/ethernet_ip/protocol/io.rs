@@ -6,7 +6,7 @@ use super::items::{Item, Items};
 /// A cyclic packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IoPacket {
-    /// Connection id, chosen by the receiver.
+    /// Connection ID, chosen by the receiver.
     pub connection: u32,
     /// Sequence number, incremented with every packet.
     pub sequence: u32,
@@ -18,7 +18,8 @@ pub struct IoPacket {
     pub data: Vec<u8>,
 }
 
-/// Header in front of the data, as defined by the EDS of the device (`U`: a header towards the target, none from it).
+/// Format of the header in front of the data, as defined by the EDS of the device (`U`: a header towards the target,
+/// none from the target).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RealTimeFormat {
     /// The 32-bit run/idle header.
@@ -27,14 +28,15 @@ pub enum RealTimeFormat {
     Modeless,
 }
 
-/// The 32-bit run/idle header; unknown bits are preserved.
+/// The 32-bit run/idle header. Unknown bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RunIdle(u32);
 
 impl RunIdle {
-    /// Bit 0 is set: the data are valid.
+    /// Header with bit 0 set, which means that the data are valid.
     pub const RUN: RunIdle = RunIdle(1);
-    /// Bit 0 is clear: the application of the sender is not running, and the data are not valid.
+    /// Header with bit 0 clear, which means that the application of the sender is not running and the data are not
+    /// valid.
     pub const IDLE: RunIdle = RunIdle(0);
 
     /// Parses the word.
@@ -54,8 +56,8 @@ impl RunIdle {
 }
 
 impl IoPacket {
-    /// Returns the number of bytes that a connection size includes in addition to the data: the sequence count and the
-    /// header.
+    /// Returns the number of bytes that a connection size includes in addition to the data, for the sequence count and
+    /// the header.
     pub const fn overhead(format: RealTimeFormat) -> u16 {
         match format {
             RealTimeFormat::Header => 6,
@@ -86,7 +88,7 @@ impl IoPacket {
         Ok(IoPacket { connection, sequence, count, header, data: fields.tail().to_vec() })
     }
 
-    /// Returns the packet as bytes.
+    /// Returns the encoded packet.
     pub fn emit(&self) -> Vec<u8> {
         let mut data = self.count.to_le_bytes().to_vec();
         data.extend(self.header.iter().flat_map(|header| header.0.to_le_bytes()));

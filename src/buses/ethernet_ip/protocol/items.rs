@@ -5,11 +5,11 @@ use core::net::Ipv4Addr;
 use super::fields::{Fields, PacketError, Structure};
 use super::identity::IdentityItem;
 
-/// A list of items. An address precedes its data.
+/// A list of items in which each address precedes its data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Items(pub Vec<Item>);
 
-/// An item. Unknown types are preserved.
+/// An item of a packet. Unknown types are preserved.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Item {
     /// 0000h: the address of an unconnected message.
@@ -28,7 +28,7 @@ pub enum Item {
     SocketToOriginator(SocketAddress),
     /// 8002h: the address of cyclic data.
     SequencedAddress {
-        /// Connection id, chosen by the receiver.
+        /// Connection ID, chosen by the receiver.
         connection: u32,
         /// Sequence number, incremented with every packet even if the data have not changed.
         sequence: u32,
@@ -45,11 +45,11 @@ pub enum Item {
 /// A socket address in network byte order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SocketAddress {
-    /// Address family; 2 is IPv4.
+    /// Address family, where 2 is IPv4.
     pub family: u16,
     /// Port number.
     pub port: u16,
-    /// IPv4 address; 0.0.0.0 stands for the sender of the frame.
+    /// IPv4 address, where 0.0.0.0 stands for the sender of the frame.
     pub address: Ipv4Addr,
 }
 
@@ -63,7 +63,7 @@ const SOCKET_TO_ORIGINATOR: u16 = 0x8001;
 const SEQUENCED_ADDRESS: u16 = 0x8002;
 
 impl Items {
-    /// Parses a list that fills the bytes.
+    /// Parses a list that occupies all of `bytes`.
     ///
     /// # Errors
     /// [`PacketError`] if an item is incomplete or has the wrong length for its type, or if bytes remain.
@@ -78,7 +78,7 @@ impl Items {
         fields.end(Items(items))
     }
 
-    /// Returns the list as bytes. Items longer than 65535 bytes are truncated.
+    /// Returns the encoded list. Items longer than 65535 bytes are truncated.
     pub fn emit(&self) -> Vec<u8> {
         let most = usize::from(u16::MAX);
         // A frame has fewer than that many.

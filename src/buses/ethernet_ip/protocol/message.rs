@@ -26,7 +26,7 @@ pub struct Reply {
     pub service: Service,
     /// General status.
     pub status: GeneralStatus,
-    /// Extended status words, defined by the service; at most 255.
+    /// Extended status words, at most 255. Their meaning is defined by the service.
     pub extended: Vec<u16>,
     /// Reply data.
     pub data: Vec<u8>,
@@ -46,7 +46,7 @@ const CONNECTION_NAMES: [(Service, &str); 4] = [
     (Service(0x5B), "Large_ForwardOpen"),
 ];
 
-/// Objects that many devices have.
+/// Classes of objects that many devices have.
 const CLASSES: [(u16, &str); 6] = [
     (0x01, "identity"),
     (0x02, "message router"),
@@ -56,7 +56,7 @@ const CLASSES: [(u16, &str); 6] = [
     (0xF6, "Ethernet link"),
 ];
 
-/// Returns the name of a class, or `None` if it is unknown or vendor-specific.
+/// Returns the name of a class, or `None` if the class is unknown or vendor-specific.
 pub fn class_name(class: u16) -> Option<&'static str> {
     CLASSES.iter().find(|(number, _)| *number == class).map(|(_, name)| *name)
 }
@@ -72,14 +72,14 @@ impl Service {
     pub const GET: Service = Service(0x0E);
     /// Sets one attribute.
     pub const SET: Service = Service(0x10);
-    /// Closes a connection (service of the connection manager).
+    /// Service of the connection manager that closes a connection.
     pub const FORWARD_CLOSE: Service = Service(0x4E);
-    /// Opens a connection (service of the connection manager).
+    /// Service of the connection manager that opens a connection.
     pub const FORWARD_OPEN: Service = Service(0x54);
 
     const REPLY_BIT: u8 = 0x80;
 
-    /// Returns the service with this code, or `None` from 80h on, where replies begin.
+    /// Returns the service with the given code, or `None` from 80h on, where the codes of replies begin.
     pub const fn new(code: u8) -> Option<Self> {
         if code < Service::REPLY_BIT { Some(Service(code)) } else { None }
     }
@@ -89,7 +89,7 @@ impl Service {
         self.0
     }
 
-    /// Returns the name used by ODVA. From 4Bh on, the meaning of a code depends on the class; only those of the
+    /// Returns the name used by ODVA. From 4Bh on, the meaning of a code depends on the class, and only codes of the
     /// connection manager are known.
     pub fn name(self, class: Option<u16>) -> Option<&'static str> {
         let connections = class.is_none_or(|class| class == Request::CONNECTION_MANAGER).then_some(&CONNECTION_NAMES);
@@ -129,7 +129,7 @@ impl Request {
     /// Parses a request.
     ///
     /// # Errors
-    /// [`PacketError`] if the bytes are a reply, or the path is incomplete.
+    /// [`PacketError`] if the bytes are a reply or the path is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::CipRequest, bytes);
         let code = fields.u8()?;
@@ -138,7 +138,7 @@ impl Request {
         Ok(Request { service, path, data: fields.tail().to_vec() })
     }
 
-    /// Returns the request as bytes.
+    /// Returns the encoded request.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = vec![self.service.0];
         self.path.push_to(&mut bytes);
@@ -151,7 +151,7 @@ impl Request {
         Reply { service: self.service, status: GeneralStatus::OK, extended: Vec::new(), data }
     }
 
-    /// Creates a reply that refuses the request.
+    /// Creates a reply that refuses this request.
     pub fn refused(&self, status: GeneralStatus) -> Reply {
         Reply { service: self.service, status, extended: Vec::new(), data: Vec::new() }
     }
@@ -161,7 +161,7 @@ impl Reply {
     /// Parses a reply.
     ///
     /// # Errors
-    /// [`PacketError`] if the bytes are a request, or are incomplete.
+    /// [`PacketError`] if the bytes are a request or are incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(Structure::CipReply, bytes);
         let code = fields.u8()?;
@@ -174,7 +174,7 @@ impl Reply {
         Ok(Reply { service: Service(service), status, extended, data: fields.tail().to_vec() })
     }
 
-    /// Returns the reply as bytes, with at most 255 words of extended status.
+    /// Returns the encoded reply, with at most 255 words of extended status.
     pub fn emit(&self) -> Vec<u8> {
         let extended = self.extended.get(..usize::from(u8::MAX)).unwrap_or(&self.extended);
         // At most 255.

@@ -46,7 +46,7 @@ pub use status::{
 };
 pub use tcp_ip::{AddressError, AddressSource, ConfigurationControl, InterfaceConfiguration};
 
-/// TCP: explicit messages; UDP: ListIdentity.
+/// Port for explicit messages over TCP and for ListIdentity over UDP.
 pub const EXPLICIT_PORT: u16 = 44818;
-/// UDP: cyclic data, unless another port was given when the connection was opened.
+/// UDP port for cyclic data, unless another port was given when the connection was opened.
 pub const IMPLICIT_PORT: u16 = 2222;

@@ -2,7 +2,7 @@
 
 use super::fields::{Fields, PacketError, PacketField, Structure};
 
-/// A path, padded to whole words.
+/// A path padded to whole words.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Path(pub Vec<Segment>);
 
@@ -15,14 +15,14 @@ pub enum Segment {
         kind: LogicalKind,
         /// Value of the segment.
         number: u16,
-        /// Width in which the value is sent. Values above 255 always use the wide form.
+        /// Width of the encoded value. Values above 255 always use the wide form.
         width: Width,
     },
     /// 34h: electronic key of the required device.
     Key(ElectronicKey),
     /// 80h: data words for the addressed object, at most 255.
     Data(Vec<u16>),
-    /// An unknown segment together with all bytes after it, because its length is unknown.
+    /// An unknown segment and all bytes after it, because its length is unknown.
     Unknown(Vec<u8>),
 }
 
@@ -44,11 +44,11 @@ pub enum LogicalKind {
 pub enum Width {
     /// One byte after the segment type.
     Byte,
-    /// A word after a padding byte.
+    /// A two-byte word after a padding byte.
     Word,
 }
 
-/// Electronic key, compared by the device before a connection is opened; 0 matches any value.
+/// The electronic key that the device compares before a connection is opened. A value of 0 matches any value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElectronicKey {
     /// Vendor ID, as in the identity object.
@@ -57,7 +57,7 @@ pub struct ElectronicKey {
     pub device_type: u16,
     /// Product code, as in the identity object.
     pub product_code: u16,
-    /// Major revision; bit 7 also accepts compatible revisions.
+    /// Major revision. If bit 7 is set, compatible revisions are also accepted.
     pub major: u8,
     /// Minor revision.
     pub minor: u8,
@@ -69,7 +69,7 @@ const KINDS: [(u8, LogicalKind); 4] = [
     (0x2C, LogicalKind::ConnectionPoint),
     (0x30, LogicalKind::Attribute),
 ];
-/// The first bytes of an electronic key: type and the only format.
+/// The first bytes of an electronic key, which are the segment type and the only key format.
 const KEY: [u8; 2] = [0x34, 0x04];
 const DATA: u8 = 0x80;
 const WHAT: Structure = Structure::Path;
@@ -87,8 +87,8 @@ impl Path {
         Path(segments)
     }
 
-    /// Creates the path to the assemblies of a cyclic connection: configuration, originator to target, and target to
-    /// originator.
+    /// Creates the path to the assemblies of a cyclic connection in the order configuration, originator to target, and
+    /// target to originator.
     pub fn assemblies(configuration: u16, to_target: u16, to_originator: u16) -> Self {
         const ASSEMBLY: u16 = 0x04;
         let Path(mut segments) = Path::instance(ASSEMBLY, configuration);
@@ -96,12 +96,12 @@ impl Path {
         Path(segments)
     }
 
-    /// Returns the first logical value of a kind.
+    /// Returns the first logical value of the given kind.
     pub fn number(&self, wanted: LogicalKind) -> Option<u16> {
         self.numbers(wanted).next()
     }
 
-    /// Returns all logical values of a kind.
+    /// Returns all logical values of the given kind.
     pub fn numbers(&self, wanted: LogicalKind) -> impl Iterator<Item = u16> {
         self.0.iter().filter_map(move |segment| match segment {
             Segment::Logical { kind, number, .. } if *kind == wanted => Some(*number),
@@ -109,7 +109,7 @@ impl Path {
         })
     }
 
-    /// Parses a path that fills the bytes.
+    /// Parses a path that occupies all of `bytes`.
     ///
     /// # Errors
     /// [`PacketError`] if a segment is incomplete.
@@ -122,7 +122,7 @@ impl Path {
         Ok(Path(segments))
     }
 
-    /// Returns the path as bytes.
+    /// Returns the encoded path.
     pub fn emit(&self) -> Vec<u8> {
         self.0.iter().flat_map(Segment::emit).collect()
     }
@@ -132,7 +132,7 @@ impl Path {
         Path::parse(fields.bytes(usize::from(words) * 2)?)
     }
 
-    /// Appends the length in words and the path; nothing for a path beyond 255 words.
+    /// Appends the path and its length in words, or nothing for a path longer than 255 words.
     pub(super) fn push_to(&self, bytes: &mut Vec<u8>) {
         let mut path = self.emit();
         path.truncate(usize::from(u8::MAX) * 2);

@@ -3,12 +3,12 @@
 use super::encapsulation::Frame;
 use super::fields::PacketError;
 
-/// Received bytes that do not yet form a complete frame.
+/// A buffer of received bytes that do not yet form a complete frame.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     bytes: Vec<u8>,
     broken: Option<PacketError>,
-    /// Bytes that do not form a frame, until they are taken.
+    /// Bytes that do not form a frame and have not been taken yet.
     rest: Vec<u8>,
 }
 
@@ -23,7 +23,7 @@ impl Receiver {
     /// Returns the next complete frame.
     ///
     /// # Errors
-    /// [`PacketError`], also on all later calls: after an invalid header the start of the next frame is unknown, and
+    /// [`PacketError`], also on all later calls. After an invalid header the start of the next frame is unknown, and
     /// the connection must be closed.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, PacketError> {
         if let Some(why) = self.broken {
@@ -35,7 +35,7 @@ impl Receiver {
         })
     }
 
-    /// Takes the bytes that did not form a frame.
+    /// Takes the bytes that do not form a frame.
     pub fn take_rest(&mut self) -> Vec<u8> {
         std::mem::take(if self.rest.is_empty() { &mut self.bytes } else { &mut self.rest })
     }

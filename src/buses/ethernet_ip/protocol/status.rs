@@ -5,11 +5,11 @@ use std::fmt;
 
 use super::message::Service;
 
-/// Encapsulation status. Unknown codes are preserved.
+/// The encapsulation status. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EncapsulationStatus(u32);
 
-/// General status of a CIP reply. Unknown codes are preserved.
+/// The general status of a CIP reply. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct GeneralStatus(u8);
 
@@ -97,7 +97,7 @@ const fn connection(code: u16, meaning: &'static str, remedy: &'static str) -> E
 const OTHER_MASTER: &str = "close the connection of the other master first";
 const SIZE: &str = "set parameter words and number of drives as in the device";
 
-/// Known reasons for not opening or closing a connection.
+/// Known reasons for a failure to open or close a connection.
 pub const EXTENDED_STATUS: [ExtendedStatusRow; 18] = [
     connection(0x0100, "connection already in use", "wait for its time-out, then connect again"),
     connection(0x0103, "transport class and trigger not supported", DEFECT),
@@ -135,7 +135,7 @@ impl EncapsulationStatus {
     /// 69h: the protocol version is not supported.
     pub const VERSION: EncapsulationStatus = EncapsulationStatus(0x69);
 
-    /// Creates a status from its code; every value is valid.
+    /// Creates a status from its code. Every value is valid.
     pub const fn new(code: u32) -> Self {
         EncapsulationStatus(code)
     }
@@ -145,7 +145,7 @@ impl EncapsulationStatus {
         self.0
     }
 
-    /// Returns the table row of the status, or `None` if it is unknown.
+    /// Returns the table row of the status, or `None` if the status is unknown.
     pub fn row(self) -> Option<&'static StatusRow<EncapsulationStatus>> {
         ENCAPSULATION_STATUS.iter().find(|row| row.code == self)
     }
@@ -154,7 +154,7 @@ impl EncapsulationStatus {
 impl GeneralStatus {
     /// Success.
     pub const OK: GeneralStatus = GeneralStatus(0x00);
-    /// 01h: a connection was not opened or closed; the extended status gives the reason.
+    /// 01h: a connection was not opened or closed. The extended status gives the reason.
     pub const CONNECTION: GeneralStatus = GeneralStatus(0x01);
     /// 05h: the object does not exist.
     pub const PATH_UNKNOWN: GeneralStatus = GeneralStatus(0x05);
@@ -173,7 +173,7 @@ impl GeneralStatus {
     /// 15h: too much data.
     pub const TOO_LONG: GeneralStatus = GeneralStatus(0x15);
 
-    /// Creates a status from its code; every value is valid.
+    /// Creates a status from its code. Every value is valid.
     pub const fn new(code: u8) -> Self {
         GeneralStatus(code)
     }
@@ -183,13 +183,13 @@ impl GeneralStatus {
         self.0
     }
 
-    /// Returns the table row of the status, or `None` if it is unknown.
+    /// Returns the table row of the status, or `None` if the status is unknown.
     pub fn row(self) -> Option<&'static StatusRow<GeneralStatus>> {
         GENERAL_STATUS.iter().find(|row| row.code == self)
     }
 }
 
-/// Returns the table row of an extended status code; only codes of the connection manager's services are known.
+/// Returns the table row of an extended status code. Only codes of the connection manager's services are known.
 pub fn extended_row(service: Service, status: GeneralStatus, code: u16) -> Option<&'static ExtendedStatusRow> {
     let connections = [Service::FORWARD_OPEN, Service::FORWARD_CLOSE].contains(&service);
     EXTENDED_STATUS.iter().find(|row| connections && row.general == status && row.code == code)

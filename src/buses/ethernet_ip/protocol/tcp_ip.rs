@@ -4,7 +4,7 @@ use core::net::Ipv4Addr;
 
 use super::fields::{Fields, PacketError, Structure, ascii, text};
 
-/// Configuration control, attribute 3; the default 0 selects the stored address. Unknown bits are preserved.
+/// Configuration control, attribute 3. The default 0 selects the stored address, and unknown bits are preserved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ConfigurationControl(u32);
 
@@ -24,19 +24,19 @@ pub enum AddressSource {
 /// Interface configuration, attribute 5.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct InterfaceConfiguration {
-    /// IP address; 0.0.0.0 if none is set.
+    /// IP address, or 0.0.0.0 if none is set.
     pub address: Ipv4Addr,
     /// Network mask.
     pub mask: Ipv4Addr,
-    /// Default gateway; 0.0.0.0 if there is none.
+    /// Default gateway, or 0.0.0.0 if there is none.
     pub gateway: Ipv4Addr,
-    /// Name servers; 0.0.0.0 if there are none.
+    /// Name servers, each 0.0.0.0 if there is none.
     pub name_servers: [Ipv4Addr; 2],
     /// Domain name of up to 48 ASCII characters.
     pub domain: String,
 }
 
-/// The reason why a device would be unreachable with an interface configuration.
+/// The reason why an interface configuration would make a device unreachable.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
     /// The address is 0.0.0.0.
@@ -45,7 +45,7 @@ pub enum AddressError {
     /// The address is reserved.
     #[error("{0} cannot be a device's address: it is kept for the computer itself, for groups or for later")]
     Reserved(Ipv4Addr),
-    /// The mask is not a contiguous run of ones, or it leaves too few addresses.
+    /// The mask is not a contiguous run of ones, or leaves too few addresses.
     #[error("{0} is no mask: ones come first and zeros behind them, at least two of these, as in 255.255.255.0")]
     Mask(Ipv4Addr),
     /// The address is the network address.
@@ -66,10 +66,10 @@ pub enum AddressError {
         /// Prefix length of the network mask.
         prefix: u32,
     },
-    /// The gateway has the address of the device itself.
+    /// The gateway address is the address of the device itself.
     #[error("the gateway cannot be {0}: it is another device's address in the same network, or 0.0.0.0 for none")]
     Gateway(Ipv4Addr),
-    /// The domain name is not a name of up to 48 letters, digits, hyphens and dots.
+    /// The domain name is invalid. A valid name has up to 48 letters, digits, hyphens and dots.
     #[error("{0:?} is no domain name: it has letters, digits, hyphens and points, 48 at most")]
     Domain(String),
 }
@@ -105,7 +105,7 @@ impl ConfigurationControl {
         }
     }
 
-    /// Returns a copy with another source of the IP address.
+    /// Returns a copy with the given source of the IP address.
     pub const fn with(self, source: AddressSource) -> Self {
         let number = match source {
             AddressSource::Stored => 0,
@@ -121,7 +121,8 @@ impl InterfaceConfiguration {
     /// Attribute number.
     pub const ATTRIBUTE: u16 = 5;
 
-    /// Parses the attribute: five little-endian addresses and a string with a two-byte length, padded to whole words.
+    /// Parses the attribute, which consists of five little-endian addresses and a string with a two-byte length, padded
+    /// to whole words.
     ///
     /// # Errors
     /// [`PacketError`] if the attribute is incomplete or too long.
@@ -138,8 +139,8 @@ impl InterfaceConfiguration {
         fields.end(InterfaceConfiguration { address: own, mask, gateway, name_servers, domain })
     }
 
-    /// Checks that a device would be reachable: the address is valid in a network with this mask, and the gateway is in
-    /// the same network or unset.
+    /// Checks that a device would be reachable. The address must be valid in a network with this mask, and the gateway
+    /// must be unset or in the same network.
     ///
     /// # Errors
     /// [`AddressError`].
@@ -190,7 +191,7 @@ impl InterfaceConfiguration {
     }
 }
 
-/// Characters of a domain name.
+/// Maximum number of characters in a domain name.
 const LONGEST_DOMAIN: usize = 48;
 
 fn is_a_devices(address: Ipv4Addr) -> Result<(), AddressError> {
@@ -219,7 +220,8 @@ mod tests {
         configuration.check()
     }
 
-    /// First, last and broadcast addresses as by `ipaddress.ip_network("192.168.1.64/26")` of Python: 64, 65…126, 127.
+    /// The first, last and broadcast addresses match `ipaddress.ip_network("192.168.1.64/26")` of Python: 64, 65…126,
+    /// 127.
     #[test]
     fn unusable_addresses_are_refused() {
         let own = |text: &str| -> Ipv4Addr { text.parse().unwrap() };

@@ -175,8 +175,8 @@ fn published_connection_matches() {
     assert_eq!(ForwardClose::parse(&Request::parse(&bytes(text)).unwrap().data), Ok(close));
 }
 
-/// By hand, from the fields of the two replies: serial 0001, vendor 1234h, serial number ABCDh; then 0 words and a reserved
-/// byte, or the remaining words of the path and a reserved byte. Status 01, one word after it, 0106h.
+/// By hand, from the fields of the two replies: serial 0001, vendor 1234h, serial number ABCDh; then 0 words and a
+/// reserved byte, or the remaining words of the path and a reserved byte. Status 01, one word after it, 0106h.
 #[test]
 fn a_connection_ends_or_is_refused() {
     let text = "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00";
@@ -258,9 +258,9 @@ fn published_cyclic_packets_match() {
     assert!(IoPacket::parse(&turned, RealTimeFormat::Modeless).is_err(), "the address comes first");
 }
 
-/// By hand, from the fields of the identity item: version 1; socket AF_INET, port 44818 = AF12h, 192.168.1.5, eight zeros;
-/// vendor 1010 = 03F2h, type 12, product 1, revision 1.2, status 0030h, serial number 4711 = 1267h, a text of 10, state 3.
-/// 2 + 16 + 14 + 1 + 10 + 1 = 44 = 2Ch bytes in the item, 2 + 4 + 44 = 50 = 32h in the frame.
+/// By hand, from the fields of the identity item: version 1; socket AF_INET, port 44818 = AF12h, 192.168.1.5, eight
+/// zeros; vendor 1010 = 03F2h, type 12, product 1, revision 1.2, status 0030h, serial number 4711 = 1267h, a text of
+/// 10, state 3. 2 + 16 + 14 + 1 + 10 + 1 = 44 = 2Ch bytes in the item, 2 + 4 + 44 = 50 = 32h in the frame.
 #[test]
 fn an_identity_item_is_parsed() {
     let item = "01 00 00 02 AF 12 C0 A8 01 05 00 00 00 00 00 00 00 00 F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 0A 48 49 50 \
@@ -292,8 +292,8 @@ fn an_identity_item_is_parsed() {
     assert_eq!(expected.identity.attribute(8), None);
 }
 
-/// By hand: C0A80105h = 192.168.1.5 and so on, low byte first; a text of three with its length in two bytes, and a byte that
-/// fills the word. The low four bits of the control are the source.
+/// By hand: C0A80105h = 192.168.1.5 and so on, low byte first; a text of three with its length in two bytes, and a byte
+/// that fills the word. The low four bits of the control are the source.
 #[test]
 fn the_interface_configuration_is_parsed() {
     let text = "05 01 A8 C0 00 FF FF FF 01 01 A8 C0 00 00 00 00 00 00 00 00 03 00 6C 61 6E 00";

@@ -14,7 +14,7 @@ pub struct Frame<'a> {
     pub address: u8,
     /// Command byte, which the reply repeats.
     pub command: u8,
-    /// Payload of up to [`MAX_PAYLOAD`] bytes.
+    /// Payload of at most [`MAX_PAYLOAD`] bytes.
     pub payload: &'a [u8],
 }
 
@@ -24,15 +24,15 @@ pub enum FrameError {
     /// The first byte is not 80h.
     #[error("a frame begins with 80, not with {0:02X}")]
     Sync(u8),
-    /// The length differs from that in the header.
+    /// The length differs from the length in the header.
     #[error("{got} bytes where the frame has {expected}")]
     Length {
-        /// Length of the complete frame in bytes; of the shortest frame if the header is incomplete.
+        /// Length of the complete frame in bytes, or of the shortest frame if the header is incomplete.
         expected: usize,
         /// Received length in bytes.
         got: usize,
     },
-    /// The last byte is not the inverted sum of all others.
+    /// The last byte is not the inverted sum of all preceding bytes.
     #[error("checksum {got:02X} where {expected:02X} was expected")]
     Checksum {
         /// Checksum calculated over the received bytes.
@@ -43,11 +43,11 @@ pub enum FrameError {
 }
 
 impl<'a> Frame<'a> {
-    /// Number of bytes in addition to the payload: five before it and one after it.
+    /// Number of bytes in addition to the payload, of which five precede the payload and one follows.
     pub const OVERHEAD: usize = 6;
 
-    /// Parses a frame that fills the slice. The length is taken from the header, whatever the examples in the manual
-    /// show.
+    /// Parses a frame that occupies the whole slice. The length is taken from the header, regardless of the examples in
+    /// the manual.
     ///
     /// # Errors
     /// [`FrameError`].
@@ -69,7 +69,7 @@ impl<'a> Frame<'a> {
         Ok(Frame { address: *address, command: *command, payload })
     }
 
-    /// Returns the frame as bytes, including the checksum.
+    /// Returns the encoded frame, including the checksum.
     pub fn emit(&self) -> Vec<u8> {
         // A payload has at most 64 bytes.
         let length = u16::try_from(self.payload.len()).unwrap_or(u16::MAX);
@@ -92,7 +92,7 @@ mod tests {
     use crate::bits::parse_hex;
     use proptest::prelude::*;
 
-    /// Reference 6: every frame, all of them with their checksums.
+    /// All frames of reference 6, with their checksums.
     const FRAMES: [&str; 17] = [
         "80 01 01 02 00 00 00 7B",
         "80 01 01 02 00 26 00 55",
@@ -144,7 +144,7 @@ mod tests {
         }
     }
 
-    /// Reference 5: the manual's example is a byte too short.
+    /// The length in the header is checked. The example in the manual (reference 5) is one byte too short.
     #[test]
     fn the_length_in_the_header_is_checked() {
         let printed = [0x80, 0x01, 0x01, 0x02, 0x00, 0x00, 0x7B];

@@ -31,7 +31,7 @@ pub enum Request {
         /// New value of the register.
         value: u8,
     },
-    /// 03h: read the position. The manual defines the argument 01h only; others are preserved.
+    /// 03h: read the position. The manual defines only the argument 01h, but others are preserved.
     Position {
         /// Argument byte after the command.
         argument: u8,
@@ -54,7 +54,7 @@ pub enum RequestError {
     },
 }
 
-/// Reply to a write request.
+/// The reply to a write request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
     /// 90h: acknowledged.
@@ -65,7 +65,7 @@ pub enum Written {
     Unknown(u8),
 }
 
-/// A reply of the encoder.
+/// A reply from the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reply {
     /// Register value, in reply to a read request.
@@ -79,7 +79,7 @@ pub enum Reply {
 /// The reason why a frame is not the reply to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
-    /// The frame belongs to another node.
+    /// The frame belongs to a different node.
     #[error("a frame from node 0x{got:02X} instead of 0x{expected:02X}")]
     Address {
         /// Address in the request.
@@ -87,7 +87,7 @@ pub enum ReplyError {
         /// Received address.
         got: u8,
     },
-    /// The frame is the reply to another command.
+    /// The frame is the reply to a different command.
     #[error("a frame with command 0x{got:02X} instead of 0x{expected:02X}")]
     Command {
         /// Command in the request.
@@ -95,7 +95,7 @@ pub enum ReplyError {
         /// Received command.
         got: u8,
     },
-    /// The payload length is wrong. If it equals that of the request, the frame may be an echo.
+    /// The payload length is wrong. If it equals the payload length of the request, the frame may be an echo.
     #[error("{got} payload bytes instead of {expected}")]
     Length {
         /// Expected payload length in bytes.
@@ -142,9 +142,10 @@ impl Command {
 }
 
 impl Request {
-    /// The position request as the manual defines it.
+    /// Position request as defined in the manual.
     pub const POSITION: Request = Request::Position { argument: 0x01 };
-    /// A request whose reply reveals the byte order of register numbers: see [`byte_order_from_reply`]. Sent low byte first.
+    /// Request whose reply reveals the byte order of register numbers (see [`byte_order_from_reply`]). The register
+    /// number is sent low byte first.
     pub const PROBE: Request = Request::Read { register: Request::PROBE_REGISTER };
     /// Register that [`PROBE`](Self::PROBE) reads.
     pub const PROBE_REGISTER: u16 = 0x0001;
@@ -158,7 +159,7 @@ impl Request {
         }
     }
 
-    /// Returns the frame as bytes. The byte order of the register number is not documented (`U`).
+    /// Returns the encoded frame. The byte order of the register number is not documented (`U`).
     pub fn emit(self, order: ByteOrder) -> Vec<u8> {
         let number = |register: u16| match order {
             ByteOrder::LowFirst => register.to_le_bytes(),
@@ -196,8 +197,8 @@ impl Request {
     }
 }
 
-/// Returns the byte order of register numbers, derived from the reply to [`Request::PROBE`]: 02h is the data sheet bank
-/// in register 0001h, 01h the profile version in register 0100h. `None` if the encoder returns another value.
+/// Returns the byte order of register numbers, derived from the reply to [`Request::PROBE`]. The value 02h is the data
+/// sheet bank in register 0001h, 01h is the profile version in register 0100h, and any other value yields `None`.
 pub const fn byte_order_from_reply(answer: u8) -> Option<ByteOrder> {
     match answer {
         0x02 => Some(ByteOrder::LowFirst),
@@ -207,7 +208,7 @@ pub const fn byte_order_from_reply(answer: u8) -> Option<ByteOrder> {
 }
 
 impl Written {
-    /// Converts the byte of a reply.
+    /// Converts a byte from a reply.
     pub const fn from_byte(byte: u8) -> Self {
         match byte {
             0x90 => Written::Acknowledged,
@@ -236,7 +237,7 @@ impl Reply {
         }
     }
 
-    /// Returns the frame as bytes.
+    /// Returns the encoded frame.
     pub fn emit(self) -> Vec<u8> {
         let payload = match self {
             Reply::Value(value) => vec![value],
@@ -274,7 +275,7 @@ mod tests {
     use crate::bits::{hex, parse_hex};
     use proptest::prelude::*;
 
-    /// Reference 6, and the probe of reference 2.
+    /// Requests match the frames of reference 6 and the probe of reference 2.
     #[test]
     fn published_requests_match() {
         let cases = [
@@ -320,7 +321,7 @@ mod tests {
         }
     }
 
-    /// The probe's frame read in both orders, and the replies of the encoders.
+    /// The reply to the probe reveals the byte order in which the encoder reads register numbers.
     #[test]
     fn the_reply_reveals_the_byte_order() {
         let bytes = Request::PROBE.emit(ByteOrder::LowFirst);

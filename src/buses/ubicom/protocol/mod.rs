@@ -25,7 +25,8 @@ const BAUD: Baud = Baud::B115200;
 
 /// Character format of the line: 115200 8N1.
 pub const FORMAT: CharacterFormat = CharacterFormat { baud: BAUD, parity: Parity::None };
-/// Returns the number of bits in a character: start bit, eight data bits, parity bit if enabled, stop bit.
+/// Returns the number of bits in a character, including the start bit, eight data bits, the parity bit if enabled, and
+/// the stop bit.
 pub const fn character_bits(format: CharacterFormat) -> u64 {
     match format.parity {
         Parity::None => 10,
@@ -37,5 +38,5 @@ pub const fn character_bits(format: CharacterFormat) -> u64 {
 pub const REPLY_TIME_OUT: Duration = Duration::from_millis(100);
 /// Time-out for a reply while the encoder calibrates (`U`).
 pub const CALIBRATION_TIME_OUT: Duration = Duration::from_secs(10);
-/// Silence after which an incomplete frame is abandoned (`U`).
+/// Duration of silence after which an incomplete frame is abandoned (`U`).
 pub const BYTE_TIME_OUT: Duration = Duration::from_millis(20);

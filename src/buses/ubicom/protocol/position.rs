@@ -1,6 +1,6 @@
 //! The position word: five bytes, least significant first. The frame layout of the encoder defines its bits.
 
-/// A position word as received; unused bits are preserved.
+/// A position word as received. Unused bits are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionWord(u64);
 
@@ -8,18 +8,18 @@ impl PositionWord {
     /// Length in bytes.
     pub const BYTES: usize = 5;
 
-    /// Creates a position word, or `None` beyond 40 bits.
+    /// Creates a position word, or returns `None` beyond 40 bits.
     pub const fn new(word: u64) -> Option<Self> {
         if word >> 40 == 0 { Some(PositionWord(word)) } else { None }
     }
 
-    /// Parses bytes, least significant first.
+    /// Parses a position word, least significant byte first.
     pub const fn parse(bytes: [u8; Self::BYTES]) -> Self {
         let [b0, b1, b2, b3, b4] = bytes;
         PositionWord(u64::from_le_bytes([b0, b1, b2, b3, b4, 0, 0, 0]))
     }
 
-    /// Returns the word as bytes, least significant first.
+    /// Returns the encoded word, least significant byte first.
     pub const fn emit(self) -> [u8; Self::BYTES] {
         let [b0, b1, b2, b3, b4, ..] = self.0.to_le_bytes();
         [b0, b1, b2, b3, b4]

@@ -4,7 +4,7 @@
 
 use super::frame::{Frame, MAX_PAYLOAD, SYNC};
 
-/// Received bytes that do not yet form a complete frame.
+/// A buffer of received bytes that do not yet form a complete frame.
 #[derive(Clone, Debug)]
 pub struct Receiver {
     node: u8,
@@ -12,11 +12,11 @@ pub struct Receiver {
     skipped: u64,
 }
 
-/// The meaning of the first bytes.
+/// The interpretation of the first bytes in the buffer.
 enum Head {
     /// More bytes are required.
     Partial,
-    /// A complete frame of this length.
+    /// A complete frame of the given length.
     Frame(usize),
     /// The bytes do not start a frame.
     Other,
@@ -33,7 +33,7 @@ impl Receiver {
         self.bytes.extend(bytes);
     }
 
-    /// Returns the next complete frame. Preceding bytes that belong to no frame are skipped.
+    /// Returns the next complete frame, skipping any preceding bytes that do not belong to a frame.
     pub fn next_frame(&mut self) -> Option<Vec<u8>> {
         loop {
             match self.head() {
@@ -44,8 +44,8 @@ impl Receiver {
         }
     }
 
-    /// Handles silence on the line: a started frame will not be completed. A frame contained in its bytes is still
-    /// found.
+    /// Handles silence on the line, after which a started frame will not be completed. A frame contained in its bytes
+    /// is still found.
     pub fn silence(&mut self) -> Option<Vec<u8>> {
         loop {
             if let Some(frame) = self.next_frame() {
@@ -63,7 +63,7 @@ impl Receiver {
         !self.bytes.is_empty()
     }
 
-    /// Returns the number of bytes so far that belonged to no frame.
+    /// Returns the total number of received bytes that did not belong to a frame.
     pub const fn skipped(&self) -> u64 {
         self.skipped
     }
@@ -104,7 +104,7 @@ mod tests {
 
     const READ: &str = "80 01 01 02 00 26 00 55";
     const VALUE: &str = "80 01 01 01 00 4B 31";
-    /// 80 01 is within its payload.
+    /// A frame whose payload contains the start sequence 80 01.
     const TRICKY: &str = "80 01 03 05 00 80 01 01 01 00 F3";
 
     fn frames(receiver: &mut Receiver, text: &str) -> Vec<String> {
@@ -139,7 +139,7 @@ mod tests {
         assert_eq!(frames(&mut receiver, READ), [READ]);
     }
 
-    /// Reference 6: LEN 3 with two bytes never ends.
+    /// Silence ends a partial frame that would otherwise never be complete, such as LEN 3 with two bytes (reference 6).
     #[test]
     fn silence_ends_a_partial_frame() {
         let mut receiver = Receiver::new(NODE);

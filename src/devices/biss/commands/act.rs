@@ -221,8 +221,8 @@ impl<'a> PresetArguments<'a> {
         Ok(PresetArguments { singleturn, multiturn, parts })
     }
 
-    /// Returns the change. A multiturn that is not given is 0; if only the singleturn is preset, the stored multiturn
-    /// is kept.
+    /// Returns the change. A missing multiturn value is 0, except that the stored multiturn is kept if only the
+    /// singleturn is preset.
     fn change(&self, runner: &mut Runner) -> Result<Change> {
         let stored = |runner: &mut Runner| -> Result<String> {
             let Ok(range) = BissProfile::PRESET.parse::<RegisterRange>() else { return Ok("0".to_owned()) };

@@ -10,7 +10,7 @@ pub(super) struct DoOptions {
     pub(super) timeout: Option<u16>,
 }
 
-/// The actions of BiSS encoders.
+/// Actions of BiSS encoders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum BissAction {
     /// rate identity, errors, position, data sheet, limits and wear
@@ -28,7 +28,8 @@ pub(super) enum BissAction {
         help = "[ST [MT]] [singleturn|multiturn]: store a preset value (MT default 0) and set the present position to it; without a value, use the stored one"
     )]
     Preset,
-    /// return to operation and clear the password after an interrupted procedure; values not yet saved are lost (asks, or
+    /// return to operation and clear the password after an interrupted procedure; values not yet saved are lost (asks,
+    /// or
     /// --yes)
     LeadBack,
     #[value(

@@ -16,9 +16,9 @@ use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
 
 enum Captured {
-    /// The bits of a position frame as written.
+    /// Bits of a position frame, with the original string.
     Bits(String, u64),
-    /// A position word as written.
+    /// Position word, with the original string.
     Word(String, u64),
     Bytes(Vec<u8>),
 }
@@ -72,7 +72,7 @@ fn position_word(word: &str) -> Result<u64> {
         .ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, such as 0x024698000 or raw=610893824")))
 }
 
-/// Refuses an argument with an odd number of digits: it does not consist of bytes, but may be a position word, which
+/// Refuses an argument with an odd number of digits, which does not consist of bytes. It may be a position word, which
 /// must be marked.
 fn ensure_no_argument(word: &str) -> Result<()> {
     let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());

@@ -45,7 +45,7 @@ pub(super) fn identify(common: &Common, output: &Output) -> Result {
     Ok(Done::Well)
 }
 
-/// Returns the two letters that all manufacturers have, else the bytes.
+/// Returns the manufacturer as text, or as hex bytes if the text is not printable.
 fn manufacturer(identity: &Identity) -> String {
     let bytes = &identity.kind.manufacturer;
     let text = std::str::from_utf8(bytes).ok().filter(|text| text.chars().all(|c| c.is_ascii_graphic()));

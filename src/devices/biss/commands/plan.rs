@@ -29,8 +29,8 @@ pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
     Ok(result_of!(runner.run(BissJob::Prepare(change))?, BissOutput::Prepared(prepared) => *prepared))
 }
 
-/// Asks for consent if required, and carries the plan out. An empty plan sends nothing. The measurement alone decides when
-/// a run may start, within the time limit `patience`.
+/// Asks for consent if required, and executes the plan. An empty plan sends nothing. A run starts as soon as the
+/// measurement allows it, within the time limit `patience`.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -97,7 +97,7 @@ fn steps(op: &Op) -> Vec<PlanStep> {
             steps
         }
         Op::StorePreset { from, to } => step(Some(hex_compact(&from.emit())), Some(hex_compact(&to.emit()))),
-        Op::FirePreset { parts, value } => step(None, Some(fired(*parts, *value))),
+        Op::FirePreset { parts, value } => step(None, Some(preset_fired_text(*parts, *value))),
         Op::SelectFilter { from, to } => step(Some(byte(from.byte())), Some(byte(to.byte()))),
         Op::Calibrate => step(None, Some(CALIBRATION.to_owned())),
         Op::WiegandTest { save } => {
@@ -108,7 +108,7 @@ fn steps(op: &Op) -> Vec<PlanStep> {
     }
 }
 
-fn fired(parts: PresetParts, value: PresetValue) -> String {
+fn preset_fired_text(parts: PresetParts, value: PresetValue) -> String {
     let (turns, steps) = (value.multiturn(), value.singleturn());
     match parts {
         PresetParts::Both => format!("turn {turns}, step {steps}"),

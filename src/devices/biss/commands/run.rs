@@ -59,7 +59,7 @@ fn detail(news: &ProcedureProgress) -> String {
         }
         StepDetail::Lasts { elapsed, expected: None } => format!("{} s", elapsed.as_secs()),
         StepDetail::Demand(demand) => {
-            let against = demand.blockers.iter().map(|blocker| words::blocker(*blocker).terminal());
+            let against = demand.blockers.iter().map(|blocker| words::blocker_text(*blocker).terminal());
             let turning = demand.motion.map(|motion| format!("{:.1} 1/min", motion.rpm));
             turning.into_iter().chain(against).collect::<Vec<_>>().join("; ")
         }
@@ -70,7 +70,7 @@ pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     Ok(result_of!(runner.run(BissJob::Identify)?, BissOutput::Identity(identity) => identity))
 }
 
-/// Returns the number of frames with a wrong checksum in the last job, except those in its reading.
+/// Returns the number of frames with a wrong checksum in the last job, except those already included in its reading.
 pub(super) fn crc_errors(runner: &Runner) -> u64 {
     let count = |remark: &DeviceMessage| match remark {
         DeviceMessage::CrcErrors(count) => u64::from(*count),

@@ -23,7 +23,7 @@ pub(super) fn register_meaning(address: RegisterAddress, bytes: &[u8]) -> Option
     words(register, bytes)
 }
 
-/// Describes a register, if the bytes of a run are exactly its own.
+/// Describes a register if the given bytes cover exactly that register.
 pub(super) fn of_run(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
     let own = register.address == range.start() && register.width == range.count();
     own.then(|| words(register, bytes)).flatten()

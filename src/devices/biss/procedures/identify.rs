@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::error::exactly;
+use super::error::exact_length;
 use super::registers::Registers;
 use super::widths::find_widths;
 use super::{Error, Master, Station, Transport};
@@ -188,8 +188,8 @@ fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
 fn read_kind(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind, Error> {
     let profile = registers.read(master, RegisterAddress::PROFILE, 2)?;
     let device = registers.read(master, RegisterAddress::DEVICE_ID, 8)?;
-    let profile: [u8; 2] = exactly(RegisterAddress::PROFILE, profile)?;
-    let device: [u8; 8] = exactly(RegisterAddress::DEVICE_ID, device)?;
+    let profile: [u8; 2] = exact_length(RegisterAddress::PROFILE, profile)?;
+    let device: [u8; 8] = exact_length(RegisterAddress::DEVICE_ID, device)?;
     let [d0, d1, d2, d3, d4, d5, m0, m1] = device;
     Ok(Kind {
         profile: ProfileId::new(u16::from_be_bytes(profile)),

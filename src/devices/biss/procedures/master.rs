@@ -178,7 +178,7 @@ impl<'a> Master<'a> {
             };
             let failed = self.failed(requested, tries, &trouble);
             let failure = self.may_try_again(tries, trouble, failed.clone());
-            if !self.station.tells_back(address) {
+            if !self.station.reads_back(address) {
                 return Err(unclear(failed));
             }
             // From here on the result must be determined, even after cancellation.

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::error::exactly;
+use super::error::exact_length;
 use super::identify::identify_with;
 use super::registers::Registers;
 use super::survey::read_survey;
@@ -103,7 +103,7 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(
     for number in area.banks() {
         progress(number);
         let start = RegisterAddress::start_of(number);
-        banks.push(Bank { number, bytes: exactly(start, master.read_run(start, Bank::SIZE)?)? });
+        banks.push(Bank { number, bytes: exact_length(start, master.read_run(start, Bank::SIZE)?)? });
     }
     Ok(banks)
 }

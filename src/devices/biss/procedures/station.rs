@@ -139,7 +139,7 @@ pub struct Station {
 pub struct Supply {
     /// Requested voltage in millivolts.
     pub millivolt: u16,
-    /// Voltage in millivolts and current in milliamperes, measured when the supply was switched on; `None` before that.
+    /// Supply voltage in millivolts and current in milliamperes, measured at switch-on; `None` before that.
     pub measured: Option<(u16, u16)>,
 }
 
@@ -149,7 +149,7 @@ impl Supply {
     /// Supply voltage in millivolts that suits every version of the kit encoder (manual, chapter 2: 4.75 to 12.5 V).
     const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
 
-    /// Returns a supply voltage with the limits of the kit encoder.
+    /// Returns the supply voltage, limited to the range of the kit encoder.
     pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: *Self::RANGE.end() }
     }
@@ -210,8 +210,8 @@ impl Station {
         Ok(station)
     }
 
-    /// Returns the position frame layout: from the encoder's data sheet, else from its description, else that of the
-    /// kit encoder.
+    /// Returns the position frame layout from the encoder's data sheet, falling back to its description and then to the
+    /// layout of the kit encoder.
     pub fn frame(&self) -> Layout {
         let described = || self.description.as_ref().and_then(|description| description.layout().cloned());
         self.layout.clone().or_else(described).unwrap_or_default()
@@ -232,7 +232,7 @@ impl Station {
         }
     }
 
-    /// Returns the number of frames with a wrong checksum since the last reading, and resets it.
+    /// Returns the number of frames with a wrong checksum since the last call, and resets the count.
     pub fn take_crc_errors(&mut self) -> u32 {
         std::mem::take(&mut self.crc_errors)
     }
@@ -246,9 +246,9 @@ impl Station {
         self.thorough || self.noisy
     }
 
-    /// Returns whether reading a register back proves that it was written. For a command register it does not: an
-    /// earlier command may have left the same value.
-    pub(super) fn tells_back(&self, address: RegisterAddress) -> bool {
+    /// Returns whether reading a register back proves that the write succeeded. This is not the case for command
+    /// registers, which may still hold the same value from an earlier command.
+    pub(super) fn reads_back(&self, address: RegisterAddress) -> bool {
         if address == RegisterAddress::BANK_SELECT {
             return true;
         }
@@ -376,7 +376,7 @@ mod tests {
     #[test]
     fn readback_applies_to_registers_that_keep_their_value() {
         let mut station = Station::new(Transport::ConfigPin, Duration::ZERO);
-        let tells = |station: &Station, text: &str| station.tells_back(text.parse().unwrap());
+        let tells = |station: &Station, text: &str| station.reads_back(text.parse().unwrap());
         assert!(tells(&station, "0x40") && !tells(&station, "0x6B"), "nothing is known of the encoder yet");
         station.description = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().map(Arc::new);
         for text in ["0x40", "0x6A", "0x6B", "0x01:0x02", "0x01:0x07", "0x04:0x00", "0x43:0x3F"] {

@@ -23,7 +23,8 @@ pub struct Status {
 }
 
 impl Status {
-    /// Returns the device mode unless it is operation. In other modes, registers may show values that were never saved.
+    /// Returns the device mode, or `None` in operation. In other modes, registers may show values that were never
+    /// saved.
     pub fn unsaved_mode(&self) -> Option<DeviceMode> {
         self.mode.filter(|mode| *mode != DeviceMode::OPERATION)
     }
@@ -48,14 +49,14 @@ pub struct Survey {
     /// Result of the Wiegand test saved in the encoder, as of power-up.
     pub wiegand_saved: Option<WiegandResult>,
     pub preset: Option<PresetValue>,
-    /// All register values read, byte by byte.
+    /// Values of all registers that were read, byte by byte.
     pub registers: Registers,
     /// Registers in the description that the encoder does not have.
     pub missing: Vec<RegisterAddress>,
 }
 
 const STATUS: [Role; 6] = [Role::Mode, Role::Password, Role::Errors, Role::Warnings, Role::Temperature, Role::Filter];
-/// Offset from the error code of a Wiegand test to its results: the last one, the factory's, the saved one.
+/// Offset from the error code of a Wiegand test to its results, in the order last, factory, saved.
 const WIEGAND_RESULTS: u8 = 1;
 
 /// Reads the status of an identified encoder.
@@ -109,7 +110,7 @@ pub(super) fn read_survey(
     })
 }
 
-/// Reads the position, if possible: an encoder without a readable frame is surveyed regardless.
+/// Reads the position, or returns `None` if the encoder has no readable frame, so that the survey can continue.
 fn position_if_available(master: &mut Master<'_>) -> Result<Option<PositionReading>, Error> {
     match master.position() {
         Ok(reading) => Ok(Some(reading)),

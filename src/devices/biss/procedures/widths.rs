@@ -7,7 +7,7 @@ use crate::devices::biss::protocol::{Crc, Layout, LayoutError, data_bits_of};
 
 /// Maximum length of a frame in bits, including data and checksum.
 const CLOCKED: u8 = 64;
-/// Maximum number of frames examined, and the interval between them.
+/// Maximum number of frames examined.
 const FRAMES: usize = 200;
 const BETWEEN: Duration = Duration::from_millis(2);
 /// Maximum width of the singleturn position in bits.

@@ -1,7 +1,7 @@
 //! Writes a plan to an encoder: reads its base again, performs each operation and reads the result back, with an
 //! operator at the motor if required, and returns the encoder to operation after each.
 
-use super::error::exactly;
+use super::error::exact_length;
 use super::procedure::{Failure, Guide, LeftState, Operator, Outcome, ProcedureProgress, ProcedureStep};
 use super::{Error, Identity, Master, ensure_standstill};
 use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceState, Op};
@@ -16,7 +16,7 @@ pub struct Written {
     pub written: u64,
     /// Number of registers read back with the correct value.
     pub verified: u64,
-    /// Number of persistent writes that were, or may have been, spent.
+    /// Number of persistent writes that were, or may have been, performed.
     pub write_cycles: u64,
     pub outcomes: Vec<Outcome>,
 }
@@ -43,8 +43,8 @@ pub struct EndState {
 }
 
 impl Interrupted {
-    /// Returns the individually written register that may or may not have accepted its value, if any. A value that was
-    /// refused or not sent was not accepted.
+    /// Returns the individually written register whose write has an unknown result, if any. A value that was refused or
+    /// not sent was not accepted.
     pub fn unclear(&self) -> Option<RegisterAddress> {
         match (&self.unfinished, &self.cause) {
             (Some(Op::WriteRegister { .. }), Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
@@ -88,8 +88,8 @@ impl Write for EncoderWrite<'_, '_> {
     type Written = Written;
     type EndState = EndState;
 
-    /// Checks that the encoder is the one that the plan was made for. Its memory is compared as well, since two new
-    /// encoders have the same identity.
+    /// Checks that the connected encoder is the one that the plan was made for. The memory is compared as well, because
+    /// two new encoders have the same identity.
     fn confirm(&mut self, plan: &BissPlan) -> Result<(), Error> {
         let master = self.guide.master();
         let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
@@ -126,8 +126,8 @@ impl Write for EncoderWrite<'_, '_> {
         Ok(())
     }
 
-    /// Applies an operation. Cancellation is checked between two exchanges, unless it would leave something incomplete.
-    /// The encoder is returned to operation after each operation, however it ended.
+    /// Applies an operation, and then returns the encoder to operation regardless of the result. Cancellation is
+    /// checked between exchanges, unless stopping would leave something incomplete.
     fn apply(&mut self, op: &Op, _: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Failure> {
         let guide = &mut self.guide;
         guide.begin(done.outcomes.len());
@@ -141,9 +141,12 @@ impl Write for EncoderWrite<'_, '_> {
         Ok(led?)
     }
 
-    fn end_state(&mut self, _: &Failure) -> EndState {
-        let standing = self.guide.standing();
-        EndState { at: self.at, standing: (!standing.is_in_operation()).then(|| standing.clone()) }
+    fn end_state(&mut self, cause: &Failure) -> EndState {
+        let mut standing = self.guide.standing().clone();
+        if matches!(cause, Failure::Device(error) if error.is_lost()) {
+            standing.may_have_lost_power();
+        }
+        EndState { at: self.at, standing: (!standing.is_in_operation()).then_some(standing) }
     }
 }
 
@@ -250,7 +253,7 @@ pub fn read_state(
 pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
     let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
     let bytes = master.read_run(start, Bank::SIZE)?;
-    Ok(Bank { number, bytes: exactly(start, bytes)? })
+    Ok(Bank { number, bytes: exact_length(start, bytes)? })
 }
 
 /// Reads the filter in use, or `None` if the firmware offers no choice.

@@ -28,7 +28,7 @@ impl Drive {
     }
 
     /// Reports that a procedure is waiting for the opposite direction.
-    pub(super) fn other_direction(&self) {
+    pub(super) fn reversed_motor(&self) {
         if self.reverses {
             self.motor.set_rpm(-self.motor.rpm());
         }

@@ -14,7 +14,7 @@ use crate::devices::biss::state::TEXTS;
 pub use check::check;
 pub use damage::damage;
 pub use entry::entry;
-pub use guide::{advice, blocker, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
+pub use guide::{advice, blocker_text, calibration_needs, mode, outcome, procedure, report, step, task, wiegand_needs};
 pub use plan::{other_type, plan};
 pub use write::{change, failure, op, preset, wear, weight, written};
 
@@ -202,7 +202,7 @@ fn description(error: &StoreError) -> Text {
         Some(DescriptionError { file, line, column, problem: what }) => TEXTS
             .text("store.description")
             .with("path", file)
-            .with_text("why", syntax(*line, *column, flaw::flaw(what))),
+            .with_text("why", syntax(*line, *column, flaw::description_problem_text(what))),
         None => general::store(error),
     }
 }

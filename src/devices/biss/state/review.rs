@@ -75,7 +75,7 @@ impl Reviewed for Biss {
         if ops.iter().any(restarts) {
             needs.push(TEXTS.text("biss_review.needs_restart"));
         }
-        needs.extend(left_out(change, ops));
+        needs.extend(skipped_operations(change, ops));
         needs
     }
 
@@ -105,7 +105,7 @@ impl Reviewed for Biss {
 }
 
 /// Returns the selected parts of a mounting run that are missing from the plan because nothing would change.
-fn left_out(change: &Change, ops: &[Op]) -> impl Iterator<Item = Text> {
+fn skipped_operations(change: &Change, ops: &[Op]) -> impl Iterator<Item = Text> {
     let run = match change {
         Change::Guided { run, .. } => Some(run),
         _ => None,

@@ -45,7 +45,7 @@ impl TypedConnectForm for BissConnectForm {
         }
         ui.add_space(theme.space.between);
         match form.kind {
-            BissLinkKind::Virtual => simulated(ui, theme, form),
+            BissLinkKind::Virtual => simulated_ui(ui, theme, form),
             BissLinkKind::Pin | BissLinkKind::Bus => {
                 segments(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {
@@ -56,7 +56,7 @@ impl TypedConnectForm for BissConnectForm {
             }
             BissLinkKind::Replay => {
                 recording(ui, theme, &mut form.file, actions);
-                reached(ui, theme, form);
+                reached_ui(ui, theme, form);
             }
         }
         if form.is_on_the_bus() {
@@ -98,7 +98,7 @@ impl TypedConnectForm for BissConnectForm {
 }
 
 /// Draws the choice between a connection to the configuration pin and one to the bus.
-fn reached(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
+fn reached_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     let word = say(theme, "connect.biss_reached");
     entry(ui, theme, &word, |ui| {
         let ways = [(true, "connect.biss_bus"), (false, "connect.biss_pin")];
@@ -106,7 +106,7 @@ fn reached(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     });
 }
 
-fn simulated(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
-    reached(ui, theme, form);
+fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
+    reached_ui(ui, theme, form);
     typed(ui, theme, say, BissForm::of_the_virtual(), &mut form.typed);
 }

@@ -58,7 +58,7 @@ pub(super) fn page_ui(
     });
     ui.add_space(theme.space.inside);
     match shown.and_then(|own| encoder.memory.area(&own).zip(Some(own))) {
-        Some(((read, wanted), own)) => bytes(ui, theme, encoder, &own, (&read, &wanted), view, actions),
+        Some(((read, wanted), own)) => bytes_ui(ui, theme, encoder, &own, (&read, &wanted), view, actions),
         None if encoder.profile().is_some() => {
             empty(ui, theme, &say(theme, "data.not_in_profile"), None);
         }
@@ -71,7 +71,7 @@ pub(super) fn page_ui(
     }
 }
 
-fn bytes(
+fn bytes_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,

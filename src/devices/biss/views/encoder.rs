@@ -20,11 +20,11 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         theme,
         &mut *actions,
         is_profile,
-        (|ui, actions| identity(ui, theme, encoder, actions), |ui, actions| check(ui, theme, encoder, actions)),
+        (|ui, actions| identity(ui, theme, encoder, actions), |ui, actions| check_ui(ui, theme, encoder, actions)),
         (
             |ui| wiring::card_ui(ui, theme),
             |ui, actions| {
-                status(ui, theme, encoder, actions);
+                status_ui(ui, theme, encoder, actions);
                 if let Some(motor) = &encoder.motor {
                     theme.gap(ui);
                     motor::card_ui(ui, theme, encoder, motor, actions);
@@ -55,18 +55,18 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
         if let Some(identity) = encoder.identity() {
             ui.label(theme.value(identity.description.name()));
             ui.add_space(theme.space.inside);
-            facts(ui, theme, identity);
+            facts_ui(ui, theme, identity);
         } else if let Some(identity) = encoder.profile_identity() {
             ui.label(theme.value(&identity.description));
             ui.add_space(theme.space.inside);
-            recorded(ui, theme, encoder, identity);
+            recorded_ui(ui, theme, encoder, identity);
         } else {
             empty(ui, theme, &theme.say("encoder_card.nothing"), None);
         }
     });
 }
 
-fn facts(ui: &mut Ui, theme: &Theme, identity: &Identity) {
+fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     let or_none = |text: String| if text.is_empty() { theme.say("encoder_card.not_told") } else { text };
     let serial = format!("{}  {}", identity.serial_number, crate::bits::hex(&identity.serial_bytes));
     row(ui, theme, &theme.say("encoder_card.serial"), theme.mono(or_none(serial.trim().to_owned())));
@@ -74,7 +74,7 @@ fn facts(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     row(ui, theme, &theme.say("encoder_card.firmware"), theme.mono(or_none(firmware)));
     row(ui, theme, &say(theme, "biss_card.profile"), theme.mono(identity.kind.profile.to_string()));
     row(ui, theme, &say(theme, "biss_card.device_id"), theme.mono(crate::bits::hex(&identity.kind.device_id)));
-    manufacturer(ui, theme, identity.kind.manufacturer);
+    manufacturer_ui(ui, theme, identity.kind.manufacturer);
     let layout = &identity.layout;
     let widths = TEXTS
         .text("biss_card.widths")
@@ -103,14 +103,14 @@ fn facts(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     }
 }
 
-fn recorded(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIdentity) {
+fn recorded_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIdentity) {
     let or_none = |text: String| if text.is_empty() { say(theme, "biss_card.not_in_profile") } else { text };
     row(ui, theme, &theme.say("encoder_card.serial"), theme.mono(or_none(identity.serial_number.clone())));
     let firmware = identity.firmware.map(|own| own.to_string()).unwrap_or_default();
     row(ui, theme, &theme.say("encoder_card.firmware"), theme.mono(or_none(firmware)));
     row(ui, theme, &say(theme, "biss_card.profile"), theme.mono(identity.profile_id.to_string()));
     row(ui, theme, &say(theme, "biss_card.device_id"), theme.mono(crate::bits::hex(&identity.device_id)));
-    manufacturer(ui, theme, identity.manufacturer);
+    manufacturer_ui(ui, theme, identity.manufacturer);
     if let Some(singleturn) = identity.singleturn_bits {
         let widths = TEXTS
             .text("biss_card.position_widths")
@@ -124,12 +124,12 @@ fn recorded(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIde
     }
 }
 
-fn manufacturer(ui: &mut Ui, theme: &Theme, code: [u8; 2]) {
+fn manufacturer_ui(ui: &mut Ui, theme: &Theme, code: [u8; 2]) {
     let words = format!("{}  {}", crate::bits::hex(&code), code.escape_ascii());
     row(ui, theme, &say(theme, "biss_card.manufacturer"), theme.mono(words));
 }
 
-fn status(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
         if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &theme.say("status_card.read")).clicked() {
@@ -172,7 +172,7 @@ fn status(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Actio
     });
 }
 
-fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
         if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {

@@ -134,8 +134,8 @@ fn mounting_ui(
         }
         ui.add_space(theme.space.between);
         ui.label(say(theme, "mounting_card.what"));
-        choice(ui, theme, own.calibrate, "mounting_card.calibrate", &explained::calibration_needs());
-        choice(ui, theme, own.wiegand, "mounting_card.wiegand", &explained::wiegand_needs());
+        choice_ui(ui, theme, own.calibrate, "mounting_card.calibrate", &explained::calibration_needs());
+        choice_ui(ui, theme, own.wiegand, "mounting_card.wiegand", &explained::wiegand_needs());
         ui.add_enabled_ui(*own.wiegand, |ui| {
             ui.horizontal(|ui| {
                 theme.gap(ui);
@@ -158,7 +158,7 @@ fn mounting_ui(
     });
 }
 
-fn choice(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
+fn choice_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
     ui.checkbox(on, say(theme, id));
     ui.horizontal_top(|ui| {
         theme.gap(ui);

@@ -46,7 +46,7 @@ pub(super) fn page_ui(
     }
     let beside = ui.available_width() >= BESIDE;
     super::messages_ui(ui, theme, encoder, actions);
-    head(ui, theme, encoder, (&groups, beside), view, actions);
+    head_ui(ui, theme, encoder, (&groups, beside), view, actions);
     ui.add_space(theme.space.inside);
     let height = ui.available_height();
     if !beside {
@@ -56,14 +56,14 @@ pub(super) fn page_ui(
     ui.horizontal_top(|ui| {
         ui.allocate_ui_with_layout(egui::vec2(BANKS, height), egui::Layout::top_down(egui::Align::Min), |ui| {
             ui.set_min_width(BANKS);
-            banks(ui, theme, encoder, &groups, view);
+            banks_ui(ui, theme, encoder, &groups, view);
         });
         ui.vertical(|ui| table(ui, theme, encoder, &groups, height, view, actions));
     });
 }
 
 /// Draws the buttons for the selected bank and register, along with their messages.
-fn head(
+fn head_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -85,7 +85,7 @@ fn head(
                 actions.push(Action::device(encoder.session.id, Biss::ReadBank(own.bank)));
             }
         }
-        watching(ui, theme, encoder, view, actions);
+        watching_ui(ui, theme, encoder, view, actions);
         if let Some(problem) = view.table.problem(theme) {
             let words = format!("{} {problem}", icons::WARNING_CIRCLE);
             ui.add(egui::Label::new(RichText::new(words).color(theme.palette.bad)).truncate());
@@ -105,7 +105,7 @@ fn read_words(bank: Option<u8>) -> Text {
 }
 
 /// Draws the watch button for the selected register, and the list of watched registers.
-fn watching(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &RegistersUiState, actions: &mut Vec<Action>) {
+fn watching_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &RegistersUiState, actions: &mut Vec<Action>) {
     let selected = view.table.selected();
     let group = selected.and_then(|place| encoder.table.groups().get(place.group));
     let row = selected.zip(group).and_then(|(place, group)| group.rows().get(place.row));
@@ -134,7 +134,7 @@ fn watching(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &RegistersUiSta
     }
 }
 
-fn banks(ui: &mut Ui, theme: &Theme, encoder: &Encoder, groups: &[RegisterGroup], view: &mut RegistersUiState) {
+fn banks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, groups: &[RegisterGroup], view: &mut RegistersUiState) {
     let selected = view.table.group();
     ScrollArea::vertical().id_salt("banks").auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;

@@ -34,7 +34,7 @@ pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Gu
         let list: Vec<StepRow> =
             guide.steps().iter().map(|own| step(theme, guide, own.op, own.is_first, own.step, own.reached)).collect();
         let demand = guide.demand();
-        let why = demand.and_then(|own| own.blockers.first()).map(|own| theme.words(&says::blocker(*own)));
+        let why = demand.and_then(|own| own.blockers.first()).map(|own| theme.words(&says::blocker_text(*own)));
         let word = say(
             theme,
             match demand.map(|own| own.task) {
@@ -108,7 +108,8 @@ fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     if let Some(fluctuation) = run.fluctuation() {
         let unit = theme.say("unit.revolutions_per_minute");
         let spread = demand.motion.map(|own| own.spread);
-        let accepted = run.accepted_fluctuation(demand.motion.map_or(run.recommended_range().middle(), |own| own.rpm));
+        let accepted =
+            run.accepted_fluctuation(demand.motion.map_or(run.recommended_range().midpoint(), |own| own.rpm));
         gauges.push(Gauge {
             name: say(theme, "guide.fluctuation"),
             value: spread,
@@ -145,7 +146,7 @@ fn speed(theme: &Theme, run: Run, demand: &Demand) -> Gauge {
         .text(if is_best { "guide.rpm_range_best" } else { "guide.rpm_range" })
         .with_number("least", allowed.least, 0)
         .with_number("greatest", allowed.greatest, 0)
-        .with_number("best", best.middle(), 0);
+        .with_number("best", best.midpoint(), 0);
     let unit = theme.say("unit.revolutions_per_minute");
     Gauge {
         name: say(theme, if run.is_clockwise() { "guide.speed_cw" } else { "guide.speed_ccw" }),
@@ -170,7 +171,7 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, 
             End::Failed { before, .. } => before,
         };
         if let End::Failed { texts, .. } = end {
-            texts.iter().for_each(|text| line(ui, theme, says::weight(text), &theme.words(text)));
+            texts.iter().for_each(|text| line_ui(ui, theme, says::weight(text), &theme.words(text)));
         }
         let lines: Vec<(Severity, String)> = ops
             .iter()
@@ -178,11 +179,11 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, 
             .flat_map(|(op, own)| says::report(op, own))
             .map(|(severity, text)| (severity, theme.words(&text)))
             .collect();
-        lines.iter().for_each(|(severity, words)| line(ui, theme, *severity, words));
+        lines.iter().for_each(|(severity, words)| line_ui(ui, theme, *severity, words));
         if encoder.motor.is_some() {
             motor::turning_ui(ui, theme, encoder, actions);
         } else if ops.iter().any(Op::turns) {
-            line(ui, theme, Severity::Note, &say(theme, "guide.stop_motor"));
+            line_ui(ui, theme, Severity::Note, &say(theme, "guide.stop_motor"));
         }
         ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| {
@@ -202,7 +203,7 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, 
 }
 
 /// Draws one line of the final report with its severity.
-fn line(ui: &mut Ui, theme: &Theme, own: Severity, words: &str) {
+fn line_ui(ui: &mut Ui, theme: &Theme, own: Severity, words: &str) {
     let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(ink));

@@ -96,7 +96,7 @@ fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
     Ok(result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity.drives))
 }
 
-/// Checks that the presence test has found at least one drive, and every drive known before.
+/// Checks that the presence test has found at least one drive and every previously known drive.
 fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
     if found.is_empty() {
         return Err(failed(&TEXTS.text("hd_cli.no_drives")));

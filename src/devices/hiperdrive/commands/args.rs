@@ -6,10 +6,10 @@ use clap::{Args, ValueEnum};
 use crate::cli::args::DirectionOption;
 use crate::devices::hiperdrive::protocol::{ByteOrder, KIND};
 
-/// A drive behind a hub; only a hub has several.
+/// Option that selects a drive behind a hub; only a hub has several drives.
 #[derive(Args)]
 pub(super) struct OfDrive {
-    /// hiperdrive: drive of a hub, 1 to 8. Default: the first, or the one in the parameter's number.
+    /// hiperdrive: drive of a hub, 1 to 8. Default: the first, or the one in the parameter number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=8))]
     pub(super) drive: Option<u8>,
 }
@@ -34,7 +34,7 @@ pub(super) struct WordOptions {
     pub(super) order: Option<Order>,
 }
 
-/// The option of `simulate` that stands for a setting.
+/// Hub option of `simulate`.
 #[derive(Args)]
 pub(super) struct HubOption {
     /// hiperdrive: serve a hub with this number of ports instead of an adapter.
@@ -66,7 +66,7 @@ pub(crate) struct Move {
     pub(crate) timeout: u16,
 }
 
-/// Order of the bytes of a number.
+/// Byte order of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Order {
     /// Low byte first.
@@ -87,7 +87,7 @@ impl From<Order> for ByteOrder {
 /// The actions of drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum HiperdriveAction {
-    /// rate device, supply and address, and request, line, errors and range of each drive
+    /// rate device, supply and address, and the request, line, errors and range of each drive
     Check,
     // Brackets in a doc comment would be read as links by rustdoc.
     #[value(help = "POSITION [--drive N]: set the actual position, rounded to 64 steps and saved")]

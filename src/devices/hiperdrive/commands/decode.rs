@@ -68,8 +68,8 @@ fn lines(readings: &[WordMeaning]) -> DecodedBytes {
     DecodedBytes { lines: readings.iter().flat_map(WordMeaning::lines).collect(), more, data: None }
 }
 
-/// Decodes a packet, or process data recognised by length. If the direction is known, bytes of a matching length are
-/// taken as process data.
+/// Decodes a packet, or process data recognised by its length. If the direction is known, bytes of a matching length
+/// are taken as process data.
 fn of_bytes(bytes: &[u8], known: &BytesContext) -> std::result::Result<DecodedBytes, String> {
     let fits = Layout::of_length(bytes.len()).next().is_some();
     let packet =

@@ -45,7 +45,8 @@ pub(super) fn find(common: &Common, output: &Output) -> Result {
     Err(Failure::Failed(vec![format!("{summary} Check supply, cable and address: {hint}")]))
 }
 
-/// Returns the addresses to query for a link: a single device, or all devices in a network (enip:192.168.1.255).
+/// Returns the addresses to query for a link: that of a single device, or the broadcast address of a network
+/// (enip:192.168.1.255).
 fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
     let (Scheme::Enip, Wire::Host(host)) = (url.scheme, url.wire()) else {
         return Err(Failure::Usage(

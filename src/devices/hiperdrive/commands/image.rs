@@ -39,12 +39,12 @@ fn layouts(length: usize, known: &BytesContext) -> impl Iterator<Item = Layout> 
     Layout::of_length(length).map(|layout| Layout { order: known.order, ..layout })
 }
 
-/// Returns whether any control word is nonzero; as a status word, 0 would come from no drive.
+/// Returns whether any control word is nonzero. No drive sends 0 as a status word.
 fn is_anything(bytes: &[u8], layout: Layout) -> bool {
     OutImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().any(|drive| drive.control != 0))
 }
 
-/// Returns whether every status word is one that a drive can send.
+/// Returns whether a drive can send every status word in the data.
 fn is_input_image(bytes: &[u8], layout: Layout) -> bool {
     InImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().all(|drive| drive.status.is_plausible()))
 }

@@ -140,7 +140,7 @@ impl DriveFact {
 }
 
 /// Returns the facts that a drive reports. The newest entries in the error buffer are errors: as many as the drive
-/// counts since the last acknowledgement, and at least one during a fault. Older entries survive a power cycle
+/// has counted since the last acknowledgement, and at least one during a fault. Older entries survive a power cycle
 /// (reference 4) and do not describe the present state. A drive outside its limits and a communication error are
 /// warnings.
 fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
@@ -249,7 +249,7 @@ fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedSc
     Ok(SpeedScale::new(part(SPEED_NUMERATOR)?, part(SPEED_DENOMINATOR)?).ok())
 }
 
-/// Formats a string parameter, followed by any number it contains with the unit.
+/// Formats a string parameter, followed by the number it contains, if any, with the unit.
 fn nominal_text(text: &str, unit: &str) -> String {
     match nominal(text).filter(|_| !unit.is_empty()) {
         Some((number, decimals)) => format!("{text} = {number:.decimals$} {unit}"),

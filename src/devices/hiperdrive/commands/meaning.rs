@@ -39,8 +39,8 @@ impl WordMeaning {
     }
 }
 
-/// Returns the possible meanings of a word, or the only one if the direction is known. Bit 11 usually decides: a
-/// control word never has it set, a detected drive always does.
+/// Returns the possible meanings of a word; only one if the direction is known. Bit 11 usually decides: a control word
+/// never has it set, a detected drive always does.
 ///
 /// # Errors
 /// Returns the reason why the word must not be sent, if its direction makes it a control word.
@@ -119,8 +119,8 @@ pub(super) fn status_words(status: StatusWord) -> String {
     format!("{}{present}: {bits}", status.state().name())
 }
 
-/// Returns the parameter that an attribute belongs to, along with the value to be written, or the reason why the data
-/// does not match the parameter type.
+/// Returns the parameter to which an attribute belongs, with the value to write or the reason why the data does not
+/// match the parameter type.
 pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option<(String, Result<String, String>)> {
     let number = ParameterNumber::from_attribute(class, attribute)?;
     let row = number.row();

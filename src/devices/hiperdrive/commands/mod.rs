@@ -123,7 +123,7 @@ impl OwnCommand for MoveCommand {
     }
 }
 
-/// Lists all parameters with their numbers for the help, one per line.
+/// Returns the help text that lists all parameters with their numbers, one per line.
 fn listed_parameters() -> String {
     let mut text = "\
 Parameters of HIPERDRIVE: below 100 of the device, from 101 of drive 1 (from 201 of drive 2, up to drive 8):

@@ -62,7 +62,7 @@ pub(crate) fn execute_move(common: &Common, output: &Output, wanted: &Move) -> R
     result_of!(runner.run(HiperdriveJob::Take)?, HiperdriveOutput::Taken => {});
     let came =
         carry_out(&runner, drive, MotionRequest::Move { target, effort }, Duration::from_secs(wanted.timeout.into()));
-    let stood = lead_off(&runner, drive);
+    let stood = leave_operation(&runner, drive);
     // Control is released even after a lost connection; that loss has already been reported.
     let given = runner.run(HiperdriveJob::Give);
     let position = stood.map(|view| view.actual.position);
@@ -87,14 +87,14 @@ pub(crate) fn execute_move(common: &Common, output: &Output, wanted: &Move) -> R
     Err(Failure::Failed(lines))
 }
 
-/// Reads the error that stopped the drive, if one is still reported.
+/// Reads the error that stopped the drive, if it is still reported.
 fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
     let newest = value(runner, ParameterNumber::of_drive(NEWEST_ERROR, drive)?).ok()?;
     let Value::Number(code) = newest else { return None };
     u16::try_from(code).ok().map(ErrorCode::new).filter(|code| *code != ErrorCode::NONE)
 }
 
-/// Describes the target and the limits in the present scale, so that a changed scale is noticed.
+/// Describes the target and the limits in the present scale, so that a change of scale is noticed.
 fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option<PositionScale>) -> String {
     let turns = |steps: i32| match scale {
         Some(scale) => format!("{steps} ({:.2} turns)", f64::from(steps) / scale.steps_per_turn()),
@@ -120,7 +120,7 @@ fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Resul
     Ok((limits.permit(now, false), limits.scale()))
 }
 
-/// Checks that a target fits into 32 bits. Any other target lies outside all limits.
+/// Checks that a target fits into 32 bits. Any other target is outside all limits.
 fn within(permit: &Permit, target: i64) -> Result<i32> {
     let (low, high) = permit.limits.unwrap_or((i32::MIN, i32::MAX));
     i32::try_from(target).map_err(|_| {
@@ -138,7 +138,7 @@ fn refused(refusal: Refusal) -> Failure {
     failed(&words::refusal(refusal, place))
 }
 
-/// Refreshes the motion until it ends, is interrupted, or times out.
+/// Refreshes the motion request until the motion ends, is interrupted, or times out.
 fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience: Duration) -> MotionOutcome {
     let motion = &runner.kept;
     let until = Instant::now() + patience;
@@ -171,8 +171,8 @@ fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<Ended> {
     }
 }
 
-/// Stops the drive, switches it off, and returns its last view.
-fn lead_off(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
+/// Stops the drive, switches it off, and returns its last known state.
+fn leave_operation(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
     let motion = &runner.kept;
     let find = || motion.view().drives.into_iter().find(|own| own.number == drive);
     let until = Instant::now() + END;

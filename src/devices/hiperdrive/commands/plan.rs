@@ -60,7 +60,7 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// Returns the report of the plan as text and JSON: old → new for each parameter, and the cost.
+/// Returns the report of the plan as text and JSON, with the old and new value of each parameter and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     let mut lines = Lines::default();

@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Positio
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::result_of;
 
-/// Prints the position. The scale is read once; afterwards only parameters 105 to 107 are read.
+/// Prints the position. The scale is read once, and afterwards only parameters 105 to 107 are read.
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let drive = drive(&position.own.read()?);
@@ -43,9 +43,9 @@ fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u
 /// A position split into turns and steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TurnPosition {
-    /// Number of whole turns; a position of −1 step is in turn −1.
+    /// Number of whole turns. A position of −1 step is in turn −1.
     turns: i64,
-    /// Steps within the turn. Fractional if a turn is not a whole number of steps.
+    /// Steps within the turn, fractional if a turn is not a whole number of steps.
     steps: f64,
     degrees: f64,
 }

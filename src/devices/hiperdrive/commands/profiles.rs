@@ -58,7 +58,7 @@ impl ProfileCommands for HiperdriveCommands {
     }
 
     /// Returns a message if the two profiles are from different devices or have different drives. A profile without a
-    /// serial number matches no device.
+    /// serial number does not match any device.
     fn other_device(&self, profile: &Body, device: &Body) -> Option<String> {
         let error =
             profile::check_device(profile.get::<HiperdriveProfile>()?, &device.get::<HiperdriveProfile>()?.identity)

@@ -22,7 +22,7 @@ use crate::worker::Session;
 /// Time to wait for the drives to stop, several times the longest interval, so that a stop word is sent before the
 /// program may end.
 const STOPPED: Duration = Duration::from_millis(500);
-/// Time to wait until the drives are off and the connection is closed.
+/// Time to wait until the drives are switched off and the connection is closed.
 const RELEASED: Duration = Duration::from_secs(1);
 const LOOKS: Duration = Duration::from_millis(1);
 
@@ -56,8 +56,8 @@ impl Runs for Hiperdrive {
         Some(Pace { replies: station.replies(), timeout: station.link.timeout, longest: Station::LONGEST_TIMEOUT })
     }
 
-    /// Stops the motion and waits for standstill. If the program is about to end, also waits until the drives are off
-    /// and released.
+    /// Stops the motion and waits for standstill. If the program is about to end, also waits until the drives are
+    /// switched off and released.
     fn interrupt(motion: &Motion) -> Box<dyn Fn(bool) + Send> {
         let motion = motion.clone();
         Box::new(move |again| {

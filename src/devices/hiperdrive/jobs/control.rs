@@ -16,13 +16,13 @@ use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
 use crate::units::Moment;
 use crate::worker::SessionContext;
 
-/// The cyclic connection and the motion permits of its drives.
+/// Cyclic connection to a device and the motion permits of its drives.
 pub(super) struct Control {
     port: Option<Box<dyn DatagramPort>>,
     clock: Arc<dyn Clock>,
     motion: Motion,
     open: Option<Open>,
-    /// The device and its drives when the connection was last opened.
+    /// Device and drives as identified when the connection was last opened.
     identity: Option<Identity>,
     pub(super) rules_refresh: RulesRefresh,
 }
@@ -94,7 +94,7 @@ impl Control {
         self.motion.with_limits(drive, DriveLimits::forget);
     }
 
-    /// Publishes a drive's limits, derived from its parameters, with the times at which those were read.
+    /// Publishes a drive's limits, derived from its parameters, with the times at which these were read.
     pub(super) fn limit(&self, identity: &Identity, drive: DriveNumber, rules: Rules, times: [Moment; GROUPS]) {
         let Some(variant) = identity.drive(drive).map(|drive| drive.variant) else { return };
         self.motion.with_limits(drive, |limits| limits.take(rules, (identity.topology, variant), times));
@@ -102,7 +102,7 @@ impl Control {
 }
 
 impl Hiperdrive {
-    /// Opens the cyclic connection. No drive moves.
+    /// Opens the cyclic connection, without moving any drive.
     pub(super) fn take(
         &mut self,
         context: &mut SessionContext,
@@ -187,7 +187,7 @@ impl Hiperdrive {
         }
     }
 
-    /// Carries out a plan and reads the drives' limits again. No drive may move until the limits are known.
+    /// Carries out a plan and reads the limits of the drives again. No drive may move until its limits are known.
     pub(super) fn commit(
         &mut self,
         context: &mut SessionContext,

@@ -18,25 +18,25 @@ use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, Drives};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::link::{Clock, DatagramChannel, wake_before_others};
 
-/// A cyclic connection on its own thread. Dropping it stops the drives and ends the thread; [`close`](Self::close) also
-/// waits until the thread has ended.
+/// A cyclic connection that runs on its own thread. Dropping it stops the drives and ends the thread;
+/// [`close`](Self::close) also waits until the thread has ended.
 pub struct Cyclic {
     motion: Motion,
     commands: Arc<CyclicCommands>,
     ended: Receiver<Never>,
 }
 
-/// State shared between the handle and the thread.
+/// State shared between the handle and the connection thread.
 #[derive(Default)]
 struct CyclicCommands {
     end: AtomicBool,
     lost: Mutex<Option<CyclicLost>>,
 }
 
-/// Item type of a channel that never carries a value; the channel disconnects when the thread ends.
+/// Item type of a channel that never carries a value and only signals, by disconnecting, that the thread has ended.
 enum Never {}
 
-/// A cyclic connection without a thread, driven by its owner; tests run it in virtual time.
+/// A cyclic connection without a thread, driven by its owner. Tests run it in virtual time.
 pub struct CyclicPump {
     drives: Drives,
     port: Box<dyn DatagramChannel>,
@@ -46,17 +46,18 @@ pub struct CyclicPump {
     packet: Vec<u8>,
 }
 
-/// Maximum wait for the thread to end: the stop ladder, three packets with drives off, and a margin for the operating
-/// system.
+/// Maximum time to wait for the thread to end. Covers the stop sequence, three packets with the drives off, and a
+/// margin for the operating system.
 const PATIENCE: Duration = Duration::from_millis(1500);
-/// Maximum number of packets handled once the next one is due, so that flooding the port cannot delay sending.
+/// Maximum number of received packets handled once the next send is due, so that flooding the port cannot delay
+/// sending.
 const AT_ONCE: usize = 64;
 
 impl Cyclic {
     /// Starts the thread for an open connection; `port` must be directed at the target.
     ///
     /// # Errors
-    /// If the system cannot create a thread; nothing has been sent then.
+    /// Fails if the system cannot create a thread; nothing has been sent in that case.
     pub fn start(
         port: Box<dyn DatagramChannel>,
         opened: &Opened,
@@ -83,13 +84,12 @@ impl Cyclic {
         Ok(Cyclic { motion: motion.clone(), commands, ended })
     }
 
-    /// Returns the reason if the connection ended without being closed. The owner must then close it over the session's
-    /// own connection.
+    /// Returns the reason if the connection was lost. The owner must then close it over the session's own connection.
     pub fn lost(&self) -> Option<CyclicLost> {
         self.motion.lost()
     }
 
-    /// Reports a loss detected by the session, which stops the drives.
+    /// Reports a loss detected by the session and stops the drives.
     pub fn lose(&self, why: CyclicLost) {
         *self.commands.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
     }
@@ -130,7 +130,7 @@ impl CyclicPump {
         self.commands.end.store(true, Ordering::SeqCst);
     }
 
-    /// Receives until the next packet is due, then sends that packet. Returns `false` when the connection is over.
+    /// Receives until the next packet is due, then sends that packet. Returns `false` once the connection has ended.
     pub fn turn(&mut self) -> bool {
         let due = self.drives.poll_at();
         let mut late = 0;
@@ -148,7 +148,7 @@ impl CyclicPump {
         self.apply_commands();
         self.drives.watch_parameters(&self.motion.watched_parameters());
         let now = self.clock.now();
-        let packet = self.motion.with_wanted(|intent, permit| self.drives.poll(now, intent, permit));
+        let packet = self.motion.with_intent(|intent, permit| self.drives.poll(now, intent, permit));
         let sent = packet.map_or(Ok(()), |packet| self.port.send(&packet));
         if let Err(error) = sent {
             return self.is_gone(error.into());

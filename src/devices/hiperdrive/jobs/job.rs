@@ -12,7 +12,8 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, ParameterNumber, V
 use crate::store::DeviceKey;
 use crate::worker::commit::wear;
 
-/// Save count above which the user is warned of wear. This is an assumption, since the manual gives no limit (`U`).
+/// Save count above which the user is warned of memory wear. The value is an assumption, since the manual gives no
+/// limit (`U`).
 pub const WEAR_WARNING: u64 = 50_000;
 
 /// A job in a session with an adapter or a hub. Reading changes nothing; drives move only between [`Take`](Self::Take)
@@ -23,7 +24,7 @@ pub enum HiperdriveJob {
     Survey,
     Identify,
     Status,
-    /// Checks the device and its drives, with one verdict per line.
+    /// Checks the device and its drives and reports one verdict per line.
     Check,
     Position(DriveNumber),
     Read(ParameterNumber),
@@ -31,7 +32,7 @@ pub enum HiperdriveJob {
     Save,
     Prepare(Change),
     Commit(Box<Commit>),
-    /// Opens the cyclic connection. No drive moves.
+    /// Opens the cyclic connection without moving a drive.
     Take,
     Give,
     Watch(DriveNumber),
@@ -43,7 +44,7 @@ pub enum Change {
         profile: Box<HiperdriveProfile>,
         options: RestoreOptions,
     },
-    /// Writes and saves the given values; parameters missing from the image stay unchanged.
+    /// Writes and saves the given values. Parameters missing from the image stay unchanged.
     Write(Box<Image>),
     /// Writes the given values without saving them.
     Try(Box<Image>),
@@ -61,7 +62,7 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edits; those not yet written remain edits.
+    /// A write of edits. Edits that have not been written yet are kept as edits.
     Edits,
     Try,
     Position,
@@ -95,41 +96,41 @@ pub struct Prepared {
     pub unchanged: u64,
     /// Profile items that the device does not have.
     pub missing: Vec<String>,
-    /// Differing mounting values that are left unchanged.
+    /// Mounting values that differ but are left unchanged.
     pub mounting_left: Vec<Item>,
-    /// Type differences, if the profile is for another type of device or drive.
+    /// Type differences between the profile and the device or its drives.
     pub other_types: Vec<OtherType>,
-    /// Mounting values that are written from another device's profile and must be set up again.
+    /// Mounting values that come from another device's profile and must be set up again after writing.
     pub mounting_written: Vec<Item>,
 }
 
 impl Prepared {
-    /// Returns the number of saves after this plan, or `None` if no wear warning is needed.
+    /// Returns the number of saves after this plan if a wear warning is needed, or `None` otherwise.
     pub fn wear(&self) -> Option<u64> {
         wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
 }
 
-/// A plan with the user's consent.
+/// A plan that the user has approved.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 pub type Committed = crate::worker::Committed<Written>;
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeviceMessage {
-    /// The cyclic connection was lost and the drives stop; the session's `Motion` has the cause.
+    /// The cyclic connection was lost and the drives stop; the session's `Motion` holds the cause.
     ControlLost,
-    /// The limits of a drive under control cannot be read, and are requested again repeatedly.
+    /// The limits of a drive under control cannot be read. Reading is retried until it succeeds.
     RulesUnread(Box<Error>),
     RulesRead,
 }
 
-/// A step of a running job. It displays as on the command line.
+/// A step of a running job, displayed as on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
     Parameter(ParameterNumber),
     Step(CheckStep),
-    /// An operation of a plan, with the item that it changes.
+    /// An operation of a plan, described by the item that it changes.
     Operation(String),
 }
 
@@ -172,7 +173,7 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// Returns the key of a device for backups and the logbook: saves count for the adapter or hub, whichever drives are
+/// Returns the key of a device for backups and the logbook. Saves are counted per adapter or hub, whichever drives are
 /// connected.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     DeviceKey::of(KIND, &identity.category, &identity.serial_number, is_virtual)

@@ -51,7 +51,7 @@ impl fmt::Debug for Hiperdrive {
     }
 }
 
-/// Interval of checking drives under control: a fraction of the time allowed between two requests.
+/// Interval between checks of the drives under control, a fraction of the time allowed between two requests.
 const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
@@ -64,16 +64,16 @@ impl Hiperdrive {
 
 pub struct DeviceConnection {
     pub wire: Box<dyn ByteLink>,
-    /// Port for cyclic data, or `None` for a link without one.
+    /// Port for cyclic data, or `None` if the link has none.
     pub port: Option<Box<dyn DatagramPort>>,
     pub station: Station,
-    /// Virtual device, if it runs in this process.
+    /// Virtual device, if one runs in this process.
     pub target: Option<Target>,
 }
 
 impl Session<Hiperdrive> {
-    /// Creates a session on an open connection. `target` denotes a virtual device in this process, whose saves are
-    /// counted separately.
+    /// Creates a session on an open connection. `target` is the virtual device if it runs in this process; its saves
+    /// are counted separately.
     pub fn to_target(way: DeviceConnection, clock: Arc<dyn Clock>, store: Store) -> Self {
         let DeviceConnection { wire, port, station, target } = way;
         let is_virtual = target.is_some();
@@ -83,8 +83,8 @@ impl Session<Hiperdrive> {
         Session::with(device, clock, store, is_virtual)
     }
 
-    /// Returns the handle that moves the drives, which is the same for the whole session. Without the cyclic connection
-    /// it has no effect.
+    /// Returns the handle that moves the drives, which stays the same for the whole session. The handle has no effect
+    /// while there is no cyclic connection.
     pub fn motion(&self) -> Motion {
         self.device.control.motion()
     }
@@ -93,7 +93,7 @@ impl Session<Hiperdrive> {
         &self.device.station
     }
 
-    /// Returns the virtual device, if it runs in this process.
+    /// Returns the virtual device, if one runs in this process.
     pub fn target(&self) -> Option<Target> {
         self.device.target.clone()
     }

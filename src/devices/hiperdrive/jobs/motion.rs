@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, ParameterNumber,
 use crate::link::Clock;
 use crate::units::Moment;
 
-/// Motion of a session's drives, shared by its clones.
+/// Motion of the drives of a session, shared by all clones of the handle.
 #[derive(Clone)]
 pub struct Motion(Arc<Shared>);
 
@@ -27,18 +27,18 @@ struct Shared {
 
 struct Cell {
     intent: Intent,
-    /// Limits of each drive, stored only here.
+    /// Limits of each drive, stored nowhere else.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
-    /// Parameters to be read through the parameter words, with the time of the latest request for each.
+    /// Parameters to read through the parameter words, with the time of the latest request for each.
     watched: BTreeMap<ParameterNumber, Moment>,
     session: SessionWatch,
     punctual: bool,
     view: MotionSnapshot,
     /// Whether the program is ending, so that no motion is allowed.
     is_shutting_down: bool,
-    /// Whether the target holds a cyclic connection that was opened here.
+    /// Whether the target holds a cyclic connection that this session opened.
     connected: bool,
 }
 
@@ -57,9 +57,9 @@ pub struct MotionSnapshot {
     pub link: LinkFigures,
     /// Parameters read through the parameter words, or `None` if the connection has none.
     pub parameters: Option<ParameterReadings>,
-    /// Whether the system gives the connection's thread priority over all ordinary ones.
+    /// Whether the connection thread runs with priority over ordinary threads.
     pub punctual: bool,
-    /// Reason why the connection was lost without being closed.
+    /// Reason for the loss, if the connection was lost without being closed.
     pub lost: Option<CyclicLost>,
 }
 
@@ -67,21 +67,21 @@ pub struct MotionSnapshot {
 pub struct DriveView {
     pub number: DriveNumber,
     pub actual: Actual,
-    /// Time of the data in `actual`, or `None` before the first.
+    /// Time at which the data in `actual` was received, or `None` before the first reception.
     pub received_at: Option<Moment>,
     pub sent: Setpoint,
     pub phase: Phase,
-    /// Number of the running act, or else of the last one; 0 for none.
+    /// Number of the running act, or of the last one if none is running; 0 if there has been no act.
     pub act: u64,
     /// The last act that ended, and its outcome.
     pub ended: Option<(u64, Ended)>,
 }
 
-/// How long a parameter is read after the latest request, and a reading is recent.
+/// Duration for which a parameter is read after the latest request and for which a reading counts as recent.
 const WATCHED: Duration = Duration::from_secs(5);
 
 impl Motion {
-    /// Creates the motion without a request and without a permit.
+    /// Creates the motion state with no request and no permit.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
         let intent = Intent::rest(DriveNumber::FIRST, 0, clock.now());
         let cell = Cell {
@@ -98,8 +98,8 @@ impl Motion {
         Motion(Arc::new(Shared { clock, cell: Mutex::new(cell) }))
     }
 
-    /// Requests a motion of a drive and returns the number of this new act. It replaces the previous one, whose motion
-    /// stops. The act must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
+    /// Requests a motion of a drive and returns the number of the new act, which replaces the previous act and stops
+    /// its motion. The act must be [refreshed](Self::refresh); without a cyclic connection it has no effect.
     pub fn intend(&self, drive: DriveNumber, request: MotionRequest) -> u64 {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
@@ -108,8 +108,8 @@ impl Motion {
         number
     }
 
-    /// Refreshes the last request. Required every 100 ms while anything moves: after 250 ms without a refresh the drive
-    /// stops, and a later refresh has no effect, even if the connection's thread was suspended in the meantime.
+    /// Refreshes the last request, which is required every 100 ms while anything moves. After 250 ms without a refresh
+    /// the drive stops, and a later refresh has no effect, even if the connection thread was suspended in the meantime.
     pub fn refresh(&self) {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -141,17 +141,17 @@ impl Motion {
         DrivesSnapshot { at, view: cell.view.clone(), limits: cell.limits.clone() }
     }
 
-    /// Returns the limits of a drive with the time of reading, or the default for an unknown drive.
+    /// Returns the limits of a drive with the time at which they were read, or the default for an unknown drive.
     pub fn limits(&self, drive: DriveNumber) -> DriveLimits {
         self.lock().limits.get(&drive).cloned().unwrap_or_default()
     }
 
-    /// Publishes the limits of a drive, as a session does automatically.
+    /// Publishes the limits of a drive. A session does this automatically.
     pub fn publish_limits(&self, drive: DriveNumber, limits: DriveLimits) {
         self.with_limits(drive, |own| *own = limits);
     }
 
-    /// Changes the limits of a drive atomically, so that they cannot be read or confirmed half-changed.
+    /// Changes the limits of a drive atomically, so that no reader sees or confirms a partial change.
     pub(super) fn with_limits<T>(&self, drive: DriveNumber, change: impl FnOnce(&mut DriveLimits) -> T) -> T {
         change(self.lock().limits.entry(drive).or_default())
     }
@@ -162,7 +162,7 @@ impl Motion {
         self.with_limits(drive, |limits| limits.doubt(now));
     }
 
-    pub(super) fn wanted_drive(&self) -> DriveNumber {
+    pub(super) fn requested_drive(&self) -> DriveNumber {
         self.lock().intent.drive
     }
 
@@ -171,8 +171,8 @@ impl Motion {
         self.with_limits(drive, DriveLimits::unconfirm);
     }
 
-    /// Confirms the limits of a drive as shown to the user; returns `false` without effect if the limits have changed
-    /// since.
+    /// Confirms the limits of a drive as shown to the user. Returns `false` and has no effect if the limits have
+    /// changed since.
     pub fn confirm_limits(&self, drive: DriveNumber, seen: LimitsSeen) -> bool {
         self.with_limits(drive, |limits| limits.confirm(seen))
     }
@@ -187,8 +187,8 @@ impl Motion {
         }
     }
 
-    /// Requests that a parameter be read through the parameter words of the cyclic connection for some time. Returns
-    /// its latest reading unless it is old; `None` also without such a connection.
+    /// Requests that a parameter be read for some time through the parameter words of the cyclic connection. Returns
+    /// the latest reading, or `None` if that reading is old or there is no such connection.
     pub fn watch_parameter(&self, number: ParameterNumber) -> Option<ParameterReading> {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -209,7 +209,7 @@ impl Motion {
         self.lock().permitted(drive, now)
     }
 
-    /// Starts a connection. Returns the number up to which acts do not move anything over it.
+    /// Starts a connection and returns the number of the last act that cannot move anything over it.
     pub(super) fn open(&self) -> u64 {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -219,19 +219,19 @@ impl Motion {
         number
     }
 
-    /// Passes the present request to the maker of the next packet.
-    pub(super) fn with_wanted<T>(&self, make: impl FnOnce(&Intent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
+    /// Passes the current request to the closure that builds the next packet.
+    pub(super) fn with_intent<T>(&self, make: impl FnOnce(&Intent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
         let now = self.0.clock.now();
         let cell = self.lock();
         make(&cell.intent, &|drive| cell.permitted(drive, now))
     }
 
-    /// Notes a request or an answer of the explicit messages.
+    /// Records a request or a reply of the explicit messages.
     pub(super) fn with_session(&self, note: impl FnOnce(&mut SessionWatch)) {
         note(&mut self.lock().session);
     }
 
-    /// Returns whether a drive is moving, or is being led to another state.
+    /// Returns whether a drive is moving or changing to another state.
     pub(super) fn is_under_way(&self) -> bool {
         let cell = self.lock();
         cell.view.open && cell.view.drives.iter().any(|drive| drive.phase != Phase::Idle)
@@ -265,7 +265,7 @@ impl Motion {
         self.lock().punctual = punctual;
     }
 
-    /// Notes that the connection's thread has failed, or never began.
+    /// Records that the connection thread has failed or could not start.
     pub(super) fn fail(&self) {
         let mut cell = self.lock();
         (cell.view.open, cell.view.lost) = (false, Some(CyclicLost::Failed));
@@ -275,8 +275,8 @@ impl Motion {
         self.lock().view.lost.clone()
     }
 
-    /// Ends motion with the program: all drives are stopped and switched off, and their connection is closed. Nothing
-    /// moves afterwards.
+    /// Ends motion when the program exits: stops and switches off all drives and closes their connection. Nothing moves
+    /// afterwards.
     pub fn leave(&self) {
         self.lock().is_shutting_down = true;
     }
@@ -285,12 +285,12 @@ impl Motion {
         self.lock().is_shutting_down
     }
 
-    /// Returns whether the target holds a cyclic connection that was opened here and has not been closed.
+    /// Returns whether the target holds a cyclic connection that this session opened and has not closed.
     pub fn is_connected(&self) -> bool {
         self.lock().connected
     }
 
-    /// Notes that the cyclic connection was opened, or closed at both ends.
+    /// Records that the cyclic connection was opened, or closed at both ends.
     pub(super) fn set_connected(&self, connected: bool) {
         self.lock().connected = connected;
     }
@@ -299,8 +299,8 @@ impl Motion {
         Arc::strong_count(&self.0) == 1
     }
 
-    /// Returns whether the word sent last to every drive stops it, that is, whether a requested stop has been sent.
-    /// True without a connection.
+    /// Returns whether the last control word sent to every drive stops it, that is, whether a requested stop has been
+    /// sent. Returns `true` without a connection.
     pub fn is_standing(&self) -> bool {
         let cell = self.lock();
         !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_standing())
@@ -334,12 +334,12 @@ mod tests {
     use crate::devices::hiperdrive::procedures::dead_man::Effort;
     use crate::link::VirtualClock;
 
-    /// If the window and the connection's thread were both suspended, the window may resume first.
+    /// A window that resumes before the connection thread, after both were suspended, does not revive a stale request.
     #[test]
     fn stale_intents_are_not_repeated() {
         let clock = Arc::new(VirtualClock::default());
         let motion = Motion::new(clock.clone());
-        let is_stale = || motion.with_wanted(|intent, _| intent.is_stale(clock.now()));
+        let is_stale = || motion.with_intent(|intent, _| intent.is_stale(clock.now()));
         let later = |time: Duration| clock.sleep_until(clock.now() + time);
         motion.intend(DriveNumber::FIRST, MotionRequest::Move { target: 1, effort: Effort::MOVE });
         for _ in 0..3 {

@@ -22,8 +22,8 @@ pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to an adapter or a hub: `enip:` to a real one, `sim:` to a virtual one, `replay:` to a recording, which
-/// has no cyclic connection.
+/// Opens a link to an adapter or a hub: `enip:` for a real device, `sim:` for a virtual one, and `replay:` for a
+/// recording, which has no cyclic connection.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
@@ -55,7 +55,7 @@ fn open_virtual(config: &Config, station: Station, clock: Arc<dyn Clock>) -> Dev
     DeviceConnection { wire, port: Some(port), station, target: Some(target) }
 }
 
-/// Parses the settings of the station and of the virtual device, which only apply to a link to one.
+/// Parses the settings of the station and of the virtual device. The latter apply only to a link to a virtual device.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Enip | Scheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, enip:, replay:"));
@@ -70,7 +70,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     Ok((station, config))
 }
 
-/// Removes session and request numbers, which differ each time, so that a recording matches any.
+/// Removes session and request numbers, which differ on each run, so that a recording matches any run.
 fn without_number(entry: TraceEntry) -> TraceEntry {
     const NUMBERS: [usize; 12] = [4, 5, 6, 7, 12, 13, 14, 15, 16, 17, 18, 19];
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };

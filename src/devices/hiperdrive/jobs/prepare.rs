@@ -93,7 +93,7 @@ pub(super) fn prepare(
     })
 }
 
-/// Checks that the drives named by the user exist. A profile may have more.
+/// Checks that the drives named by the user exist. A profile may name further drives.
 fn ensure_drives_present(identity: &Identity, change: &Change) -> Result<(), Error> {
     let named = match change {
         Change::Write(wanted) | Change::Try(wanted) => wanted.drives(),

@@ -10,10 +10,11 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::units::Moment;
 use crate::worker::SessionContext;
 
-/// Length of a time slot while no drive moves. The groups of limit parameters take turns: each group has one slot per
+/// Length of a time slot while no drive moves. The groups of limit parameters take turns, with one slot per group per
 /// second.
 const TURN: Duration = Duration::from_millis(250);
-/// Length of a slot while a drive moves. Each slot sends a request, and a device that does not answer ends the motion.
+/// Length of a time slot while a drive moves. Each slot sends a request, and a device that does not answer ends the
+/// motion.
 const TURN_IN_MOTION: Duration = REQUEST;
 /// Pause after a failed reading.
 const REST: Duration = Duration::from_millis(500);
@@ -23,8 +24,7 @@ pub(super) struct RulesRefresh {
     rests: Option<Moment>,
 }
 
-/// Returns the groups that are due, the one read longest ago first: those whose slot has begun since their last
-/// reading.
+/// Returns the groups whose slot has begun since their last reading, the one read longest ago first.
 fn due(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
     let is_due = |(group, at): &(usize, Moment)| turns(*group, now, turn) > turns(*group, *at, turn);
     let mut groups: Vec<(usize, Moment)> = read.into_iter().enumerate().filter(is_due).collect();
@@ -32,7 +32,7 @@ fn due(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
     groups.into_iter().map(|(group, _)| group).collect()
 }
 
-/// Returns how many turns of a group have begun until then.
+/// Returns how many turns of a group have begun by the given time.
 fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
     let begun = at.since_start().as_nanos() / turn.as_nanos();
     let groups = GROUPS as u128;
@@ -40,14 +40,14 @@ fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
 }
 
 impl Hiperdrive {
-    /// Reads the limit parameters if due while drives may be moved. If they cannot be read, nothing moves until they
-    /// can, which is reported once.
+    /// Reads the limit parameters if they are due while drives may be moved. If reading fails, nothing moves until it
+    /// succeeds, and the failure is reported once.
     pub(super) fn refresh_rules(&mut self, context: &mut SessionContext) {
         let Some(identity) = self.control.controlled_device() else { return };
         if self.control.rules_refresh.rests.is_some_and(|until| context.clock.now() < until) {
             return;
         }
-        let moved = self.control.motion().wanted_drive();
+        let moved = self.control.motion().requested_drive();
         for drive in [Some(self.watched), Some(moved).filter(|moved| *moved != self.watched)].into_iter().flatten() {
             if identity.drive(drive).is_none() {
                 continue;
@@ -103,7 +103,7 @@ impl Hiperdrive {
         }
     }
 
-    /// Reads the limits of a drive before anything else, because it has been selected.
+    /// Reads the limits of a newly selected drive before anything else.
     pub(super) fn restart_refresh(&mut self, context: &mut SessionContext, drive: DriveNumber) {
         self.control.motion().doubt_limits(drive);
         self.refresh_rules(context);
@@ -112,7 +112,7 @@ impl Hiperdrive {
     /// Reads the limits of all drives. Cancellation is ignored, since the new state must be known after a change.
     ///
     /// # Errors
-    /// Errors of the exchange.
+    /// Returns errors of the exchange.
     pub(super) fn read_rules(&mut self, context: &mut SessionContext, identity: &Identity) -> Result<(), Error> {
         for drive in &identity.drives {
             let began = context.clock.now();

@@ -20,24 +20,24 @@ use crate::units::{CharacterFormat, Moment};
 
 /// Maximum interval between requests while a drive moves.
 pub(super) const REQUEST: Duration = Duration::from_millis(60);
-/// How long a device may leave a request unanswered while a drive moves.
+/// Maximum time for which a device may leave a request unanswered while a drive moves.
 const PATIENCE: Duration = Duration::from_millis(130);
-/// Additional time without listening after which a request counts as unanswered.
+/// Additional time after which a request counts as unanswered even if the line was not checked.
 const UNHEARD: Duration = Duration::from_millis(250);
-/// Interval of listening while a reply is awaited.
+/// Interval between checks of the line while a reply is awaited.
 const LOOK: Duration = Duration::from_millis(10);
-/// Maximum time allowed to a device, however slow it was before.
+/// Maximum time allowed to a device for a reply, however slow it was before.
 const MOST_PATIENCE: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct SessionWatch {
-    /// When the oldest unanswered request was sent.
+    /// Time at which the oldest unanswered request was sent.
     requested: Option<Moment>,
     /// Time at which the line was last checked and nothing had arrived.
     looked: Moment,
-    /// Slowest reply time, fading with each faster reply.
+    /// Slowest recent reply time; each faster reply lowers it.
     slowest: Duration,
-    /// Whether the last bytes were not a frame.
+    /// Whether the last bytes received did not form a frame.
     broken: bool,
 }
 
@@ -56,7 +56,7 @@ impl SessionWatch {
         }
     }
 
-    /// Notes that nothing has arrived until now.
+    /// Records that nothing has arrived by the given time.
     pub(super) const fn look(&mut self, now: Moment) {
         self.looked = now;
     }
@@ -65,8 +65,7 @@ impl SessionWatch {
         self.broken = true;
     }
 
-    /// Returns whether the device has not replied for too long to move anything, or has sent bytes that are not a
-    /// frame.
+    /// Returns whether the device has been silent for too long to allow motion, or has sent bytes that are not a frame.
     pub(super) fn is_silent(&self, now: Moment) -> bool {
         let patience = (self.slowest * 2).clamp(PATIENCE, MOST_PATIENCE);
         let is_late = |asked| self.looked.since(asked) > patience || now.since(asked) > patience + UNHEARD;
@@ -147,7 +146,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// Issue 21.13: 130 ms of listening without a reply are too long, counted from the first unanswered request.
+    /// Issue 21.13: 130 ms without a reply are too long, counted from the first unanswered request.
     #[test]
     fn silence_counts_from_the_first_unanswered_request() {
         let mut watch = SessionWatch::default();
@@ -166,7 +165,7 @@ mod tests {
         assert!(!watch.is_silent(at(1001)));
     }
 
-    /// Line that yields only the bytes put into it.
+    /// A line that yields only the bytes put into it.
     #[derive(Default)]
     struct Line(Vec<u8>);
 
@@ -189,8 +188,8 @@ mod tests {
         }
     }
 
-    /// Issue 21.13: an unanswered request locks motion, and so do bytes that are not a frame; a reply unlocks it. The reply
-    /// is the reference's to RegisterSession (9), which arrives in two parts.
+    /// Issue 21.13: an unanswered request or bytes that are not a frame lock motion, and a reply unlocks it. The reply
+    /// is the one to RegisterSession in the reference (9), received in two parts.
     #[test]
     fn a_silent_session_locks_motion() {
         let mut reply = vec![0x65, 0, 4, 0, 0x78, 0x56, 0x34, 0x12];
@@ -199,7 +198,7 @@ mod tests {
         let clock = Arc::new(VirtualClock::default());
         let motion = Motion::new(clock.clone());
         let locked = || {
-            let locks = motion.with_wanted(|_, permit| permit(DriveNumber::FIRST).locks);
+            let locks = motion.with_intent(|_, permit| permit(DriveNumber::FIRST).locks);
             assert_eq!(motion.permitted(DriveNumber::FIRST).locks, locks, "the window shows what the dead-man asks");
             locks.contains(&Lock::NoAnswer)
         };
@@ -226,7 +225,7 @@ mod tests {
         assert!(!locked());
     }
 
-    /// A device that takes 300 ms for each reply is allowed 600, and less again when it has become faster.
+    /// A device that takes 300 ms for each reply is allowed 600 ms, and less again after it has become faster.
     #[test]
     fn a_slow_device_gets_a_longer_timeout() {
         let mut watch = SessionWatch::default();

@@ -26,13 +26,13 @@ pub enum CheckStep {
     Supply,
     Temperature,
     Address,
-    /// Parameter 47: whether the memory is intact and no save is in progress.
+    /// Memory state according to parameter 47: intact, with no save in progress.
     Memory,
     Drives,
     Request(DriveNumber),
     /// RS-485 to a drive.
     Line(DriveNumber),
-    /// RS-485 time-out, which stops a drive without communication.
+    /// RS-485 time-out of a drive, which stops a drive without communication.
     Timeout(DriveNumber),
     /// State and errors of a drive.
     Errors(DriveNumber),
@@ -64,12 +64,12 @@ impl fmt::Display for CheckStep {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
-    /// Number of readings of a value, and the longest reply time.
+    /// Number of times a value was read, and the longest reply time.
     Replies {
         requested: u32,
         /// The longest, in milliseconds.
         slowest_ms: u64,
-        /// Number of frames that arrived after their time limit.
+        /// Number of frames received after their time limit.
         late: u64,
     },
     Category(String),
@@ -81,11 +81,11 @@ pub enum CheckFinding {
     Temperature(i64),
     Switch(AddressSwitch),
     UnknownSwitch(i64),
-    /// Source of the address with the switches at 0.
+    /// Source of the address when the switches are at 0.
     Source(AddressSource),
     /// The memory is intact and no save is in progress.
     Saved,
-    /// Parameter 47 is not 0: the memory is faulty, or the device is busy.
+    /// Parameter 47 is not 0, because the memory is faulty or the device is busy.
     NotSaved(i64),
     Drive {
         number: DriveNumber,
@@ -97,28 +97,28 @@ pub enum CheckFinding {
     Requested,
     /// Parameter 152 is 0.
     NotRequested,
-    /// Switch S3 of a hub must be at 0 for drives to move; its position cannot be read.
+    /// Switch S3 of a hub must be at 0 for drives to move. The program cannot read its position.
     LookAtS3,
     /// Parameter 118 is 0.
     LineGood,
-    /// Parameter 118: FFFFh if there is no drive, or an error.
+    /// Parameter 118, which is FFFFh if there is no drive, or an error.
     LineWord(u16),
-    /// Parameter 186 in tenths of a second.
+    /// Parameter 186, in tenths of a second.
     Timeout(i64),
-    /// Parameter 186 is not a time: a drive without communication continues to move.
+    /// Parameter 186 is not a time, so a drive without communication continues to move.
     NoTimeout,
     State(State),
-    /// The status word is implausible: process data may use the other byte order.
+    /// The status word is implausible. The process data may use the other byte order.
     StrayStatus(u16),
     /// Parameter 116 is not 0.
     DriveWord(u16),
     /// Parameter 117 is not 0.
     MotionWord(u16),
-    /// An error in the error buffer of the drive.
+    /// The error buffer of the drive contains an error.
     Error(ErrorCode),
     /// Number of faults since the last acknowledgement.
     Faults(u8),
-    /// Numerator and denominator of the position scale, and the limits.
+    /// Numerator and denominator of the position scale, with the limits.
     Range {
         /// Parameter 154.
         numerator: i64,
@@ -129,21 +129,21 @@ pub enum CheckFinding {
         /// Parameter 160.
         upper: i64,
     },
-    /// Numerator and denominator do not form a scale.
+    /// Numerator and denominator do not form a valid scale.
     BadScale {
         /// Parameter 154.
         numerator: i64,
         /// Parameter 156.
         denominator: i64,
     },
-    /// The upper limit does not exceed the lower limit.
+    /// The upper limit is not greater than the lower limit.
     LimitsCrossed {
         /// Parameter 158.
         lower: i64,
         /// Parameter 160.
         upper: i64,
     },
-    /// A limit is farther from 0 than the drive's travel.
+    /// A limit is farther from 0 than the travel of the drive.
     BeyondTravel {
         /// Parameter 158 or 160.
         limit: i64,
@@ -160,18 +160,17 @@ pub enum CheckFinding {
     },
 }
 
-/// Number of readings for measuring the reply time.
+/// Number of readings from which the reply time is measured.
 const LOOKS: u32 = 20;
-/// Supply voltage in tenths of a volt: 24 V, 15 % less or 20 % more (`U`).
+/// Allowed supply voltage in tenths of a volt, which is 24 V, 15 % less or 20 % more (`U`).
 const SUPPLIES: std::ops::RangeInclusive<i64> = 204..=288;
-/// Temperature in degrees Celsius that a device or a drive tolerates (`U`: the manual contradicts itself, reference
-/// 8.9).
+/// Allowed temperature of a device or a drive, in degrees Celsius (`U`: the manual contradicts itself, reference 8.9).
 const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
 
 /// Runs the check, which ends early only if the device fails.
 ///
 /// # Errors
-/// [`Error::NotHiperdrive`]; errors of the exchange.
+/// Returns [`Error::NotHiperdrive`], or errors of the exchange.
 pub fn check(
     master: &mut Master<'_>,
     progress: &mut dyn FnMut(u64, u64, CheckStep),

@@ -39,20 +39,20 @@ use crate::units::Moment;
 pub struct DeadMan {
     drive: DriveNumber,
     received: Option<(Moment, Actual)>,
-    /// Time of the first report.
+    /// Time of the first report from the drive.
     first: Option<Moment>,
     reports: u64,
     sent: Setpoint,
     stage: Stage,
     level: Goal,
     act: Option<Act>,
-    /// Acts up to this number no longer start.
+    /// Number of the last act that can no longer start.
     spent: u64,
     /// Effort of the last motion.
     effort: Effort,
-    /// Speed mode was entered, and the drive may remember the run: it must first go below operational.
+    /// Whether speed mode was entered, so that the drive may remember the run and must first go below operational.
     after_run: bool,
-    /// No reports at the moment: no motion starts.
+    /// Whether reports are missing at the moment, so that no motion may start.
     is_out_of_contact: bool,
     ended: Option<(u64, Ended)>,
 }
@@ -60,7 +60,7 @@ pub struct DeadMan {
 #[derive(Clone, Copy, Debug)]
 struct Act {
     number: u64,
-    /// The latest request of the act: pausing a job counts as one, too.
+    /// Latest request of the act. Pausing a job also counts as a request.
     request: MotionRequest,
     motion: Option<Motion>,
     watch: Option<Watch>,
@@ -72,23 +72,24 @@ struct Motion {
     kind: MotionKind,
 }
 
-/// Time for a drive to stop at a level of the ladder, before the next one.
+/// Time for a drive to stop at one level of the stop sequence before the next level is tried.
 pub const LEVEL_TIME: Duration = Duration::from_millis(200);
-/// Time for a drive to obey a word on the way to another state.
+/// Time for a drive to obey a control word on the way to another state.
 const STEP: Duration = Duration::from_secs(2);
 /// Time for a drive to begin a motion.
 const START: Duration = Duration::from_secs(1);
-/// Without a report for this time, nothing moves: more than three of the longest intervals.
+/// Time without a report after which nothing may move, more than three times the longest interval.
 const CONTACT_TIMEOUT: Duration = Duration::from_millis(350);
-/// How late a report may be behind what it reports, between a hub and its drives (`U`).
+/// Maximum delay of a report between a hub and its drives (`U`).
 pub const SETTLE: Duration = Duration::from_millis(100);
-/// How long positions have to arrive before they count as the drive's (`U`: a hub first queries all its drives).
+/// Time for which positions must have arrived before they count as those of the drive (`U`: a hub first queries all its
+/// drives).
 pub const ARRIVAL_TIME: Duration = Duration::from_millis(250);
-/// Time after which a drive at standstill counts as not having reached its target.
+/// Time at standstill after which a drive counts as not having reached its target.
 const SHORT: Duration = Duration::from_millis(500);
 
 impl DeadMan {
-    /// Creates the state at the opening of a connection. No act up to `spent` begins.
+    /// Creates the state for a newly opened connection. Acts numbered up to `spent` do not start.
     pub const fn new(drive: DriveNumber, spent: u64) -> Self {
         DeadMan {
             drive,
@@ -107,7 +108,8 @@ impl DeadMan {
         }
     }
 
-    /// Returns the setpoint to send now. `received` is the data since the last call; `None` if nothing arrived.
+    /// Returns the setpoint to send now; `received` is the data received since the last call, or `None` if nothing
+    /// arrived.
     pub fn next(&mut self, now: Moment, received: Option<Actual>, intent: &Intent, permit: &Permit) -> Setpoint {
         if let Some(actual) = received {
             self.receive(now, actual);
@@ -131,12 +133,12 @@ impl DeadMan {
         self.drive
     }
 
-    /// Returns the data received last; zero before the first.
+    /// Returns the data received last, or zeros before the first reception.
     pub fn actual(&self) -> Actual {
         self.received.map(|(_, actual)| actual).unwrap_or_default()
     }
 
-    /// Returns the time of the data received last; `None` before the first.
+    /// Returns the time at which data were last received, or `None` before the first reception.
     pub fn received_at(&self) -> Option<Moment> {
         self.received.map(|(at, _)| at)
     }
@@ -145,12 +147,12 @@ impl DeadMan {
         self.sent
     }
 
-    /// Returns the running act, or else the last one that ended; 0 for none.
+    /// Returns the number of the running act, or of the last act that ended; 0 if there has been none.
     pub fn act(&self) -> u64 {
         self.act.map_or(self.ended.map_or(0, |(number, _)| number), |act| act.number)
     }
 
-    /// Returns the last act that ended, and how.
+    /// Returns the number of the last act that ended, and how it ended.
     pub const fn ended(&self) -> Option<(u64, Ended)> {
         self.ended
     }
@@ -167,18 +169,18 @@ impl DeadMan {
         }
     }
 
-    /// Returns whether no rung of the ladder helped: the connection is to be closed, so that the drives' watchdog stops
-    /// them.
+    /// Returns whether every level of the stop sequence has failed. The connection must then be closed, so that the
+    /// watchdog of the drives stops them.
     pub const fn gives_up(&self) -> bool {
         matches!(self.stage, Stage::Stop { level: StopLevel::Close, .. })
     }
 
-    /// Returns whether no act is running and the drive need not be stopped.
+    /// Returns whether no act is running and the drive does not have to be stopped.
     pub const fn is_idle(&self) -> bool {
         matches!(self.stage, Stage::Rest { moves: None })
     }
 
-    /// Handles the end or loss of the connection: ends the running act, and stops the motion.
+    /// Handles the end or loss of the connection by ending the running act and stopping the motion.
     pub fn connection_lost(&mut self, now: Moment) {
         if self.stage.has_motion() {
             self.stop(now, Ended::Lost);
@@ -188,7 +190,7 @@ impl DeadMan {
         }
     }
 
-    /// Handles lost positions, for whatever reason: motion is stopped, and none begins.
+    /// Handles the loss of position reports, for whatever reason. Motion is stopped, and no motion may start.
     pub fn contact_lost(&mut self, now: Moment) {
         self.is_out_of_contact = true;
         if self.stage.has_motion() {
@@ -208,8 +210,8 @@ impl DeadMan {
         }
     }
 
-    /// Marks the request as spent if it is a rest or a stop, is for another drive, or was not refreshed in time: neither it
-    /// nor an earlier one starts any more.
+    /// Marks the request as spent if it is a rest or a stop, is for another drive, or was not refreshed in time:
+    /// neither it nor an earlier one starts any more.
     fn drop_void_state(&mut self, now: Moment, intent: &Intent) {
         let rests = matches!(intent.request, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);
@@ -229,7 +231,7 @@ impl DeadMan {
         }
     }
 
-    /// Starts a new act if there is one and the last one has ended.
+    /// Starts a new act if one is requested and the last act has ended.
     fn take(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
         self.drop_void_state(now, intent);
         // A step counts from the present position.
@@ -283,7 +285,8 @@ impl DeadMan {
         Ok(())
     }
 
-    /// Applies the last safeguard: replaces any word that could start a motion unless an act with a motion is running.
+    /// Applies the last safeguard, which replaces any control word that could start a motion unless an act with a
+    /// motion is running.
     fn run_guarded(&self, setpoint: Setpoint, actual: Actual) -> Setpoint {
         let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
         if is_commanded || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }
@@ -303,5 +306,5 @@ impl MotionKind {
     }
 }
 
-/// Setpoint before the first report of a drive: no control.
+/// Setpoint sent before the first report of a drive, which requests no control.
 const NONE: Setpoint = Setpoint { control: ControlWord::OFF, speed: Percent::NONE, torque: Percent::NONE, target: 0 };

@@ -16,17 +16,17 @@ pub struct DiscoveredDevice {
 }
 
 impl DiscoveredDevice {
-    /// Returns whether the device is by the manufacturer of HIPERDRIVE.
+    /// Returns whether the vendor of the device is the manufacturer of HIPERDRIVE.
     pub const fn is_hiperdrive(&self) -> bool {
         self.identity.identity.vendor == VENDOR
     }
 }
 
-/// Time for collecting replies. A device may delay its reply up to a requested limit, but none is requested.
+/// Time for collecting replies. A device may delay its reply up to a requested limit, but no delay is requested.
 const GATHER: Duration = Duration::from_secs(1);
 const SLICE: Duration = Duration::from_millis(50);
 
-/// Broadcasts a request and collects replies for a second; each device once, in the order of addresses.
+/// Broadcasts a request and collects replies for a second. Each device is returned once, in the order of addresses.
 ///
 /// # Errors
 /// Network errors; [`Error::Cancelled`].
@@ -49,7 +49,7 @@ pub fn discover(shout: &mut dyn Broadcast, clock: &dyn Clock, cancel: &Cancel) -
     Ok(found)
 }
 
-/// Parses a reply, or returns `None` if the packet is not one.
+/// Parses a discovery reply, or returns `None` if the packet is not a discovery reply.
 fn answer(packet: &[u8]) -> Option<IdentityItem> {
     let frame = Frame::parse(packet).ok().filter(|frame| frame.command == Command::LIST_IDENTITY)?;
     match frame.body().ok()? {

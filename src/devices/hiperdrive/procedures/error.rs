@@ -59,7 +59,7 @@ pub enum Damage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Late {
     pub took: Duration,
-    /// Time limit of a reply, excluding the margin of the line.
+    /// Time limit of a reply, excluding the margin for the line.
     pub waited: Duration,
 }
 
@@ -71,12 +71,12 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// Returns the row of the first extended status word, if there is one and it is known.
+    /// Returns the table row of the first extended status word, if the word is present and known.
     pub fn row(&self) -> Option<&'static ExtendedStatusRow> {
         extended_row(self.service, self.status, *self.extended.first()?)
     }
 
-    /// Returns the remedy for the extended status if known, or else for the status.
+    /// Returns the remedy for the extended status if it is known, and otherwise the remedy for the status.
     pub fn remedy(&self) -> Option<&'static str> {
         self.row().map(|row| row.remedy).or_else(|| self.status.row().map(|row| row.remedy))
     }
@@ -93,7 +93,7 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// A number whose length differs from its parameter's type. It is not displayed.
+/// A number whose length differs from the type of its parameter. The number is not displayed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("parameter {number} ({name}) has the wrong length (bytes received: {got}, expected: {expected})")]
 pub struct WrongLength {
@@ -116,7 +116,7 @@ pub enum Error {
     NoReply {
         requested: RequestedItem,
         tries: u32,
-        /// A reply that arrived too late, if any.
+        /// Reply that arrived too late, if any.
         late: Option<Late>,
     },
     #[error("{requested}: {cause} (attempts: {tries})")]
@@ -127,11 +127,10 @@ pub enum Error {
     Refused { requested: RequestedItem, refusal: Refusal },
     #[error("another master is connected: 0x{extended:04X}")]
     OtherMaster {
-        /// Extended status word: 0100h or 0106h.
+        /// Extended status word, either 0100h or 0106h.
         extended: u16,
     },
-    /// The interval that the device offers for sending or receiving is longer than requested, too long to stop a drive
-    /// in time.
+    /// The device offers a longer send or receive interval than requested, which is too long to stop a drive in time.
     #[error("the device answers every {got_ms} ms where every {asked_ms} ms was asked for")]
     TooSlow {
         /// Requested interval in milliseconds.
@@ -140,13 +139,13 @@ pub enum Error {
     },
     #[error("the cyclic connection is open")]
     InControl,
-    /// The link has no cyclic connection, such as a recording.
+    /// The link has no cyclic connection, as is the case for a recording.
     #[error("this link has no cyclic connection")]
     NoCyclic,
-    /// The manual has no parameter with this number.
+    /// The manual does not list a parameter with this number.
     #[error("there is no parameter {0}")]
     Unknown(ParameterNumber),
-    /// A number that no parameter has.
+    /// The number is not a valid parameter number.
     #[error("{0} is not a parameter number")]
     NoNumber(u16),
     #[error("there is no drive {}: {} has {}", drive.get(), topology.category(), topology.drives())]
@@ -156,25 +155,25 @@ pub enum Error {
     /// Parameter 152 is 0.
     #[error("drive {} is not requested: parameter 152 is 0", drive.get())]
     NotRequested { drive: DriveNumber },
-    /// Value out of range; nothing was sent.
+    /// The value is out of range; nothing was sent.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// Value refused by the device, with the present range.
+    /// The device refuses the value. The error contains the present range.
     #[error("{0}")]
     Refuses(OutOfRange),
     /// The length of a number differs from the type of its parameter.
     #[error(transparent)]
     Length(#[from] WrongLength),
-    /// The value does not match its parameter; nothing was sent.
+    /// The value does not match the type of its parameter; nothing was sent.
     #[error("parameter {number}: {cause}")]
     Value { number: ParameterNumber, cause: ValueError },
-    /// Read-only parameter; nothing was sent.
+    /// The parameter is read-only; nothing was sent.
     #[error("parameter {number} ({name}) can only be read")]
     ReadOnly { number: ParameterNumber, name: &'static str },
     /// Write-only parameter.
     #[error("parameter {number} ({name}) can only be written")]
     WriteOnly { number: ParameterNumber, name: &'static str },
-    /// The parameter moves the drive, which is allowed over the cyclic connection only; nothing was sent.
+    /// The parameter moves the drive and may be written only over the cyclic connection; nothing was sent.
     #[error("parameter {number} ({name}) is not written: drives move over the cyclic connection alone")]
     Motion { number: ParameterNumber, name: &'static str },
     #[error("drive {} moves", drive.get())]
@@ -182,16 +181,16 @@ pub enum Error {
     /// The identity is not that of a HIPERDRIVE.
     #[error("this is not a HIPERDRIVE: {product:?}")]
     NotHiperdrive {
-        /// Category, or the name in the identity object.
+        /// Category of the device, or the name in the identity object.
         product: String,
     },
-    /// A written value does not read back.
+    /// A written value is not the one read back.
     #[error("parameter {number} ({}) reads {reads} after {wanted} was written", named(*number))]
     NotTaken { number: ParameterNumber, wanted: i64, reads: i64 },
-    /// Network settings that were written do not read back.
+    /// Written network settings are not the ones read back.
     #[error("attribute {attribute} of the TCP/IP object does not read back as it was written")]
     NetworkNotTaken { attribute: u16 },
-    /// Parameter 47 does not become 0.
+    /// The device stays busy, because parameter 47 does not become 0.
     #[error("parameter 47 is still {reads} after {milliseconds} ms")]
     Busy { reads: i64, milliseconds: u64 },
     #[error("{item} has changed since the plan was made")]
@@ -221,7 +220,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the device is out of reach, so that further attempts are useless.
+    /// Returns whether the device cannot be reached, so that further attempts are useless.
     pub const fn is_lost(&self) -> bool {
         matches!(self, Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent)
     }
@@ -230,12 +229,13 @@ impl Error {
         matches!(self, Error::Cancelled)
     }
 
-    /// Returns whether the value is unavailable at present, or on this device; other parameters may be available.
+    /// Returns whether the value is unavailable at present or on this device, although other parameters may be
+    /// available.
     pub const fn is_unsaid(&self) -> bool {
         matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
     }
 
-    /// Returns the refusal if the device has replied but refuses the request.
+    /// Returns the refusal if the device has replied but refused the request.
     pub const fn refusal(&self) -> Option<&Refusal> {
         match self {
             Error::Refused { refusal, .. } => Some(refusal),

@@ -23,7 +23,7 @@ pub struct Identity {
     pub article_number: String,
     /// Parameter 17.
     pub serial_number: String,
-    /// Production date, parameter 18: week and year.
+    /// Production date (parameter 18), as week and year.
     pub production_date: String,
     /// Parameter 19.
     pub version: String,
@@ -43,7 +43,7 @@ pub struct DriveIdentity {
     pub serial_number: String,
     /// Parameter 125.
     pub version: String,
-    /// Whether the drive is requested, parameter 152.
+    /// Whether the drive is requested (parameter 152).
     pub requested: bool,
 }
 
@@ -53,16 +53,16 @@ pub struct Survey {
     pub network: Network,
     /// All parameters of the device and its drives, except those that the device refuses.
     pub values: BTreeMap<ParameterNumber, Value>,
-    /// Numbers whose length differs from the type of their parameter, which are missing in `values`.
+    /// Numbers whose length does not match the type of their parameter; they are missing in `values`.
     pub wrong_lengths: Vec<WrongLength>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     pub drives: Vec<DriveStatus>,
-    /// Control supply in tenths of a volt, parameter 9.
+    /// Control supply voltage in tenths of a volt, parameter 9.
     pub supply_tenths: i64,
-    /// Temperature of the device in degrees Celsius, parameter 11.
+    /// Device temperature in degrees Celsius, parameter 11.
     pub temperature: i64,
 }
 
@@ -71,19 +71,19 @@ pub struct DriveStatus {
     pub number: DriveNumber,
     /// Parameter 105.
     pub status: StatusWord,
-    /// Errors stored in parameters 108 to 115, newest first. After power-up they may be old (reference 4).
+    /// Errors stored in parameters 108 to 115, newest first. After power-up, they may be old (reference 4).
     pub buffer: Vec<ErrorCode>,
-    /// Parameters 116 to 118: drive, motion, communication. 0 means no error, FFFFh no drive.
+    /// Parameters 116 to 118: drive, motion, communication. 0 means no error, and FFFFh means no drive.
     pub words: [u16; 3],
     /// Number of faults since the last acknowledgement, parameter 197.
     pub faults: u8,
-    /// Temperature of the drive in degrees Celsius, parameter 119.
+    /// Drive temperature in degrees Celsius, parameter 119.
     pub temperature: i64,
     /// Whether the drive is requested, parameter 152.
     pub requested: bool,
 }
 
-/// Receives the next item, and how many of how many have been read.
+/// Callback that receives the number of parameters read, their total, and the next parameter.
 pub(super) type IdentifyProgress<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumber);
 
 struct Steps<'t> {
@@ -117,7 +117,7 @@ impl Identity {
         self.drives.iter().find(|drive| drive.number == number)
     }
 
-    /// Returns a drive named by the user.
+    /// Returns the identity of a drive selected by the user.
     ///
     /// # Errors
     /// [`Error::NoPlace`], [`Error::NoDrive`].
@@ -129,7 +129,7 @@ impl Identity {
     }
 }
 
-/// Reads the identity.
+/// Reads the identity of a device.
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; a refusal of the device; errors of the exchange.
@@ -164,7 +164,8 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
     Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
 }
 
-/// Reads a string of a drive; empty if the drive does not provide it, as one that is not requested may not (`U`).
+/// Reads a string of a drive, or an empty string if the drive does not provide it, as may be the case while the
+/// drive is not requested (`U`).
 pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
     match master.read_text(of(base, drive)?) {
         Err(error) if error.is_unsaid() => Ok(String::new()),
@@ -172,7 +173,7 @@ pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber)
     }
 }
 
-/// Reads the category, or the name of the device if it has no such parameter.
+/// Reads the category, or the device name if there is no such parameter.
 fn category(master: &mut Master<'_>) -> Result<String, Error> {
     match master.read_text(own(13)?) {
         Err(Error::Refused { .. }) => {
@@ -183,7 +184,7 @@ fn category(master: &mut Master<'_>) -> Result<String, Error> {
     }
 }
 
-/// Reads everything.
+/// Reads identity and status of a device.
 ///
 /// # Errors
 /// As [`identify`].
@@ -217,10 +218,10 @@ fn readable_parameters(identity: &Identity) -> impl Iterator<Item = ParameterNum
     device.chain(drives)
 }
 
-/// Number of parameters in the status of a drive.
+/// Number of parameters in a drive's status.
 const OF_STATUS: u64 = 15;
 
-/// Reads errors and states of all drives.
+/// Reads the errors and states of all drives.
 ///
 /// # Errors
 /// As [`identify`].
@@ -302,7 +303,7 @@ pub(super) fn own(number: u16) -> Result<ParameterNumber, Error> {
     ParameterNumber::new(number).ok_or(Error::NoNumber(number))
 }
 
-/// Returns the parameter number of a drive, given that of drive 1.
+/// Returns a drive's parameter number, given the corresponding number of drive 1.
 pub(super) fn of(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
     ParameterNumber::of_drive(base, drive).ok_or(Error::NoNumber(base))
 }

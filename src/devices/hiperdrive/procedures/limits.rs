@@ -16,13 +16,13 @@ use crate::units::Moment;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DriveLimits {
     rules: Rules,
-    /// Whether scale and limits have factory values, as far as the family of the drive is known.
+    /// Whether the scale and limits have factory values, as far as the drive family is known.
     is_factory: bool,
-    /// The scale has changed since the user confirmed the limits.
+    /// Whether the scale has changed since the user confirmed the limits.
     unconfirmed: bool,
-    /// Time at which each group of parameters was read, or `None` if not since a possible change.
+    /// Time at which each group of parameters was read, or `None` if they must be read because they may have changed.
     read: Option<[Moment; GROUPS]>,
-    /// Time of a doubt, after which all groups must be read before the next motion starts.
+    /// Time at which the readings were doubted; all groups must be read after it before the next motion starts.
     doubted: Option<Moment>,
 }
 
@@ -31,33 +31,33 @@ pub struct DriveLimits {
 pub struct LimitsSeen {
     /// Parameters 154 and 156.
     pub scale: (i64, i64),
-    /// Parameters 158 and 160, in steps as scaled.
+    /// Parameters 158 and 160, in scaled steps.
     pub limits: (i64, i64),
 }
 
-/// Validity of a reading of the limits: longer than a slow device may take to reply to all requests.
+/// Time for which a reading of the limits is valid, longer than a slow device may take to reply to all requests.
 const VALID: Duration = Duration::from_secs(4);
 
-/// Returns whether a drive with this parameter 186 stops when communication is lost. Values that the manual does not
-/// define do not qualify.
+/// Returns whether a drive with this value of parameter 186 stops when communication is lost. Values that the manual
+/// does not define do not qualify.
 pub(super) fn ends_by_itself(timeout: i64) -> bool {
     let row = ParameterNumber::new(TIMEOUT).and_then(ParameterNumber::row);
     timeout != NO_TIMEOUT && row.is_some_and(|row| row.range.holds(timeout))
 }
 
 impl DriveLimits {
-    /// Creates the limits of a drive with all parameters read at this moment.
+    /// Creates the limits of a drive whose parameters were all read at the given time.
     pub fn of(rules: Rules, (topology, variant): (Topology, Variant), at: Moment) -> Self {
         let mut limits = DriveLimits::default();
         limits.take(rules, (topology, variant), [at; GROUPS]);
         limits
     }
 
-    /// Adopts the parameters read; `times` contains the start of reading each group. If the scale has changed, the
-    /// limits must be confirmed, since they denote other positions. Parameters read before a doubt do not clear it.
+    /// Adopts parameter readings; `times` contains the start of reading each group. If the scale has changed, the
+    /// limits must be confirmed, since they denote other positions. Readings older than a doubt do not clear it.
     pub fn take(&mut self, rules: Rules, (topology, variant): (Topology, Variant), times: [Moment; GROUPS]) {
         self.unconfirmed |= self.rules.scale.is_some() && self.rules.scale != rules.scale;
-        self.is_factory = rules.are_factory(topology, variant);
+        self.is_factory = rules.has_factory_settings(topology, variant);
         self.rules = rules;
         self.read = Some(times);
         self.doubted = self.doubted.filter(|since| times.into_iter().any(|at| at < *since));
@@ -67,7 +67,7 @@ impl DriveLimits {
         self.rules
     }
 
-    /// Returns the time at which each group of parameters was read, or `None` if all are to be read at once.
+    /// Returns the time at which each group of parameters was read, or `None` if all must be read immediately.
     pub fn times(&self) -> Option<[Moment; GROUPS]> {
         self.read.filter(|_| self.doubted.is_none())
     }
@@ -79,14 +79,14 @@ impl DriveLimits {
         self.doubted = self.doubted.max(Some(now));
     }
 
-    /// Discards the parameters. Limits that must be confirmed remain unconfirmed.
+    /// Discards the parameter readings. Unconfirmed limits remain unconfirmed.
     pub fn forget(&mut self) {
         // The scale stays, so that a change can be detected.
         let rules = Rules { scale: self.rules.scale, ..Rules::default() };
         *self = DriveLimits { rules, unconfirmed: self.unconfirmed, ..DriveLimits::default() };
     }
 
-    /// Requires that the limits are confirmed before the drive moves.
+    /// Requires the limits to be confirmed before the drive moves.
     pub const fn unconfirm(&mut self) {
         self.unconfirmed = true;
     }
@@ -96,7 +96,7 @@ impl DriveLimits {
         self.unconfirmed
     }
 
-    /// Confirms the limits as shown to the user; returns `false` without effect if the limits have changed since.
+    /// Confirms the limits as shown to the user. If the limits have changed since, returns `false` without effect.
     pub fn confirm(&mut self, seen: LimitsSeen) -> bool {
         let counts = self.seen() == Some(seen);
         self.unconfirmed &= !counts;
@@ -121,8 +121,7 @@ impl DriveLimits {
         PositionScale::new(u16::try_from(numerator).ok()?, u16::try_from(denominator).ok()?).ok()
     }
 
-    /// Returns whether a motion may start on the basis of this reading: it is recent enough, and has not been doubted
-    /// since.
+    /// Returns whether a motion may start based on this reading, which must be recent and not doubted.
     pub fn is_valid(&self, now: Moment) -> bool {
         self.doubted.is_none() && self.is_fresh(now)
     }
@@ -136,7 +135,7 @@ impl DriveLimits {
         self.is_factory
     }
 
-    /// Returns why motion is locked, the weightiest reason first.
+    /// Returns the reasons why motion is locked, the most important first.
     pub fn locks(&self) -> Vec<Lock> {
         let Rules { requested, timeout, .. } = self.rules;
         // An invalid scale or range counts as not read.
@@ -152,7 +151,7 @@ impl DriveLimits {
         .collect()
     }
 
-    /// Returns the permit of the drive at this moment; `expert` tells whether the user has allowed an endless run.
+    /// Returns the permit of the drive at this moment; `expert` indicates whether the user has allowed an endless run.
     pub fn permit(&self, now: Moment, expert: bool) -> Permit {
         let mut locks = self.locks();
         locks.extend((!locks.contains(&Lock::Unread) && !self.is_fresh(now)).then_some(Lock::Outdated));
@@ -167,7 +166,7 @@ impl DriveLimits {
 }
 
 impl Rules {
-    fn are_factory(&self, topology: Topology, variant: Variant) -> bool {
+    fn has_factory_settings(&self, topology: Topology, variant: Variant) -> bool {
         let factory = |number| {
             let row = ParameterNumber::new(number).and_then(ParameterNumber::row)?;
             row.factory_value(topology, variant.row()?.family)
@@ -183,7 +182,7 @@ mod tests {
 
     const HDA30A: (Topology, Variant) = (Topology::Adapter, Variant::new(7));
 
-    /// Returns the factory values of an HDA30A: ±511 turns of 65536 steps (reference 5).
+    /// Returns the factory value of an HDA30A parameter: ±511 turns of 65536 steps (reference 5).
     fn factory(number: u16) -> Option<i64> {
         Some(match number {
             152 => 1,
@@ -238,8 +237,8 @@ mod tests {
         assert!(!other.allows_endless(), "its factory values are not known");
     }
 
-    /// Issue 21.3: an invalid scale, range or time-out counts as not read. Type and range are the manual's: 152 is 0 or 1,
-    /// 160 is above 158, 186 is 1 to 100, 255 for never (reference 4).
+    /// Issue 21.3: an invalid scale, range or time-out counts as not read. Types and ranges are those of the manual:
+    /// 152 is 0 or 1, 160 is above 158, 186 is 1 to 100, or 255 for never (reference 4).
     #[test]
     fn invalid_parameter_values_permit_no_motion() {
         type Case<'c> = (&'c [(u16, Option<i64>)], Lock);
@@ -262,7 +261,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.3: of two doubts the later one counts, in whichever order they arrive.
+    /// Issue 21.3: the later of two doubts counts, regardless of the order in which they arrive.
     #[test]
     fn an_earlier_doubt_does_not_replace_a_later_one() {
         let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
@@ -274,7 +273,7 @@ mod tests {
         assert!(limits.is_valid(at(100)));
     }
 
-    /// Issue 21.3: the time of reading belongs to the same value, and the dead-man checks it.
+    /// Issue 21.3: a reading carries its time, which the dead-man checks.
     #[test]
     fn a_reading_is_valid_for_four_seconds() {
         let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
@@ -296,7 +295,8 @@ mod tests {
         assert_eq!(limits.limits(), None);
     }
 
-    /// Issue 21.3: a confirmation is for the limits and the scale that were shown, and is void when the scale changes.
+    /// Issue 21.3: a confirmation applies to the limits and the scale that were shown, and is void when the scale
+    /// changes.
     #[test]
     fn limits_are_confirmed_as_they_were_shown() {
         let scaled = rules(&[(154, Some(400)), (156, Some(256)), (158, Some(-1000)), (160, Some(1000))]);

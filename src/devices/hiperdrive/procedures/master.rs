@@ -29,10 +29,10 @@ use crate::units::Moment;
 /// Pause after bytes that are not a frame; the next bytes start a new frame.
 const QUIET: Duration = Duration::from_millis(50);
 const SLICE: Duration = Duration::from_millis(50);
-/// Margin beyond the time that the manual states for a long operation.
+/// Margin added to the time that the manual states for a long operation.
 const SPARE: Duration = Duration::from_millis(500);
 
-/// Host side of the explicit messages of a device, for one job.
+/// Host side of a device's explicit messages, for one job.
 pub struct Master<'a> {
     line: SerialLine<'a>,
     station: &'a mut Station,
@@ -50,17 +50,17 @@ impl<D: Into<Damage>> From<D> for ExchangeError {
     }
 }
 
-/// Whether a request may be repeated blindly.
+/// Whether a request may be repeated without checking its effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Repeats {
     Always,
-    /// The request is sent once; its reply may take `takes` if that is longer than usual.
+    /// The request is sent once. The reply may take `takes` if that is longer than usual.
     Never {
         takes: Option<Duration>,
     },
 }
 
-/// For requests sent once, with the usual time limit.
+/// Setting for requests that are sent once, with the usual time limit.
 const ONCE: Repeats = Repeats::Never { takes: None };
 
 impl<'a> Master<'a> {
@@ -81,7 +81,7 @@ impl<'a> Master<'a> {
         self.station.known.topology = Some(topology);
     }
 
-    /// Waits; ends early when cancelled.
+    /// Waits, but returns early if cancelled.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -93,7 +93,7 @@ impl<'a> Master<'a> {
         Ok(self.line.check_cancel()?)
     }
 
-    /// Runs `work`, which leads to a safe state; cancellation is ignored meanwhile.
+    /// Runs `work`, which leads to a safe state, ignoring cancellation until it ends.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.shield(true);
         let result = work(self);
@@ -101,11 +101,11 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Reads a parameter. A number with the wrong length is an error.
+    /// Reads a parameter.
     ///
     /// # Errors
-    /// [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`], [`Error::Refused`],
-    /// [`Error::Length`]; errors of the exchange.
+    /// [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`], [`Error::Refused`];
+    /// [`Error::Length`] for a number of the wrong length; errors of the exchange.
     pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
         let row = number.row().ok_or(Error::Unknown(number))?;
         if row.access == Access::Write {
@@ -196,7 +196,8 @@ impl<'a> Master<'a> {
         Ok(self.request(requested, &Request::get(class, 1, attribute), Repeats::Always)?.data)
     }
 
-    /// Sets an attribute of the TCP/IP object, once. The device stores it before replying.
+    /// Sets an attribute of the TCP/IP object, sending the request once. The device stores the attribute before
+    /// replying.
     ///
     /// # Errors
     /// [`Error::Refused`]; errors of the exchange.
@@ -210,7 +211,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns how long to wait for the end of the operation that setting this value of a parameter starts.
+    /// Returns how long to wait for the operation that is started by setting a parameter to this value.
     pub(super) fn patience(&self, number: ParameterNumber, value: i64) -> Duration {
         let takes = number.row().and_then(|row| row.takes(value, self.station.known.topology));
         Repeats::Never { takes }.within(self.station.link.timeout)
@@ -220,7 +221,7 @@ impl<'a> Master<'a> {
         self.request_with(requested, request, &[], repeats).map(|(reply, _)| reply)
     }
 
-    /// Sends a request to an object, with additional items next to the message; also returns those next to the reply.
+    /// Sends a request to an object, with additional items beside the message. Also returns the items beside the reply.
     fn request_with(
         &mut self,
         requested: RequestedItem,
@@ -245,7 +246,7 @@ impl<'a> Master<'a> {
         Err(Error::Refused { requested, refusal: Refusal { service, status, extended } })
     }
 
-    /// Returns the session number; the first request on a connection opens the session.
+    /// Returns the session number. The first request on a connection opens the session.
     fn session(&mut self) -> Result<u32, Error> {
         if let Some(session) = self.station.session {
             return Ok(session);
@@ -257,7 +258,7 @@ impl<'a> Master<'a> {
         Ok(frame.session)
     }
 
-    /// Ends the session at the device, which does not reply.
+    /// Ends the session. The device does not reply.
     ///
     /// # Errors
     /// Errors of the exchange.
@@ -268,7 +269,7 @@ impl<'a> Master<'a> {
         Ok(self.line.send(&bytes, MaskedBytes::clear(&bytes), now)?)
     }
 
-    /// Sends a request, and repeats it if that is useful and harmless.
+    /// Sends a request, and repeats it if a repetition is useful and harmless.
     fn again<T>(
         &mut self,
         requested: RequestedItem,
@@ -393,7 +394,7 @@ fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), ExchangeErr
     }
 }
 
-/// Returns the row of a settable parameter; one that moves a drive is refused.
+/// Returns the table row of a settable parameter. A parameter that moves a drive is refused.
 fn writable_parameter(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     let row = number.row().ok_or(Error::Unknown(number))?;
     match (row.access, row.number) {
@@ -409,7 +410,7 @@ const fn triggers_action(row: &ParameterRow) -> bool {
 }
 
 impl Repeats {
-    /// Returns the time limit of a reply, excluding the margin of the line; `timeout` is the usual one.
+    /// Returns the time limit of a reply, excluding the line margin; `timeout` is the usual time limit.
     fn within(self, timeout: Duration) -> Duration {
         match self {
             Repeats::Never { takes: Some(takes) } => timeout.max(takes + SPARE),

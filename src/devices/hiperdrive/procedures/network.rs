@@ -7,19 +7,19 @@ use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfigu
 use crate::devices::hiperdrive::profile::NetworkSettings;
 use crate::devices::hiperdrive::protocol::AddressSwitch;
 
-/// IP address and its source. Values that the device refuses are missing.
+/// IP address and its source. Values that the device refuses to report are missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Network {
     /// Positions of S1 and S2 at power-up, parameter 12.
     pub switch: i64,
-    /// Attribute 3 of the TCP/IP object: source of the address with the switches at 0.
+    /// Attribute 3 of the TCP/IP object: source of the address when the switches are at 0.
     pub control: Option<ConfigurationControl>,
-    /// Attribute 5 of the TCP/IP object: address, mask, gateway, name servers, domain.
+    /// Attribute 5 of the TCP/IP object: address, mask, gateway, name servers and domain.
     pub interface: Option<InterfaceConfiguration>,
     pub mac: Option<[u8; 6]>,
 }
 
-/// Class and attribute of the network card's address.
+/// Class and attribute of the network card's MAC address.
 const MAC: (u16, u16) = (0xF6, 3);
 
 impl Network {
@@ -29,7 +29,7 @@ impl Network {
     }
 }
 
-/// Reads switches and TCP/IP object.
+/// Reads the switches and the TCP/IP object.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -44,7 +44,7 @@ pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
     Ok(Network { switch, control, interface, mac })
 }
 
-/// Returns the settings that a plan can change.
+/// Returns the network settings that a plan can change.
 ///
 /// # Errors
 /// [`Error::Refused`] if the device has no such settings; errors of the exchange.

@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
     DENOMINATOR, LOWER, NUMERATOR, REFERENCE, REQUESTED, TIMEOUT, UPPER,
 };
 
-/// Parameters that limit the motion of a drive; `None` for those not read.
+/// Parameters that limit the motion of a drive. Parameters that were not read are `None`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rules {
     /// Parameter 152.
@@ -18,12 +18,12 @@ pub struct Rules {
     pub limits: Option<(i64, i64)>,
     /// Parameter 186.
     pub timeout: Option<i64>,
-    /// Parameter 198; another reference shifts every position.
+    /// Parameter 198. A change of the reference shifts every position.
     pub reference: Option<i64>,
 }
 
 impl Rules {
-    /// Creates the rules from parameters; `read` is called with their numbers for drive 1.
+    /// Creates the rules from parameters; `read` is called with the parameter numbers of drive 1.
     pub fn by(read: impl Fn(u16) -> Option<i64>) -> Self {
         Rules {
             requested: read(REQUESTED),
@@ -51,7 +51,7 @@ pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, 
     Ok(Rules::by(|wanted| values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)))
 }
 
-/// Number of groups in which the limits of a drive are read again; related parameters are read together.
+/// Number of groups in which a drive's limit parameters are read again. Related parameters are read together.
 pub const GROUPS: usize = 4;
 
 /// Reads one group of a drive's limit parameters again.

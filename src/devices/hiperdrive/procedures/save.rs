@@ -42,7 +42,7 @@ impl Identity {
     }
 }
 
-/// Reads everything that can be restored. Parameters that the device refuses are left out.
+/// Reads everything that can be restored. Parameters that the device refuses to report are left out.
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; errors of the exchange.
@@ -52,8 +52,8 @@ pub fn save(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<H
     Ok(HiperdriveProfile::of(identity.profile(), image))
 }
 
-/// Reads everything that a plan requires: all stored values, the given additional parameters, and the positions of the
-/// drives.
+/// Reads everything that a plan requires: all stored values, the given additional parameters, and the drive
+/// positions.
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; errors of the exchange.

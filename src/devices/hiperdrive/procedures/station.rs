@@ -21,36 +21,35 @@ parameters! {
         pub interval: Duration = Duration::from_millis(10), "rpi" => Milliseconds(5..=100), "connect.interval";
         /// Byte order of process data.
         pub order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
-        /// Port of cyclic data, unless the device reports another.
+        /// UDP port of cyclic data, unless the device reports another.
         pub udp: Option<u16> = None, "udp" => Maybe(Whole(Quantity::Port, 1..=u16::MAX)), "connect.udp_port" like "2222";
-        /// Time limit of a reply, excluding the margin of the line.
+        /// Time limit of a reply, excluding the line margin.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=LONGEST_TIMEOUT), "connect.reply_time";
     }
 }
 
-/// The longest time-out in milliseconds.
+/// Longest time-out in milliseconds.
 const LONGEST_TIMEOUT: u64 = 2000;
 
 #[derive(Clone, Debug)]
 pub struct Station {
     pub link: LinkParameters,
-    /// Port of cyclic data, unless the device reports another.
+    /// UDP port of cyclic data, unless the device reports another.
     pub udp: u16,
-    /// Whether a recording replies, whose replies contain the recorded request numbers.
+    /// Whether the replies come from a recording and therefore contain the recorded request numbers.
     pub recorded: bool,
     pub(super) line: LineState,
     pub(super) session: Option<u32>,
     pub(super) next: u64,
-    /// Numbers of the last unanswered requests, the times at which they were sent, and whether the device itself takes
-    /// long.
+    /// Last unanswered requests: the number, the time of sending, and whether the operation takes the device long.
     open: VecDeque<(u64, Moment, bool)>,
-    /// Reply times including late ones, except those of operations that take the device long.
+    /// Reply times including late replies, but excluding operations that take the device long.
     pub(super) replies: Replies,
     /// Received bytes that do not yet form a complete frame.
     pub(super) receiver: Receiver,
     /// Number of frames that arrived after their time limit.
     pub(super) late: u64,
-    /// Identification of the originator of connections, different for each session.
+    /// Originator ID for connections, different for each session.
     pub(super) originator: u32,
     pub(super) connections: u16,
     pub(super) known: KnownState,
@@ -63,8 +62,8 @@ pub(super) struct KnownState {
 
 impl Station {
     pub const LONGEST_TIMEOUT: Duration = Duration::from_millis(LONGEST_TIMEOUT);
-    /// Number of unanswered requests whose late replies are recognised, which is more than are sent before the
-    /// connection is abandoned.
+    /// Number of unanswered requests whose late replies are recognised. More than are sent before the connection is
+    /// abandoned.
     const OPEN: usize = 8;
 
     pub fn new(margin: Duration) -> Self {
@@ -87,8 +86,8 @@ impl Station {
         }
     }
 
-    /// Creates the station from the parameters of its link; `tcp` is the port of its explicit messages. Parameters that
-    /// do not concern the connection are ignored.
+    /// Creates the station from link parameters; `tcp` is the port for explicit messages. Parameters that do not
+    /// concern the connection are ignored.
     ///
     /// # Errors
     /// A value is invalid; the error lists the allowed ones.
@@ -99,7 +98,7 @@ impl Station {
         Ok(Station { link, udp: link.udp.unwrap_or(beside), ..Station::new(margin) })
     }
 
-    /// Returns the topology, or `None` before it was read.
+    /// Returns the topology, or `None` if it has not been read yet.
     pub const fn topology(&self) -> Option<Topology> {
         self.known.topology
     }
@@ -112,7 +111,7 @@ impl Station {
         self.replies.clone()
     }
 
-    /// Records that a request is being sent; returns its number.
+    /// Records that a request is being sent, and returns its number.
     pub(super) fn begin(&mut self, at: Moment, takes_long: bool) -> u64 {
         let number = self.next;
         self.next = number.wrapping_add(1);
@@ -121,7 +120,7 @@ impl Station {
         number
     }
 
-    /// Records a frame with the number of a request to which it is the reply, in time or not.
+    /// Records a reply, whether in time or late, to the request with the given number.
     pub(super) fn note_reply(&mut self, number: u64, at: Moment) {
         if let Some(place) = self.open.iter().position(|(own, ..)| *own == number)
             && let Some((_, sent, false)) = self.open.remove(place)

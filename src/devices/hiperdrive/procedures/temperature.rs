@@ -28,7 +28,7 @@ pub enum Sample {
 }
 
 impl Temperature {
-    /// Returns the parameter of the temperature.
+    /// Returns the number of the temperature parameter.
     ///
     /// # Errors
     /// [`Error::NoNumber`].
@@ -40,7 +40,7 @@ impl Temperature {
     }
 }
 
-/// Reads a temperature with a single explicit message, for which the cyclic connection does not wait. A device that
+/// Reads a temperature with a single explicit message, which does not delay the cyclic connection. A device that
 /// refuses the request does not provide the temperature.
 ///
 /// # Errors

@@ -18,12 +18,12 @@ use crate::devices::hiperdrive::protocol::{
 };
 use crate::profile::{Confirmed, Write};
 
-/// Write that ended early. Without a save, the values written until then may be lost at power-off.
+/// A write that ended early. Values written before that may be lost at power-off unless they are saved.
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, ()>;
 
 impl Interrupted {
-    /// Returns the change of the operation if it is unknown how far it got, or `None` if it did not start, as after
-    /// cancellation by the user.
+    /// Returns the change made by the operation if it is unknown how far it got, or `None` if the operation did not
+    /// start, for example after cancellation by the user.
     pub fn unclear(&self) -> Option<String> {
         self.unfinished.as_ref().filter(|_| !self.cause.is_cancelled()).map(Op::item)
     }
@@ -31,7 +31,7 @@ impl Interrupted {
 
 /// Interval between two reads of parameter 47.
 const LOOK: Duration = Duration::from_millis(50);
-/// Wait before the first read after an operation with a reset, which may not have started yet.
+/// Wait before the first read after an operation that includes a reset, which may not have started yet.
 const BEGINS: Duration = Duration::from_millis(100);
 
 pub struct DeviceWrite<'w, 'm> {
@@ -46,7 +46,7 @@ impl Write for DeviceWrite<'_, '_> {
     type Written = Written;
     type EndState = ();
 
-    /// Checks that the drives are the same and none of them moves.
+    /// Checks that the drives are unchanged and none of them is moving.
     fn confirm(&mut self, plan: &HiperdrivePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let changed = |item: String| Err(Error::Changed { item });
@@ -107,8 +107,8 @@ fn affected_drives(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumbe
     drives
 }
 
-/// Returns whether scale or limits of a drive are only partly written before this operation: under another scale the
-/// same limits denote other positions, so a write must not end in between.
+/// Returns whether the scale or limits of a drive are only partly written before this operation. A write must not stop
+/// there, since the same limits denote other positions under another scale.
 fn is_within_a_place(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. } if matches!(number.base(), NUMERATOR | DENOMINATOR | LOWER | UPPER) => number.drive(),
@@ -134,7 +134,7 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
     Ok(())
 }
 
-/// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference 4), and then becomes the
+/// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference 4) and then becomes the
 /// position.
 fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
     master.set(number, wanted)?;
@@ -195,18 +195,18 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
     }
 }
 
-/// How to clear the fault of a drive (reference 4).
+/// Method of clearing a drive's fault (reference 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
     /// The drive has no fault.
     Nothing,
-    /// 197 = 0, which only clears an RS-485 fault.
+    /// Setting parameter 197 to 0, which only clears an RS-485 fault.
     Acknowledgement,
-    /// All drives are reset first.
+    /// A reset of all drives before the acknowledgement.
     Reset,
 }
 
-/// Determines how to clear the fault of a drive.
+/// Determines how to clear a drive's fault.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -223,7 +223,7 @@ pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<Remedy, Err
     })
 }
 
-/// Clears the fault of a drive with 197 = 0. A reset required before is a separate operation.
+/// Clears a drive's fault with 197 = 0. If a reset is required first, it is a separate operation.
 fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
     let number = of(ACKNOWLEDGE, drive)?;
     master.set(number, 0)?;
@@ -233,8 +233,8 @@ fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error>
     }
 }
 
-/// Writes the source of the address, then the addresses, since setting the source to *stored* stores the present
-/// address (reference 1).
+/// Writes the address source, then the addresses, since setting the source to *stored* stores the present address
+/// (reference 1).
 fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
     if from.source != to.source {
         let attribute = ConfigurationControl::ATTRIBUTE;

@@ -13,17 +13,18 @@ use crate::devices::hiperdrive::protocol::{
     Access, DriveNumber, ParameterNumber, PositionScale, Travel, nearest_reference,
 };
 
-/// Positions of drives, in scaled steps (107).
+/// Positions of the drives, in scaled steps (107).
 pub type Positions = BTreeMap<DriveNumber, i32>;
 
 /// Plans the changes that give a device the wanted values. Only differences are written, and saved where possible;
-/// values that the wanted image lacks are left unchanged. `device` must contain all values of the wanted image and, for
-/// each drive whose scale or limits change, all four of them (154 to 160). The position is checked if known, the travel
-/// if the variant is known.
+/// values missing from the wanted image are left unchanged. `device` must contain all values of the wanted image and,
+/// for each drive whose scale or limits change, all four of them (154 to 160). The position is checked if it is known,
+/// and the travel if the variant is known.
 ///
 /// A drive is requested before anything else is written, because requesting resets it, and its request is removed last.
-/// In between, drive by drive: the position scale, the speed scale and the maximum speed, then the limits in an order
-/// that the drive accepts at its present position, then all other values. The position in a new scale is calculated.
+/// In between, the values are written drive by drive: the position scale, the speed scale and the maximum speed, then
+/// the limits in an order that the drive accepts at its present position, then all other values. The position in a new
+/// scale is calculated.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -62,8 +63,8 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
 }
 
-/// Plans to set the present position to a value, rounded to 64 steps, and to save it. 198 is written even if the value
-/// is unchanged, since writing it sets the position.
+/// Plans to set the present position to a value, rounded to 64 steps, and to save it. Parameter 198 is written even if
+/// its value is unchanged, since writing it sets the position.
 ///
 /// # Errors
 /// The rounded position is outside the limits or beyond the travel of the drive, or the drive is missing.
@@ -91,7 +92,7 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
 }
 
-/// Plans a service. Its base is everything that the device stores, since the old values cannot be determined
+/// Plans a service. The plan is based on everything that the device stores, since the old values cannot be determined
 /// afterwards; the base of an acknowledgement is empty.
 pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     let values = match service {
@@ -101,7 +102,7 @@ pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     HiperdrivePlan { base: Base { values, network: None }, ops: vec![Op::Service(service)] }
 }
 
-/// Parameters that belong together: position scale and limits.
+/// Numbers of the parameters that must be consistent with each other: position scale and limits.
 const PLACE: [u16; 4] = [NUMERATOR, DENOMINATOR, LOWER, UPPER];
 
 #[derive(Clone, Copy)]
@@ -122,7 +123,7 @@ impl Write {
         Op::Write { number: self.number, old: Some(self.old), new: self.new }
     }
 
-    /// Returns the sort key; the lowest is written first.
+    /// Returns the sort key of a write. The lowest key is written first.
     fn rank(self, upper_first: bool) -> (u8, Option<DriveNumber>, u8, Reverse<bool>, u16) {
         let base = self.number.base();
         let turn = match (base, self.new) {
@@ -159,8 +160,8 @@ fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), Plan
     }
 }
 
-/// Checks that the limits of a drive are in order and include its position after all writes; returns the order of
-/// writing them.
+/// Checks that the limits of a drive are in order and include its position after all writes. Returns the order in which
+/// they must be written.
 fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Option<i32>) -> Result<Order, PlanError> {
     let missing = PLACE.into_iter().filter_map(|number| ParameterNumber::of_drive(number, drive));
     for number in missing {
@@ -189,8 +190,8 @@ fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Opti
     Ok(if too_low { Order::UpperFirst } else { Order::LowerFirst })
 }
 
-/// Returns the position of a drive in steps of another scale: 256 · numerator / denominator steps per turn, rounded
-/// down as by the drive.
+/// Returns the position of a drive in steps of another scale, which has 256 · numerator / denominator steps per turn.
+/// The result is rounded down, as by the drive.
 fn rescaled(position: i32, old: PositionScale, new: PositionScale) -> i64 {
     let times = i128::from(new.numerator()) * i128::from(old.denominator());
     let by = i128::from(new.denominator()) * i128::from(old.numerator());

@@ -3,7 +3,7 @@
 use super::item::{Item, ItemError};
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange};
 
-/// The reason why an entry of a profile is refused.
+/// Reason why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// The drive occurs twice.
@@ -12,7 +12,7 @@ pub enum EntryError {
     /// The parameter occurs twice.
     #[error("{0} appears twice")]
     Twice(Item),
-    /// The marked item is not a parameter.
+    /// The marked item is not a valid parameter.
     #[error(transparent)]
     Marked(#[from] ItemError),
     /// The marked item is not a setting.
@@ -32,7 +32,7 @@ pub enum EntryError {
     NoParameterOfDrive {
         /// The number as written in the profile.
         number: String,
-        /// The drive that the entry belongs to.
+        /// Drive that the entry belongs to.
         drive: DriveNumber,
     },
     /// The value is outside the range of the parameter.

@@ -4,11 +4,12 @@ use super::Item;
 use crate::buses::ethernet_ip::protocol::AddressError;
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, Topology, Variant};
 
-/// A difference of type between profile and device: of the adapter or hub (parameter 13), or of a drive (parameter
-/// 120), whose variant determines travel, speed and torque.
+/// A type difference between profile and device: the adapter or hub (parameter 13) or the variant of a drive (parameter
+/// 120), which determines travel, speed and torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OtherType {
-    /// Adapters, hubs with four ports and hubs with eight ports are three different types.
+    /// The profile is for another type of device: adapters, hubs with four ports and hubs with eight ports are three
+    /// types.
     #[error("the profile is of a {}, the device is a {}", profile.category(), device.category())]
     Device {
         /// Topology in the profile.
@@ -16,7 +17,7 @@ pub enum OtherType {
         /// Topology of the device.
         device: Topology,
     },
-    /// The drive in a port has another variant than in the profile.
+    /// The drive in a port has a different variant from the one in the profile.
     #[error(
         "drive {}: the profile is of variant {} ({}), the drive is of variant {} ({})",
         drive.get(),
@@ -35,7 +36,7 @@ pub enum OtherType {
     },
 }
 
-/// The reason why a change cannot be planned. Nothing has been written.
+/// Reason why a change cannot be planned. Nothing has been written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another adapter or hub.
@@ -46,7 +47,7 @@ pub enum PlanError {
         /// Serial number of the device.
         device: String,
     },
-    /// The profile was read with another drive in this port.
+    /// The profile was read with a different drive in this port.
     #[error("drive {}: the profile is of serial number {profile:?}, the drive has {device:?}", drive.get())]
     OtherDrive {
         /// Number of the drive.
@@ -68,25 +69,25 @@ pub enum PlanError {
         /// The item.
         item: Item,
     },
-    /// Parameters 101 to 104 move drives, which is allowed over the cyclic connection only.
+    /// Parameters 101 to 104 move drives and may be written only over the cyclic connection.
     #[error("parameter {item} ({}) moves the drive and is never written as a parameter", item.name())]
     Moves {
         /// The item.
         item: Item,
     },
-    /// Parameters 47 and 197 to 199 trigger actions, which are separate services.
+    /// Parameters 47 and 197 to 199 trigger actions, which are planned as services instead.
     #[error("parameter {item} ({}) does something and keeps nothing", item.name())]
     Acts {
         /// The item.
         item: Item,
     },
-    /// The present value is unknown: it has not been read, or its drive is missing.
+    /// The present value is unknown because it has not been read or its drive is missing.
     #[error("parameter {item} ({}) was not read before it is to be changed", item.name())]
     NotRead {
         /// The item.
         item: Item,
     },
-    /// The upper limit would not exceed the lower limit.
+    /// The upper limit would not be greater than the lower limit.
     #[error("drive {}: the lower limit {lower} is not below the upper limit {upper}", drive.get())]
     LimitsCrossed {
         /// Number of the drive.
@@ -101,14 +102,14 @@ pub enum PlanError {
     PositionOutside {
         /// Number of the drive.
         drive: DriveNumber,
-        /// Position in the new scale.
+        /// Position of the drive in the new scale.
         position: i64,
         /// Planned lower limit.
         lower: i64,
         /// Planned upper limit.
         upper: i64,
     },
-    /// The position in the new scale exceeds 32 bits.
+    /// The position in the new scale does not fit in 32 bits.
     #[error("drive {}: the actual position would be {position} steps, beyond −2147483648 to 2147483647", drive.get())]
     PositionTooLarge {
         /// Number of the drive.
@@ -126,17 +127,17 @@ pub enum PlanError {
         drive: DriveNumber,
         /// Requested position.
         position: i32,
-        /// Position rounded to 64 steps; may exceed 32 bits.
+        /// Position rounded to 64 steps, which may exceed 32 bits.
         becomes: i64,
         /// Present lower limit.
         lower: i64,
         /// Present upper limit.
         upper: i64,
     },
-    /// The device would be unreachable at these addresses.
+    /// The device would be unreachable with these addresses.
     #[error(transparent)]
     Address(#[from] AddressError),
-    /// The address source is unknown; it is preserved if found, but never set.
+    /// The address source is unknown. An existing value is preserved, but this value is never set.
     #[error("{0} is no source of addresses: they are 0 stored, 1 BOOTP and 2 DHCP")]
     Source(u8),
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, UPPER};
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, ParameterNumber, ParameterRow, PositionScale};
 
-/// Parameter values by their absolute numbers. For a device: all parameters of the device and its drives that are saved
-/// and writable. Values that were not read, are not in the profile, or belong to empty ports are missing.
+/// Parameter values by absolute number. The image of a device holds all saved and writable parameters of the device and
+/// its drives; values that were not read, are not in the profile, or belong to empty ports are missing.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Image {
     /// Values by parameter number.
@@ -14,7 +14,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Returns whether an image contains a parameter: it is saved and writable.
+    /// Returns whether an image contains a parameter, that is, whether the parameter is saved and writable.
     pub fn holds(row: &ParameterRow) -> bool {
         row.saved && row.access == Access::ReadWrite
     }
@@ -24,7 +24,7 @@ impl Image {
         self.values.get(&number).copied()
     }
 
-    /// Returns a parameter of a drive, given its number for drive 1.
+    /// Returns the value of a parameter of a drive, given the parameter number for drive 1.
     pub fn of_drive(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         self.get(ParameterNumber::of_drive(number, drive)?)
     }
@@ -37,18 +37,18 @@ impl Image {
         drives
     }
 
-    /// Returns the position scale of a drive (154, 156), or `None` if it is unknown or invalid.
+    /// Returns the position scale of a drive (154, 156), or `None` if the scale is unknown or invalid.
     pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
         let part = |number| self.of_drive(drive, number).and_then(|value| u16::try_from(value).ok());
         PositionScale::new(part(NUMERATOR)?, part(DENOMINATOR)?).ok()
     }
 
-    /// Returns the lower and upper limit of a drive (158, 160), in scaled steps.
+    /// Returns the lower and upper limits of a drive (158, 160), in scaled steps.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i64, i64)> {
         Some((self.of_drive(drive, LOWER)?, self.of_drive(drive, UPPER)?))
     }
 
-    /// Returns an image with the known values among the given parameters.
+    /// Returns the known values of the given parameters.
     pub fn of(&self, numbers: impl IntoIterator<Item = ParameterNumber>) -> BTreeMap<ParameterNumber, i64> {
         numbers.into_iter().filter_map(|number| Some((number, self.get(number)?))).collect()
     }

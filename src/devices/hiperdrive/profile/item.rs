@@ -9,16 +9,16 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Item(pub ParameterNumber);
 
-/// The reason why a string does not name a parameter.
+/// Reason why a string does not name a parameter.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
-    /// The string has none of the valid forms.
+    /// The string does not have the form of a parameter name.
     #[error("{0:?} is not a parameter: give a number such as 47 or 158, or for another drive \"158 drive 2\" or 258")]
     Unknown(String),
-    /// The manual has no parameter with this number.
+    /// The manual does not list a parameter with this number.
     #[error("parameter {0} does not exist")]
     NoParameter(u16),
-    /// The parameter does not belong to a drive, or the drive number is not 1 to 8.
+    /// The parameter does not belong to a drive, or the drive number is not in the range 1 to 8.
     #[error(
         "parameter {number} does not belong to drive {drive}: drives are 1 to 8, and parameters below 100 belong to the \
          device"
@@ -32,11 +32,11 @@ pub enum ItemError {
 }
 
 impl Item {
-    /// Returns the item for a parameter number and an optional drive; a number that already refers to another drive is
+    /// Returns the item for a parameter number and an optional drive. A number that already refers to another drive is
     /// kept.
     ///
     /// # Errors
-    /// [`ItemError`] if the parameter does not exist, or the drive does not have it.
+    /// Returns [`ItemError`] if the parameter does not exist, or if the drive does not have it.
     pub fn of(number: u16, drive: Option<u8>) -> Result<Self, ItemError> {
         let own = ParameterNumber::new(number).ok_or(ItemError::NoParameter(number))?;
         let own = match drive {
@@ -55,7 +55,7 @@ impl Item {
         own.row().map(|_| Item(own)).ok_or(ItemError::NoParameter(number))
     }
 
-    /// Returns the name in the parameter table; empty if the table has none.
+    /// Returns the name from the parameter table, or an empty string if the table has no name.
     pub fn name(self) -> &'static str {
         self.0.row().map_or("", |row| row.name)
     }
@@ -84,7 +84,7 @@ impl FromStr for Item {
 }
 
 impl Item {
-    /// Parses a parameter number: decimal, or hexadecimal with `0x`, without a sign.
+    /// Parses a parameter number without a sign, either decimal or hexadecimal with `0x`.
     pub fn number(text: &str) -> Option<u16> {
         let (digits, radix) = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
             Some(digits) => (digits, 16),

@@ -5,7 +5,7 @@ use super::{Base, HiperdrivePlan, Op, PlanError};
 use crate::buses::ethernet_ip::protocol::{AddressSource, InterfaceConfiguration};
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 
-/// Content of the TCP/IP object.
+/// Network settings in the TCP/IP object.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct NetworkSettings {
     /// Address source, attribute 3.
@@ -18,7 +18,7 @@ pub struct NetworkSettings {
 /// ignored. `switch` is parameter 12, if known.
 ///
 /// # Errors
-/// The device would be unreachable at the addresses, or the source is unknown.
+/// Fails if the device would be unreachable at the addresses, or if the source is unknown.
 pub fn plan_network(
     now: &NetworkSettings,
     switch: Option<i64>,

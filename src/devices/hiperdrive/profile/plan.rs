@@ -11,7 +11,7 @@ use crate::profile::{Operation, Plan};
 /// A planned write to an adapter or a hub.
 pub type HiperdrivePlan = Plan<Base, Op>;
 
-/// The values on which a plan is based: everything that its operations change or depend on. Drive positions are
+/// Values on which a plan is based, that is, everything that its operations change or depend on. Drive positions are
 /// excluded, since they change on their own.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
@@ -40,7 +40,7 @@ pub fn written(plan: &HiperdrivePlan) -> Image {
 /// A single operation of a plan.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Write a parameter and read it back.
+    /// Writes a parameter and reads it back.
     Write {
         /// Parameter to write.
         number: ParameterNumber,
@@ -51,7 +51,8 @@ pub enum Op {
     },
     /// Execute a service.
     Service(Service),
-    /// Write the TCP/IP object: attribute 3 before attribute 5, because setting 3 to 0 stores the present address.
+    /// Writes the TCP/IP object, attribute 3 before attribute 5, because setting attribute 3 to 0 stores the present
+    /// address.
     Network {
         /// Present settings.
         from: NetworkSettings,
@@ -60,25 +61,26 @@ pub enum Op {
     },
 }
 
-/// A service of a device (parameters 47 and 197, reference 4).
+/// A service of a device, requested through parameter 47 or 197 (reference 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
     /// 47 = 1: saves the present values of all saved parameters.
     Save,
-    /// 47 = −2: restores the own parameters of the adapter or hub as last saved; those of its drives stay.
+    /// 47 = −2: restores the last saved parameters of the adapter or hub itself; those of its drives stay unchanged.
     Recall,
-    /// 47 = −1: restores factory values of the own parameters of the adapter or hub, not saved; those of its drives stay.
+    /// 47 = −1: restores the factory values of the adapter or hub itself without saving them; those of its drives stay
+    /// unchanged.
     Factory,
-    /// 47 = −3: restores factory values of all parameters and DHCP, saved.
+    /// 47 = −3: restores and saves the factory values of all parameters, and DHCP.
     FactoryAll,
-    /// 47 = −4: presence test and reset of the drives.
+    /// 47 = −4: tests for the presence of the drives and resets them.
     Reset,
-    /// Clears the fault of a drive: 197 = 0 if that suffices, else 47 = −4 before it.
+    /// Clears the fault of a drive by writing 197 = 0, preceded by 47 = −4 if that alone does not suffice.
     Acknowledge(DriveNumber),
 }
 
 impl Service {
-    /// Returns the value of parameter 47, or `None` for an acknowledgement.
+    /// Returns the value of parameter 47 that requests the service, or `None` for an acknowledgement.
     pub const fn code(self) -> Option<i64> {
         match self {
             Service::Save => Some(1),
@@ -90,7 +92,7 @@ impl Service {
         }
     }
 
-    /// Returns the service for a value of parameter 47, or `None` if the value requests nothing.
+    /// Returns the service requested by a value of parameter 47, or `None` if the value requests nothing.
     pub const fn of_code(code: i64) -> Option<Self> {
         match code {
             1 => Some(Service::Save),
@@ -104,7 +106,7 @@ impl Service {
 }
 
 impl HiperdrivePlan {
-    /// Removes the final save. Written values are lost at power-off unless they are saved later.
+    /// Removes the final save from the plan. Written values are then lost at power-off unless they are saved later.
     pub fn without_save(mut self) -> Self {
         if self.ops.last() == Some(&Op::Service(Service::Save)) {
             self.ops.pop();
@@ -124,7 +126,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the name of the changed item, as accepted by `read` if the item is readable.
+    /// Returns the name of the changed item, in a form that `read` accepts if the item is readable.
     pub fn item(&self) -> String {
         match self {
             Op::Write { number, .. } => Item(*number).to_string(),
@@ -135,7 +137,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes, counted as in a comparison; a save counts as none.
+    /// Returns the number of changes, counted as in a comparison. A save does not count.
     pub const fn weight(&self) -> u64 {
         match self {
             Op::Write { .. } | Op::Network { .. } => 1,
@@ -143,8 +145,8 @@ impl Op {
         }
     }
 
-    /// Returns the changes, old and new, as one line for the logbook. The terms are those of the manual in every window
-    /// language.
+    /// Returns the old and new values of the changes as one line for the logbook. The terms are those of the manual,
+    /// whatever the window language.
     pub fn note(&self) -> String {
         match self {
             Op::Write { number, old: Some(old), new } => format!("{}: {old} → {new}", Item(*number)),

@@ -7,20 +7,20 @@ use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Family, Topology, Variant};
 use crate::profile::ron_text::Unknown;
 
-/// A profile of an adapter or a hub.
+/// Profile of an adapter or a hub.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HiperdriveProfile {
     /// Identity of the device.
     pub identity: ProfileIdentity,
-    /// Stored values. Parameters that are not in the profile are missing.
+    /// Stored parameter values. Parameters that are not in the profile are missing.
     pub image: Image,
-    /// Values that belong to the mounting and are never restored.
+    /// Marks of the values that belong to the mounting.
     pub mounting: Vec<MountingMark>,
     /// Unknown entries, preserved when the profile is saved.
     pub unknown: UnknownEntries,
 }
 
-/// Identity of an adapter or a hub; empty in a profile written by hand.
+/// Identity of an adapter or a hub, empty in a profile written by hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
     /// Topology, from parameter 13.
@@ -29,7 +29,7 @@ pub struct ProfileIdentity {
     pub name: String,
     /// Article number, parameter 16.
     pub article_number: String,
-    /// Serial number, parameter 17, in decimal; empty if the profile belongs to no particular device.
+    /// Serial number (parameter 17) in decimal, or empty if the profile belongs to no particular device.
     pub serial_number: String,
     /// Version, parameter 19.
     pub version: String,
@@ -42,15 +42,15 @@ pub struct ProfileIdentity {
 /// Identity of a drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileDrive {
-    /// Number of the drive, which is its port.
+    /// Number of the drive, which equals its port number.
     pub number: DriveNumber,
-    /// Variant, parameter 120, if known.
+    /// Variant of the drive (parameter 120), if known.
     pub variant: Option<Variant>,
     /// Name, parameter 121.
     pub name: String,
     /// Article number, parameter 122.
     pub article_number: String,
-    /// Serial number, parameter 123; empty if unknown.
+    /// Serial number of the drive (parameter 123), or empty if unknown.
     pub serial_number: String,
     /// Version, parameter 125.
     pub version: String,
@@ -58,15 +58,15 @@ pub struct ProfileDrive {
     pub unknown: Unknown,
 }
 
-/// A mark on a value that is valid for one drive on one machine only.
+/// Mark of a value that is valid for one drive on one machine only.
 pub type MountingMark = crate::profile::MountingMark<Item>;
 
-/// Unknown entries among the parameters of the device (`None`) and of its drives.
+/// Unknown entries among the parameters of the device (key `None`) and of its drives.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries(pub(super) BTreeMap<Option<DriveNumber>, Vec<(ron::Value, ron::Value)>>);
 
 impl HiperdriveProfile {
-    /// Creates a profile from a reading and marks the values of the mounting.
+    /// Creates a profile from the values read and marks those that belong to the mounting.
     pub fn of(identity: ProfileIdentity, image: Image) -> Self {
         let mut profile =
             HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: UnknownEntries::default() };
@@ -74,7 +74,7 @@ impl HiperdriveProfile {
         profile
     }
 
-    /// Marks all unmarked items that belong to the mounting: the reference of each drive (198).
+    /// Marks the items that belong to the mounting, namely the reference of each drive (198), unless already marked.
     pub fn mark_mounting(&mut self) {
         let references = self.image.values.keys().copied().filter(|number| number.base() == REFERENCE).map(Item);
         for item in references.collect::<Vec<_>>() {
@@ -85,7 +85,7 @@ impl HiperdriveProfile {
         }
     }
 
-    /// Returns whether an item belongs to the mounting: it is marked, or is the reference of a drive.
+    /// Returns whether an item belongs to the mounting, because it is marked or is the reference of a drive.
     pub fn is_mounting(&self, item: Item) -> bool {
         item.0.base() == REFERENCE || self.is_marked(item)
     }
@@ -118,7 +118,7 @@ impl ProfileDrive {
         self.variant?.row().map(|row| row.family)
     }
 
-    /// Creates an unknown identity for a port.
+    /// Creates the identity of an unknown drive in a port.
     pub fn at(number: DriveNumber) -> Self {
         ProfileDrive {
             number,

@@ -10,7 +10,7 @@ use super::{
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Travel};
 
-/// Present state of a device, as far as planning requires it.
+/// Present state of a device, to the extent that planning requires it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the device.
@@ -22,7 +22,7 @@ pub struct DeviceState {
 }
 
 impl DeviceState {
-    /// Returns the travel of a parameter's drive in the steps of an image.
+    /// Returns the travel of the drive of a parameter, in the steps defined by an image.
     pub(super) fn travel(&self, number: ParameterNumber, image: &Image) -> Travel {
         let Some(drive) = number.drive() else { return Travel::UNKNOWN };
         Travel { family: drive_at(&self.identity, drive).and_then(ProfileDrive::family), scale: image.scale(drive) }
@@ -33,7 +33,7 @@ impl DeviceState {
 pub type Restore = crate::profile::Restore<HiperdrivePlan, Item>;
 
 /// Plans a restore for the ports that profile and device have in common. On another device, mounting values are left
-/// out: items marked by the user and the reference of each drive (198), which is never written.
+/// out: items marked by the user, and the reference of each drive (198), which is never written.
 ///
 /// # Errors
 /// See [`PlanError`]; nothing has been written.
@@ -51,7 +51,7 @@ pub fn plan_restore(
         match device.image.get(number) {
             None => missing.push(item.to_string()),
             Some(from) if from == to => unchanged += 1,
-            Some(_) if stays(profile, &device.identity, item, options) => mounting_left.push(item),
+            Some(_) if is_kept_on_device(profile, &device.identity, item, options) => mounting_left.push(item),
             Some(_) => {
                 if is_from_different_mounting(profile, &device.identity, item) {
                     mounting_written.push(item);
@@ -64,7 +64,7 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
-/// Refuses an adapter, a hub or drives other than those of the profile, and other types. A profile without an identity
+/// Refuses an adapter, hub or drive that differs in type or identity from the profile. A profile without an identity
 /// fits any device; an empty port is accepted.
 ///
 /// # Errors
@@ -73,7 +73,7 @@ pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Re
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Returns the differences of type between a profile and a device: of the whole, then of each drive.
+/// Returns the type differences between a profile and a device, first for the device itself and then for each drive.
 pub fn other_types(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<OtherType> {
     let whole = profile.topology.zip(device.topology).filter(|(profile, device)| profile != device);
     let drives = profile.drives.iter().filter_map(|own| {
@@ -83,7 +83,7 @@ pub fn other_types(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<O
     whole.into_iter().map(|(profile, device)| OtherType::Device { profile, device }).chain(drives).collect()
 }
 
-/// Refuses a device other than that of the profile, unless the options allow it.
+/// Refuses a device other than the one in the profile, unless the options allow it.
 fn check_allowed(
     profile: &HiperdriveProfile,
     device: &ProfileIdentity,
@@ -109,7 +109,12 @@ fn check_allowed(
     Ok(())
 }
 
-fn stays(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item, options: RestoreOptions) -> bool {
+fn is_kept_on_device(
+    profile: &HiperdriveProfile,
+    device: &ProfileIdentity,
+    item: Item,
+    options: RestoreOptions,
+) -> bool {
     item.0.base() == REFERENCE || !options.with_mounting && is_from_different_mounting(profile, device, item)
 }
 
@@ -118,7 +123,7 @@ fn is_from_different_mounting(profile: &HiperdriveProfile, device: &ProfileIdent
     profile.is_mounting(item) && !is_same_place(profile, device, item)
 }
 
-/// Returns whether the profile was read from this device, and the parameter from this drive.
+/// Returns whether the profile was read from this device and the parameter from this drive.
 fn is_same_place(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     let types = other_types(&profile.identity, device);
     let is_other = |own: &OtherType| match own {

@@ -3,7 +3,7 @@
 use super::{HiperdriveProfile, Image, ProfileDrive, ProfileIdentity};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Variant};
 
-/// Factory values of a requested drive HDA30 (reference 4 and 5).
+/// Factory values of a requested drive of type HDA30 (reference 4 and 5).
 const DRIVE: [(u16, i64); 13] = [
     (152, 1),
     (154, 256),
@@ -61,7 +61,7 @@ pub(super) fn identity(serial_number: &str, drives: &[(u8, &str)]) -> ProfileIde
     }
 }
 
-/// Creates a hub 100 with drives 4711 and 4712 in ports 1 and 3.
+/// Creates the profile of hub 100 with drives 4711 and 4712 in ports 1 and 3.
 pub(super) fn profile() -> HiperdriveProfile {
     HiperdriveProfile::of(identity("100", &[(1, "4711"), (3, "4712")]), image(&[1, 3]))
 }

@@ -103,7 +103,7 @@ impl HiperdriveProfile {
         writer.close('}');
     }
 
-    /// Returns the name of a parameter as a comment; for a limit also the turns.
+    /// Returns the comment for a parameter: its name and, for a limit, the number of turns.
     fn comment(&self, number: ParameterNumber, value: i64) -> String {
         let Some(row) = number.row() else { return String::new() };
         let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
@@ -186,8 +186,8 @@ fn read_marked(text: &str) -> Result<Item, EntryError> {
     Ok(item)
 }
 
-/// Parses the parameters of the device, or of a drive by the numbers of drive 1. A number that does not belong there is
-/// an error; a name is an unknown entry, which is preserved.
+/// Parses the parameters of the device, or those of a drive by the numbers of drive 1. A number that does not belong
+/// there is an error; a name is preserved as an unknown entry.
 fn read_parameters(
     entries: &mut Entries,
     drive: Option<DriveNumber>,

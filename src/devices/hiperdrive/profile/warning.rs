@@ -7,26 +7,26 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 };
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
 
-/// A consequence of a plan.
+/// Consequence of a plan that the user should know.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
-    /// Under a different scale the same limits mean different positions (reference 3, *Scaling moves soft limits*),
-    /// given in turns before and after.
+    /// The same limits mean different positions, in turns, under a different scale (reference 3, *Scaling moves soft
+    /// limits*).
     LimitsMove {
         /// Number of the drive.
         drive: DriveNumber,
-        /// Present lower and upper limit.
+        /// Present lower and upper limits.
         now: (f64, f64),
-        /// Lower and upper limit after the plan.
+        /// Lower and upper limits after the plan.
         then: (f64, f64),
     },
-    /// The change takes effect at the next reset (47 = −4, or the supply).
+    /// The change takes effect at the next reset (47 = −4 or a supply cycle).
     AfterReset(Item),
-    /// The time-out is disabled (186 = 255), so this program does not move the drive.
+    /// The time-out is disabled (186 = 255), so this program will not move the drive.
     NoTimeout(DriveNumber),
-    /// The drive is no longer requested (152 = 0) and cannot be moved over the bus.
+    /// The drive will no longer be requested (152 = 0) and cannot be moved over the bus.
     NotRequested(DriveNumber),
-    /// The address switch takes precedence over the setting.
+    /// The address switch of the device takes precedence over the setting.
     SwitchDecides(AddressSwitch),
 }
 
@@ -49,7 +49,7 @@ pub fn warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
     warnings
 }
 
-/// Returns the warning if another scale moves the limits of a drive by more than a step.
+/// Returns a warning if a changed scale moves the limits of a drive by more than one step.
 fn moved(now: &Image, then: &Image, drive: DriveNumber) -> Option<Warning> {
     let (before, after) = (now.scale(drive)?, then.scale(drive)?);
     if before == after {

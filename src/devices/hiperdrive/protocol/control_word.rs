@@ -1,13 +1,13 @@
-//! The control word (STW, reference 3), built from the action a host requests. No word built here has a reserved bit or a
-//! jog bit set, because a stop might not end a jog step.
+//! The control word (STW, reference 3), built from the action a host requests. No word built here has a reserved bit or
+//! a jog bit set, because a stop might not end a jog step.
 
 use super::status_word::{StatusBit, StatusWord};
 
-/// Control word without reserved bits.
+/// A control word without reserved bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ControlWord(u16);
 
-/// Defined bit of the control word. Bits 1, 2, 11 and 13 to 15 must be 0.
+/// A defined bit of the control word. Bits 1, 2, 11 and 13 to 15 must be 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum ControlBit {
@@ -15,21 +15,22 @@ pub enum ControlBit {
     On = 0,
     /// Enables operation.
     Enable = 3,
-    /// Positioning: no stop. Speed mode: clockwise.
+    /// In positioning, no stop. In speed mode, clockwise rotation.
     NoStop = 4,
-    /// Positioning: no pause. Speed mode: endless, past the end of the range.
+    /// In positioning, no pause. In speed mode, an endless run past the end of the range.
     NoPause = 5,
-    /// Positioning: a job starts where this bit differs from status bit 12. Speed mode: the drive runs while it is set.
+    /// In positioning, a job starts when this bit differs from status bit 12. In speed mode, the drive runs while it is
+    /// set.
     Start = 6,
-    /// Acknowledges a fault on its falling edge.
+    /// Acknowledgement of a fault on the falling edge.
     Acknowledge = 7,
     /// One jog step forward.
     JogOne = 8,
     /// One jog step backward.
     JogTwo = 9,
-    /// Requests control of the drive.
+    /// Request for control of the drive.
     Control = 10,
-    /// Speed mode instead of positioning.
+    /// Selection of speed mode instead of positioning.
     SpeedMode = 12,
 }
 
@@ -42,19 +43,19 @@ pub enum Direction {
     Counterclockwise,
 }
 
-/// End of a run in speed mode.
+/// Condition that ends a run in speed mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RunEnd {
     /// The run ends at the end of the range.
     RangeEnd,
-    /// The run ignores the limits and only ends when stopped. For experts, with factory limits and scaling.
+    /// The run ignores the limits and ends only when stopped. For experts, and only with factory limits and scaling.
     Endless,
 }
 
-/// Motion that a control word starts.
+/// Motion started by a control word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MotionStart {
-    /// A move to the target.
+    /// A positioning job to the target.
     Job,
     /// A run in speed mode.
     Run,
@@ -64,7 +65,7 @@ pub enum MotionStart {
     JogTwo,
 }
 
-/// A word with reserved bits, which must not be sent.
+/// A control word with reserved bits set, which must not be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("control word {word:04X} has reserved bits set ({}), which must be 0", bits(*word & RESERVED))]
 pub struct Refused {
@@ -72,7 +73,8 @@ pub struct Refused {
     pub word: u16,
 }
 
-/// Bits 1, 2, 11, 13, 14 and 15. Unlike PROFIdrive, where 1 and 2 must be set (reference 8.2).
+/// Mask of the reserved bits 1, 2, 11, 13, 14 and 15. Unlike here, PROFIdrive requires bits 1 and 2 to be set
+/// (reference 8.2).
 const RESERVED: u16 = 0xE806;
 
 fn bits(word: u16) -> String {
@@ -95,7 +97,7 @@ impl ControlBit {
         ControlBit::SpeedMode,
     ];
 
-    /// Returns the bit number in the word.
+    /// Returns the number of the bit in the control word.
     pub const fn number(self) -> u8 {
         self as u8
     }
@@ -125,20 +127,20 @@ impl ControlBit {
 }
 
 impl ControlWord {
-    /// 0000h: no control is requested.
+    /// Control word 0000h, which requests no control.
     pub const OFF: ControlWord = ControlWord(0);
-    /// 0400h: ready. Speed mode is left through this word: below operational the drive discards the job that clearing
-    /// bit 12 would start.
+    /// Control word 0400h (ready). Speed mode is left through this word: below the operational state the drive discards
+    /// the job that clearing bit 12 would start.
     pub const READY: ControlWord = ControlWord::OFF.with(ControlBit::Control);
     /// 0401h: operational.
     pub const OPERATIONAL: ControlWord = ControlWord::READY.with(ControlBit::On);
     /// 0409h: enabled.
     pub const ENABLED: ControlWord = ControlWord::OPERATIONAL.with(ControlBit::Enable);
-    /// 0481h: sent before an acknowledgement, which follows with [`OPERATIONAL`](Self::OPERATIONAL). Bit 0 stays set,
-    /// so that its falling edge remains available for the switch-on lock.
+    /// Control word 0481h, sent before [`OPERATIONAL`](Self::OPERATIONAL), which completes the acknowledgement. Bit 0
+    /// stays set, so that its falling edge remains available for the switch-on lock.
     pub const ACKNOWLEDGE: ControlWord = ControlWord::OPERATIONAL.with(ControlBit::Acknowledge);
 
-    /// Parses a received word.
+    /// Parses a received control word.
     ///
     /// # Errors
     /// Returns [`Refused`] if a reserved bit is set.
@@ -151,18 +153,18 @@ impl ControlWord {
         self.0
     }
 
-    /// Returns the word that is ready for a job but starts none: 0439h or 0479h, with bit 6 as acknowledged by the
-    /// drive.
+    /// Returns the control word that is ready for a job but starts none: 0439h or 0479h, with bit 6 as acknowledged by
+    /// the drive.
     pub const fn holding(status: StatusWord) -> Self {
         ControlWord::positioning(status.has(StatusBit::SetpointAcknowledged))
     }
 
-    /// Returns the word that starts a job: bit 6 is the opposite of what the drive has acknowledged.
+    /// Returns the control word that starts a job. Bit 6 is the opposite of the value that the drive has acknowledged.
     pub const fn starting(status: StatusWord) -> Self {
         ControlWord::positioning(!status.has(StatusBit::SetpointAcknowledged))
     }
 
-    /// Returns the speed mode word at standstill: 1409h or 1419h, endless 1429h or 1439h.
+    /// Returns the speed mode word for standstill: 1409h or 1419h, or 1429h or 1439h for an endless run.
     pub const fn speed_mode(direction: Direction, end: RunEnd) -> Self {
         let word = ControlWord::ENABLED.with(ControlBit::SpeedMode);
         let word = match direction {
@@ -175,26 +177,26 @@ impl ControlWord {
         }
     }
 
-    /// Returns the speed mode word that runs: 1449h or 1459h, endless 1469h or 1479h. The drive must have received
-    /// [`speed_mode`](Self::speed_mode) before.
+    /// Returns the speed mode word that runs the drive: 1449h or 1459h, or 1469h or 1479h for an endless run. The drive
+    /// must have received [`speed_mode`](Self::speed_mode) before.
     pub const fn running(direction: Direction, end: RunEnd) -> Self {
         ControlWord::speed_mode(direction, end).with(ControlBit::Start)
     }
 
-    /// Returns this word with the stop of its mode: speed mode clears bit 6; positioning clears bit 4 and discards the
-    /// job. Torque stays on. Jog bits are cleared in both modes.
+    /// Returns this control word with a stop for its mode: speed mode clears bit 6; positioning clears bit 4 and
+    /// discards the job. Torque stays on, and jog bits are cleared in both modes.
     pub const fn stopped(self) -> Self {
         let word = self.without(ControlBit::JogOne).without(ControlBit::JogTwo);
         if self.has(ControlBit::SpeedMode) { word.without(ControlBit::Start) } else { word.without(ControlBit::NoStop) }
     }
 
-    /// Returns this word with the job paused; [`resumed`](Self::resumed) continues it. In speed mode, where bit 5 has
-    /// another meaning, returns the same word.
+    /// Returns this control word with the job paused; [`resumed`](Self::resumed) continues it. In speed mode, where bit
+    /// 5 has another meaning, the word is returned unchanged.
     pub const fn paused(self) -> Self {
         if self.has(ControlBit::SpeedMode) { self } else { self.without(ControlBit::NoPause) }
     }
 
-    /// Returns this word with a paused job resumed. In speed mode, returns the same word.
+    /// Returns this control word with a paused job resumed. In speed mode, the word is returned unchanged.
     pub const fn resumed(self) -> Self {
         if self.has(ControlBit::SpeedMode) { self } else { self.with(ControlBit::NoPause) }
     }
@@ -211,9 +213,9 @@ impl ControlWord {
         set.map(move |bit| (bit.number(), bit.name(speed_mode)))
     }
 
-    /// Returns the motion that starts when this word follows `before`, for a drive that reports `status` and has
-    /// operation enabled. A job starts on a difference of levels, not on an edge (reference 8.10): clearing bit 12
-    /// after a run starts one to a stale target.
+    /// Returns the motion that starts when this control word follows `before`, for an operational drive that reports
+    /// `status`. A job starts on a difference of levels, not on an edge (reference 8.10), so clearing bit 12 after a
+    /// run starts a job to a stale target.
     pub fn motion_start(self, before: ControlWord, status: StatusWord) -> Option<MotionStart> {
         let rises = |bit: ControlBit| self.has(bit) && !before.has(bit);
         let acknowledged = status.has(StatusBit::SetpointAcknowledged);
@@ -236,8 +238,8 @@ impl ControlWord {
         }
     }
 
-    /// Returns whether this word starts no motion and brings a moving drive to a standstill, whatever status the drive
-    /// reports and however late.
+    /// Returns whether this control word starts no motion and brings a moving drive to a standstill, whatever status
+    /// the drive reports and however late.
     pub const fn is_standing(self) -> bool {
         let jogs = self.has(ControlBit::JogOne) || self.has(ControlBit::JogTwo);
         let moves = if self.has(ControlBit::SpeedMode) {

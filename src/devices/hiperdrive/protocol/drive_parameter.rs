@@ -3,9 +3,9 @@
 
 use std::ops::RangeInclusive;
 
-/// Saving, recalling and resetting: a parameter of the device.
+/// Parameter of the device for saving, recalling and resetting.
 pub const SERVICE: u16 = 47;
-/// Control word; this and the following three parameters move a drive.
+/// Control word. This parameter and the next three move a drive.
 pub const CONTROL: u16 = 101;
 /// Speed, in percent of the maximum speed.
 pub const SPEED_SHARE: u16 = 102;
@@ -19,13 +19,13 @@ pub const STATUS: u16 = 105;
 pub const SPEED: u16 = 106;
 /// Actual position, in steps.
 pub const POSITION: u16 = 107;
-/// The latest of the eight errors that a drive keeps.
+/// Latest of the eight errors that a drive stores.
 pub const NEWEST_ERROR: u16 = 108;
 /// Earliest stored error.
 pub const OLDEST_ERROR: u16 = 115;
 /// Variant of the drive; 0 if no drive is connected.
 pub const VARIANT: u16 = 120;
-/// Drive is requested by the bus.
+/// Whether the drive is requested by the bus.
 pub const REQUESTED: u16 = 152;
 /// Numerator of the position scale.
 pub const NUMERATOR: u16 = 154;
@@ -43,11 +43,11 @@ pub const SPEED_DENOMINATOR: u16 = 164;
 pub const MAXIMUM_SPEED: u16 = 166;
 /// Valid maximum speeds, in tenths of rpm.
 pub const MAXIMUM_SPEEDS: RangeInclusive<u16> = 5..=350;
-/// Waiting time before hand operation; never saved.
+/// Waiting time before hand operation, which is never saved.
 pub const HAND_DRIVE_WAIT: u16 = 182;
 /// RS-485 time-out.
 pub const TIMEOUT: u16 = 186;
-/// Value of the time-out for a drive that continues without commands.
+/// Time-out value with which a drive continues without commands.
 pub const NO_TIMEOUT: i64 = 255;
 /// RS-485 address.
 pub const RS485_ADDRESS: u16 = 188;
@@ -55,9 +55,9 @@ pub const RS485_ADDRESS: u16 = 188;
 pub const RS485_BAUD: u16 = 190;
 /// RS-485 complete time.
 pub const RS485_COMPLETE: u16 = 192;
-/// Number of faults since the last acknowledgement; writing 0 acknowledges.
+/// Number of faults since the last acknowledgement. Writing 0 acknowledges the fault.
 pub const ACKNOWLEDGE: u16 = 197;
-/// Position assigned to the present location of the drive.
+/// Position assigned to the current location of the drive.
 pub const REFERENCE: u16 = 198;
 /// Resets the drive.
 pub const RESET: u16 = 199;

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-/// Error code. Unknown codes are preserved.
+/// Error code of a drive. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorCode(u16);
 
@@ -16,7 +16,7 @@ pub struct ErrorCodeRow {
     pub name: &'static str,
     /// Cause of the error.
     pub cause: &'static str,
-    /// Remedy, to be applied before acknowledging the error.
+    /// Remedy to apply before acknowledging the error.
     pub remedy: &'static str,
 }
 
@@ -24,7 +24,7 @@ const fn row(code: ErrorCode, name: &'static str, cause: &'static str, remedy: &
     ErrorCodeRow { code, name, cause, remedy }
 }
 
-/// All known errors. Numbers are written as in the manual: 8200 to 8603, hexadecimal digits (`U`).
+/// All known errors, numbered as in the manual: 8200 to 8603 in hexadecimal digits (`U`).
 pub const ERROR_CODES: [ErrorCodeRow; 16] = [
     row(
         ErrorCode::OVER_CURRENT,
@@ -133,7 +133,7 @@ impl ErrorCode {
     pub const UNDER_VOLTAGE: ErrorCode = ErrorCode(0x8201);
     /// Temperature too high.
     pub const OVER_TEMPERATURE: ErrorCode = ErrorCode(0x8202);
-    /// Following error: the drive is too slow.
+    /// Following error, because the drive is too slow.
     pub const FOLLOWING: ErrorCode = ErrorCode(0x8203);
     /// Blocked while turning backward.
     pub const BLOCK_REVERSE: ErrorCode = ErrorCode(0x8300);
@@ -145,7 +145,7 @@ impl ErrorCode {
     pub const UPPER_LIMIT: ErrorCode = ErrorCode(0x8305);
     /// Control loop error.
     pub const CONTROL_LOOP: ErrorCode = ErrorCode(0x8401);
-    /// Error of the stored data.
+    /// Error in the stored data.
     pub const EEPROM: ErrorCode = ErrorCode(0x8410);
     /// Motion that cannot start.
     pub const START_IMPOSSIBLE: ErrorCode = ErrorCode(0x8500);
@@ -155,12 +155,12 @@ impl ErrorCode {
     pub const SINCOS: ErrorCode = ErrorCode(0x8502);
     /// Invalid target.
     pub const INVALID_TARGET: ErrorCode = ErrorCode(0x8503);
-    /// Timeout: the drive has received nothing.
+    /// Timeout, because the drive has received nothing.
     pub const CONNECTION_TIMEOUT: ErrorCode = ErrorCode(0x8601);
     /// No reply from the drive over RS-485.
     pub const RS485: ErrorCode = ErrorCode(0x8603);
 
-    /// Creates a code from any number.
+    /// Creates an error code from any number.
     pub const fn new(code: u16) -> Self {
         ErrorCode(code)
     }
@@ -170,7 +170,7 @@ impl ErrorCode {
         self.0
     }
 
-    /// Returns the table row; `None` for an unknown code and for no error.
+    /// Returns the table row, or `None` for an unknown code or for no error.
     pub fn row(self) -> Option<&'static ErrorCodeRow> {
         ERROR_CODES.iter().find(|row| row.code == self)
     }

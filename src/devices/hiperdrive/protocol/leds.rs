@@ -1,6 +1,6 @@
 //! LEDs of a hub, of an adapter and of their network ports (reference 1). Remedies are derived (`D`).
 
-/// State of an RS485 LED with two colours.
+/// State of a two-colour RS485 LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DriveLight {
     /// Off.
@@ -9,13 +9,13 @@ pub enum DriveLight {
     Green,
     /// Red.
     Red,
-    /// Red and green at once.
+    /// Red and green at the same time.
     RedGreen,
     /// Green, flashing twice per second.
     GreenFlashing,
-    /// Red and green at once, flashing twice per second.
+    /// Red and green at the same time, flashing twice per second.
     RedGreenFlashing,
-    /// Red, green, red, five times per second.
+    /// Alternating between red and green, five times per second.
     Alternating,
 }
 
@@ -24,9 +24,9 @@ pub enum DriveLight {
 pub enum LedSubject {
     /// The drive of a bus adapter, which has no switch S3.
     Adapter,
-    /// All drives of a hub: its switch S3 is at 0.
+    /// All drives of a hub whose switch S3 is at 0.
     Drives,
-    /// The drive of a hub whose number is set on S3. No drive moves from the bus then.
+    /// The drive of a hub whose number is set on switch S3. In this position no drive can be moved over the bus.
     Drive,
 }
 
@@ -74,7 +74,7 @@ pub struct BusLedRow {
     pub lamp: BusLamp,
     /// State of the LED.
     pub light: BusLight,
-    /// Meaning that ODVA defines for all devices.
+    /// Meaning that ODVA defines for the LED on all devices.
     pub meaning: &'static str,
     /// Remedy.
     pub remedy: &'static str,
@@ -87,7 +87,7 @@ pub enum PortLight {
     Off,
     /// Green.
     Link,
-    /// Green, and yellow ten times per second.
+    /// Green lit, yellow flashing ten times per second.
     Active,
 }
 
@@ -114,7 +114,7 @@ const fn bus(lamp: BusLamp, light: BusLight, meaning: &'static str, remedy: &'st
     BusLedRow { lamp, light, meaning, remedy }
 }
 
-/// RS485 LED of a bus adapter (manual 4.4).
+/// States of the RS485 LED of a bus adapter (manual 4.4).
 const ADAPTER_LEDS: [LedRow; 7] = [
     drive(DriveLight::Off, "no supply", "check the control supply and its fuse"),
     drive(DriveLight::Alternating, "presence test", "wait until it has finished"),
@@ -137,7 +137,7 @@ const ADAPTER_LEDS: [LedRow; 7] = [
     drive(DriveLight::Green, "the drive has no error", "no action needed"),
 ];
 
-/// RS485 LED of a hub with switch S3 at 0, for all drives (manual 3.3).
+/// States of the RS485 LED of a hub with switch S3 at 0, which apply to all drives (manual 3.3).
 const DRIVES_LEDS: [LedRow; 7] = [
     drive(DriveLight::Off, "no supply", "check the control supply and its fuse"),
     drive(DriveLight::Alternating, "presence test", "wait until it has finished"),
@@ -168,7 +168,7 @@ const DRIVES_LEDS: [LedRow; 7] = [
     ),
 ];
 
-/// RS485 LED of a hub with switch S3 at a drive's number, for that drive (manual 3.3).
+/// States of the RS485 LED of a hub with switch S3 at the number of a drive, which apply to that drive (manual 3.3).
 const DRIVE_LEDS: [LedRow; 4] = [
     drive(DriveLight::Off, "the drive is neither connected nor requested", "to use the drive, plug it in"),
     drive(
@@ -187,7 +187,7 @@ pub const PORT_LEDS: [PortLedRow; 3] = [
     port(PortLight::Active, "network link, data traffic", "no action needed"),
 ];
 
-/// States of MS and NS.
+/// States of the MS and NS LEDs.
 pub const BUS_LEDS: [BusLedRow; 12] = [
     bus(BusLamp::Module, BusLight::Off, "no supply", "check the control supply and its fuse"),
     bus(BusLamp::Module, BusLight::Green, "the device is operating", "no action needed"),
@@ -219,7 +219,7 @@ pub const BUS_LEDS: [BusLedRow; 12] = [
 ];
 
 impl LedSubject {
-    /// Returns all states of the RS485 LED with their meanings.
+    /// Returns all states of the RS485 LED with their meanings and remedies.
     pub const fn rows(self) -> &'static [LedRow] {
         match self {
             LedSubject::Adapter => &ADAPTER_LEDS,
@@ -228,7 +228,7 @@ impl LedSubject {
         }
     }
 
-    /// Returns the row of a state; `None` if the manual has none.
+    /// Returns the row of an LED state, or `None` if the manual does not list it.
     pub fn row(self, light: DriveLight) -> Option<&'static LedRow> {
         self.rows().iter().find(|row| row.light == light)
     }
@@ -243,7 +243,7 @@ impl BusLamp {
         }
     }
 
-    /// Returns the row of a state.
+    /// Returns the row of an LED state.
     pub fn row(self, light: BusLight) -> Option<&'static BusLedRow> {
         BUS_LEDS.iter().find(|row| row.lamp == self && row.light == light)
     }

@@ -25,11 +25,11 @@ mod variant;
 #[cfg(test)]
 mod vectors;
 
-/// Identifier of this kind of device on the command line, in profiles and in stored files.
+/// Identifier of this device kind on the command line, in profiles and in stored files.
 pub const KIND: &str = "hiperdrive";
 /// Vendor ID of halstrup-walcher in ODVA's list.
 pub const VENDOR: u16 = 1010;
-/// Assemblies of the cyclic connection: configuration, output to the drives, input from them.
+/// Assemblies of the cyclic connection: configuration, output to the drives, and input from the drives.
 pub const ASSEMBLIES: [u16; 3] = [104, 100, 101];
 
 pub use control_word::{ControlBit, ControlWord, Direction, MotionStart, Refused, RunEnd};

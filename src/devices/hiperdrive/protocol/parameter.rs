@@ -8,11 +8,11 @@ use super::scaling::{Family, PositionScale};
 use super::travel::{StepLimit, Travel};
 use super::value::Kind;
 
-/// Number of a drive: 1 to 8 at a hub. An adapter has only drive 1.
+/// Number of a drive, 1 to 8 on a hub. An adapter has only drive 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DriveNumber(u8);
 
-/// Number of a parameter: up to 99 for the device, 100 to 199 for drive 1, 200 to 299 for drive 2, and so on to 899.
+/// Parameter number: up to 99 for the device, 100 to 199 for drive 1, 200 to 299 for drive 2, and so on up to 899.
 /// The manual's text says n · 100 instead of (n − 1) · 100 (reference 8.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ParameterNumber(u16);
@@ -20,11 +20,11 @@ pub struct ParameterNumber(u16);
 /// Row of the parameter table.
 #[derive(Clone, Copy, Debug)]
 pub struct ParameterRow {
-    /// Number; for a drive parameter, the one of drive 1.
+    /// Parameter number; for a drive parameter, the number for drive 1.
     pub number: u16,
     /// Name of the parameter.
     pub name: &'static str,
-    /// Unit; empty if it has none.
+    /// Unit of the value, or an empty string if it has none.
     pub unit: &'static str,
     /// Type of the value.
     pub kind: Kind,
@@ -32,26 +32,27 @@ pub struct ParameterRow {
     pub access: Access,
     /// Whether the value survives a power cycle after it has been saved.
     pub saved: bool,
-    /// Whether the adapter or hub, rather than a drive, stores the value.
+    /// Whether the adapter or hub stores the value, rather than a drive.
     pub(super) kept_by_device: bool,
     /// Allowed values.
     pub range: Range,
-    /// Range in turns of the drive around 0, in addition to `range`; `None` if turns do not limit the value.
+    /// Range in turns of the drive around 0, in addition to `range`, or `None` if turns do not limit the value.
     pub reach: Option<StepLimit>,
     /// Factory value.
     pub factory: Factory,
-    /// Values that take the device long to apply; the reply to any other takes as long as to a read.
+    /// Values that the device takes long to apply. The reply to writing any other value takes as long as the reply to a
+    /// read.
     pub slow: &'static [SlowValue],
 }
 
-/// A value whose reply is sent only after the device has applied it, with the maximum time.
+/// A value whose reply is sent only after the device has applied it, with the maximum time for this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SlowValue {
     /// Written value.
     pub value: i64,
-    /// Maximum time with an adapter.
+    /// Maximum time for an adapter.
     pub adapter: Duration,
-    /// Maximum time with a hub.
+    /// Maximum time for a hub.
     pub hub: Duration,
 }
 
@@ -62,38 +63,38 @@ pub enum Access {
     Read,
     /// Read and write.
     ReadWrite,
-    /// Write only: a read returns nothing useful.
+    /// Write-only access; a read returns nothing useful.
     Write,
 }
 
 /// Allowed values of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
-    /// Any value of its type.
+    /// Any value of the parameter's type.
     Any,
-    /// Between two numbers, both included.
+    /// A value between two numbers, inclusive.
     Within(i64, i64),
-    /// Between two numbers, or one further number with a special meaning.
+    /// A value between two numbers, or one further number with a special meaning.
     WithinOr(i64, i64, i64),
-    /// One of these, smallest first.
+    /// One of the listed values, smallest first.
     OneOf(&'static [i64]),
 }
 
 /// Factory value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Factory {
-    /// No factory value: the parameter is measured or identifies the device.
+    /// No factory value, because the parameter is measured or identifies the device.
     None,
     /// The same number for every topology.
     Number(i64),
-    /// Different numbers for adapters and hubs.
+    /// Factory values that differ between adapters and hubs.
     Topology {
         /// Factory value of an adapter.
         adapter: i64,
         /// Factory value for each drive of a hub.
         hub: i64,
     },
-    /// Number of turns of the drive in either direction, times −1 or 1.
+    /// Number of turns of the drive in either direction, multiplied by −1 or 1.
     Turns(i32),
     /// Determined by the drive.
     Automatic,
@@ -112,14 +113,14 @@ pub struct OutOfRange {
     pub range: Range,
 }
 
-/// CIP class of the device parameters; the class of drive 1 follows.
+/// CIP class of the device parameters. The class of drive 1 follows it.
 const CLASS: u16 = 0x64;
 
 impl DriveNumber {
     /// First drive.
     pub const FIRST: DriveNumber = DriveNumber(1);
 
-    /// Creates a drive number; `None` outside 1 to 8.
+    /// Creates a drive number, or returns `None` outside the range 1 to 8.
     pub const fn new(number: u8) -> Option<Self> {
         if 1 <= number && number <= 8 { Some(DriveNumber(number)) } else { None }
     }
@@ -129,14 +130,15 @@ impl DriveNumber {
         self.0
     }
 
-    /// Returns all drives for which a topology has a port.
+    /// Returns the numbers of all drives for which a topology has a port.
     pub fn of(topology: Topology) -> impl Iterator<Item = DriveNumber> {
         (1..=topology.drives()).map(DriveNumber)
     }
 }
 
 impl ParameterRow {
-    /// Returns whether the adapter or hub stores the parameter: 47 = −1 and −2 change only these (manual, 47).
+    /// Returns whether the adapter or hub stores the parameter. The values −1 and −2 of parameter 47 change only such
+    /// parameters (manual, 47).
     pub const fn is_kept_by_device(&self) -> bool {
         self.saved && self.kept_by_device
     }
@@ -146,7 +148,7 @@ impl ParameterNumber {
     /// Parameter that saves, resets or restores all parameters.
     pub const SAVE: ParameterNumber = ParameterNumber(47);
 
-    /// Creates a parameter number; `None` for 0 and above 899.
+    /// Creates a parameter number, or returns `None` for 0 and above 899.
     pub const fn new(number: u16) -> Option<Self> {
         if 1 <= number && number <= 899 { Some(ParameterNumber(number)) } else { None }
     }
@@ -167,12 +169,12 @@ impl ParameterNumber {
         DriveNumber::new((self.0 / 100) as u8)
     }
 
-    /// Returns the number of the same parameter for drive 1, or of the device.
+    /// Returns the number of the same parameter for drive 1, or the number itself for a device parameter.
     pub const fn base(self) -> u16 {
         if self.0 < 100 { self.0 } else { 100 + self.0 % 100 }
     }
 
-    /// Returns the table row, or `None` if the manual has none.
+    /// Returns the table row, or `None` if the manual does not list the parameter.
     pub fn row(self) -> Option<&'static ParameterRow> {
         super::parameters::PARAMETERS.iter().find(|row| row.number == self.base())
     }
@@ -187,7 +189,7 @@ impl ParameterNumber {
         self.base()
     }
 
-    /// Returns the parameter number for a class and attribute, or `None` if they address no parameter.
+    /// Returns the parameter number for a class and attribute, or `None` if they do not address a parameter.
     pub fn from_attribute(class: u16, attribute: u16) -> Option<Self> {
         match class.checked_sub(CLASS)? {
             0 if attribute < 100 => ParameterNumber::new(attribute),
@@ -203,8 +205,8 @@ impl fmt::Display for ParameterNumber {
 }
 
 impl ParameterRow {
-    /// Returns the allowed values: those of the table, or else of the data type, restricted to the turns of the drive
-    /// as far as these are known. `None` for strings.
+    /// Returns the allowed values from the table or, if it gives none, from the data type, restricted to the turns of
+    /// the drive as far as they are known. Returns `None` for strings.
     pub fn allowed(&self, travel: Travel) -> Option<Range> {
         let (low, high) = self.kind.limits()?;
         Some(match (self.range, self.reach.and_then(|reach| travel.steps(reach))) {
@@ -214,8 +216,8 @@ impl ParameterRow {
         })
     }
 
-    /// Checks a value against the range of a parameter. Dependencies between parameters are checked by the drive: 160
-    /// is above 158; position, target and 198 lie between them.
+    /// Checks a value against the range of a parameter. The drive itself checks dependencies between parameters: 160 is
+    /// above 158; position, target and 198 lie between them.
     ///
     /// # Errors
     /// Returns [`OutOfRange`] with the allowed values. Strings accept no number.
@@ -224,14 +226,15 @@ impl ParameterRow {
         if range.holds(value) { Ok(value) } else { Err(OutOfRange { number, name: self.name, value, range }) }
     }
 
-    /// Returns how long the device may take to reply when this value is written, or `None` if no longer than for other
-    /// replies. For an unknown topology, the time of a hub applies.
+    /// Returns how long the device may take to reply when this value is written, or `None` if it takes no longer than
+    /// for other replies. For an unknown topology, the time of a hub applies.
     pub fn takes(&self, value: i64, topology: Option<Topology>) -> Option<Duration> {
         let slow = self.slow.iter().find(|slow| slow.value == value)?;
         Some(if topology == Some(Topology::Adapter) { slow.adapter } else { slow.hub })
     }
 
-    /// Returns the factory value with factory scaling, or `None` if the manual gives none or the drive determines it.
+    /// Returns the factory value under factory scaling, or `None` if the manual gives no value or the drive determines
+    /// it.
     pub fn factory_value(&self, topology: Topology, family: Family) -> Option<i64> {
         match self.factory {
             Factory::None | Factory::Automatic => None,

@@ -32,12 +32,12 @@ const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -
 }
 
 impl ParameterRow {
-    /// Makes the row writable; the value is lost at power-off.
+    /// Makes the row writable, with a value that is lost at power-off.
     const fn written(self, range: Range, factory: Factory) -> Self {
         ParameterRow { access: Access::ReadWrite, range, factory, ..self }
     }
 
-    /// Marks a drive parameter that the adapter or hub stores (manual, 152: sections 3.4 and 4.5; 190: its own row).
+    /// Marks a drive parameter that the adapter or hub stores (manual, 152: sections 3.4 and 4.5; 190: its table row).
     const fn in_device(self) -> Self {
         ParameterRow { kept_by_device: true, ..self }
     }
@@ -55,12 +55,12 @@ impl ParameterRow {
     }
 }
 
-/// Maximum time for storing to EEPROM (manual 6.2, parameter 47); also applies to the TCP/IP object, which is stored
-/// with each change (5).
+/// Maximum time for storing to EEPROM (manual 6.2, parameter 47). It also applies to the TCP/IP object, which is stored
+/// on every change (5).
 pub const STORES: Duration = Duration::from_millis(200);
-/// Maximum time for resetting a single drive, as for −4 of an adapter.
+/// Maximum time for resetting a single drive, as for the value −4 of parameter 47 on an adapter.
 const DRIVE_RESETS: Duration = Duration::from_secs(2);
-/// Maximum time to reset all drives of a hub.
+/// Maximum time for resetting all drives of a hub.
 const HUB_RESETS: Duration = Duration::from_secs(8);
 
 const fn stores(value: i64) -> SlowValue {
@@ -75,10 +75,10 @@ const fn one_drive(value: i64) -> SlowValue {
     SlowValue { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
 }
 
-/// Slow values of parameter 47. The manual states no time for −3, −2 and −1 (`D`: as for −4, since they send all
-/// parameters to all drives over RS-485).
+/// Slow values of parameter 47. The manual states no time for −3, −2 and −1; the time for −4 is used, since all of them
+/// send all parameters to all drives over RS-485 (`D`).
 const SAVE_AND_RESET: &[SlowValue] = &[all_drives(-4), all_drives(-3), all_drives(-2), all_drives(-1), stores(1)];
-/// Slow values of parameter 152: 0 → 1 resets the drive (`D`: the time).
+/// Slow values of parameter 152. A change from 0 to 1 resets the drive (`D`: the time).
 const REQUEST: &[SlowValue] = &[one_drive(1)];
 /// Slow values of parameter 199 (`D`: the time).
 const RESET_DRIVE: &[SlowValue] = &[one_drive(0), one_drive(1)];
@@ -107,7 +107,8 @@ const fn within(range: RangeInclusive<u16>) -> Range {
     Within(*range.start() as i64, *range.end() as i64)
 }
 
-/// All parameters by number. Parameters 11 and 119 are assumed to be signed (`U`): the manual only gives their width.
+/// All parameters by number. Parameters 11 and 119 are assumed to be signed (`U`), since the manual gives only their
+/// width.
 pub const PARAMETERS: &[ParameterRow] = &[
     read(9, "control supply", U16, "0.1 V"),
     read(11, "device temperature", I16, "°C"),

@@ -4,18 +4,18 @@ use std::fmt;
 
 use super::process_data::ByteOrder;
 
-/// Parameter words: eight bytes in either direction.
+/// Parameter words of the process data, eight bytes in each direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Pkw {
-    /// PKE: task or answer (bits 15 to 12), SPM (bit 11) and the parameter number.
+    /// PKE, which holds the task or answer (bits 15 to 12), SPM (bit 11) and the parameter number.
     pub pke: u16,
-    /// IND: the element of an array.
+    /// IND, the index of the array element.
     pub ind: u16,
-    /// PWE: the value of the parameter; a 16-bit value is in the lower half.
+    /// PWE, the value of the parameter. A 16-bit value is in the lower half.
     pub pwe: u32,
 }
 
-/// Task of a request, bits 15 to 12 of PKE.
+/// Task of a request, in bits 15 to 12 of PKE.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Task {
@@ -27,34 +27,34 @@ pub enum Task {
     WriteWord = 2,
     /// Writes a double word.
     WriteDouble = 3,
-    /// Reads an element of an array: four characters of a string.
+    /// Reads an array element, which for a string is four characters.
     ReadElement = 6,
-    /// Writes a word of an array.
+    /// Writes a word element of an array.
     WriteElementWord = 7,
-    /// Writes a double word of an array.
+    /// Writes a double-word element of an array.
     WriteElementDouble = 8,
-    /// Reads the number of elements.
+    /// Reads the number of array elements.
     Count = 9,
 }
 
-/// Answer of a reply. The text of the manual repeats the numbers of the requests here (reference 8.4).
+/// Answer in a reply. The manual's text repeats the numbers of the requests instead (reference 8.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Answer {
-    /// 0: there was no request.
+    /// Answer 0: there was no request.
     None,
-    /// 1, or 4 for an array.
+    /// Answer 1, or 4 for an array: the value as a word.
     Word(u16),
-    /// 2, or 5 for an array.
+    /// Answer 2, or 5 for an array: the value as a double word.
     Double(u32),
-    /// 6: the number of elements.
+    /// Answer 6: the number of array elements.
     Elements(u32),
-    /// 7: the request was refused.
+    /// Answer 7: the request was refused.
     Refused(PkwError),
     /// Any other number.
     Unknown,
 }
 
-/// Reason for a refused request. Unknown codes are preserved.
+/// Reason why a request was refused. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PkwError(u32);
 
@@ -92,7 +92,7 @@ impl Task {
         }
     }
 
-    /// Returns whether an answer can belong to the task. A read may return a word or a double word.
+    /// Returns whether an answer can belong to the task. The answer to a read may be a word or a double word.
     const fn takes(self, answer: u8) -> bool {
         match self {
             Task::None => answer == 0,
@@ -108,7 +108,7 @@ impl Task {
 }
 
 impl Pkw {
-    /// Builds a request for a parameter, with 11 bits of its number; a word uses the lower 16 bits of the value.
+    /// Builds a request for a parameter from the low 11 bits of its number. A word uses the lower 16 bits of the value.
     pub const fn request(task: Task, number: u16, element: u16, value: u32) -> Self {
         Pkw { pke: (task.number() as u16) << 12 | number & NUMBER, ind: element, pwe: value }
     }
@@ -132,7 +132,7 @@ impl Pkw {
         self.pke & NUMBER
     }
 
-    /// Returns the task of a request, or `None` for an undefined number.
+    /// Returns the task of a request, or `None` if its number is undefined.
     pub fn task(self) -> Option<Task> {
         Task::ALL.into_iter().find(|task| task.number() == self.code())
     }
@@ -149,8 +149,8 @@ impl Pkw {
         }
     }
 
-    /// Returns the answer if this reply belongs to `request`. Until then the request is repeated; before sending the
-    /// same request again, [`Task::None`] must be sent and answered.
+    /// Returns the answer if this reply belongs to `request`, which must be repeated until then. Before the same
+    /// request is sent again, [`Task::None`] must be sent and answered.
     pub fn answer_to(self, request: Pkw) -> Option<Answer> {
         let task = request.task()?;
         let same = task == Task::None || self.number() == request.number();
@@ -167,20 +167,20 @@ impl PkwError {
     pub const NO_PARAMETER: PkwError = PkwError(0);
     /// 1: read-only parameter.
     pub const READ_ONLY: PkwError = PkwError(1);
-    /// 2: value outside the limits.
+    /// Error 2: the value is outside the limits.
     pub const RANGE: PkwError = PkwError(2);
-    /// 3: element beyond the end of the text or array.
+    /// Error 3: the element is beyond the end of the string or array.
     pub const NO_ELEMENT: PkwError = PkwError(3);
     /// 4: parameter without elements.
     pub const NO_ARRAY: PkwError = PkwError(4);
-    /// 5: word instead of double word or vice versa, or a string.
+    /// Error 5: a word was used instead of a double word or vice versa, or the parameter is a string.
     pub const TYPE: PkwError = PkwError(5);
-    /// 17: not possible in this state.
+    /// Error 17: the request is not possible in this state.
     pub const STATE: PkwError = PkwError(17);
     /// 18: any other reason.
     pub const OTHER: PkwError = PkwError(18);
 
-    /// Creates an error from any code.
+    /// Creates an error from any error code.
     pub const fn new(code: u32) -> Self {
         PkwError(code)
     }
@@ -190,7 +190,7 @@ impl PkwError {
         self.0
     }
 
-    /// Returns the meaning of the code.
+    /// Returns the meaning of the error code.
     pub const fn meaning(self) -> &'static str {
         match self.0 {
             0 => "no such parameter",

@@ -5,11 +5,11 @@ use super::pkw::Pkw;
 use super::status_word::StatusWord;
 use crate::parameter::Words;
 
-/// Byte order of numbers. The manual does not define it (reference 8.11): little-endian unless a device is observed to
-/// differ.
+/// Byte order of numbers in the process data. The manual does not define it (reference 8.11), so it is little-endian
+/// unless a device is observed to differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ByteOrder {
-    /// Low byte first, as everywhere in CIP.
+    /// Low byte first, as throughout CIP.
     #[default]
     Little,
     /// High byte first.
@@ -21,7 +21,7 @@ impl ByteOrder {
     pub const WORDS: Words<ByteOrder> = Words(&[("little", ByteOrder::Little), ("big", ByteOrder::Big)]);
 }
 
-/// The device at an IP address and the number of its drive ports.
+/// Type of the device at an IP address, which determines the number of drive ports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Topology {
     /// Adapter with one drive.
@@ -37,13 +37,13 @@ pub enum Topology {
 pub struct Layout {
     /// Topology, which determines the number of drive ports.
     pub topology: Topology,
-    /// Whether eight bytes of parameter words follow the drives.
+    /// Whether eight bytes of parameter words follow the data of the drives.
     pub pkw: bool,
-    /// Byte order of every number.
+    /// Byte order of all numbers.
     pub order: ByteOrder,
 }
 
-/// Percentage of a parameter's value: 0 to 100.
+/// Percentage from 0 to 100.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Percent(u8);
 
@@ -52,9 +52,9 @@ pub struct Percent(u8);
 pub struct Setpoint {
     /// Control word (STW).
     pub control: ControlWord,
-    /// Speed as a percentage of the maximum speed (parameter 166). With 0 no motion starts.
+    /// Speed as a percentage of the maximum speed (parameter 166). No motion starts at 0.
     pub speed: Percent,
-    /// Torque as a percentage of the nominal torque, in steps of 25 %. With 0 no motion starts.
+    /// Torque as a percentage of the nominal torque, in steps of 25 %. No motion starts at 0.
     pub torque: Percent,
     /// Target in scaled steps.
     pub target: i32,
@@ -78,7 +78,7 @@ pub struct OutData {
 pub struct Actual {
     /// Status word (ZSW).
     pub status: StatusWord,
-    /// Speed as scaled by parameters 162 and 164: tenths of rpm with factory settings.
+    /// Speed as scaled by parameters 162 and 164, which is tenths of rpm with factory settings.
     pub speed: i16,
     /// Position in scaled steps.
     pub position: i32,
@@ -102,7 +102,7 @@ pub struct InImage {
     pub pkw: Option<Pkw>,
 }
 
-/// The length of an image does not match the layout.
+/// Error for an image whose length does not match the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{got} bytes of process data where {expected} were expected")]
 pub struct ImageError {
@@ -112,7 +112,7 @@ pub struct ImageError {
     pub got: usize,
 }
 
-/// Length of a drive's data, and of the parameter words, in bytes.
+/// Length in bytes of the data of one drive and of the parameter words.
 const PLACE: usize = 8;
 
 impl ByteOrder {
@@ -158,7 +158,7 @@ impl Topology {
         }
     }
 
-    /// Returns the spelling of parameter 13.
+    /// Returns the topology as spelled in parameter 13.
     pub const fn category(self) -> &'static str {
         match self {
             Topology::Adapter => "HIPERDRIVE SINGLE",
@@ -174,7 +174,7 @@ impl Topology {
 }
 
 impl Layout {
-    /// Returns the number of bytes in each direction: 8 per drive and 8 of parameter words.
+    /// Returns the number of bytes in each direction: 8 per drive, and 8 for the parameter words if present.
     pub const fn length(self) -> usize {
         PLACE * (self.topology.drives() as usize + self.pkw as usize)
     }
@@ -199,7 +199,7 @@ impl Layout {
         }
     }
 
-    /// Builds an image from the data of drives; missing ones are zero, surplus ones are dropped.
+    /// Builds an image from the data of the drives. Missing drives are zero; surplus drives are dropped.
     fn image(self, places: impl Iterator<Item = [u8; PLACE]>, pkw: Option<Pkw>) -> Vec<u8> {
         let drives = usize::from(self.topology.drives());
         let words = self.pkw.then(|| pkw.unwrap_or_default().emit(self.order));
@@ -213,7 +213,7 @@ impl Percent {
     /// 100 %.
     pub const FULL: Percent = Percent(100);
 
-    /// Creates a percentage; `None` above 100.
+    /// Creates a percentage, or returns `None` above 100.
     pub const fn new(percent: u8) -> Option<Self> {
         if percent <= 100 { Some(Percent(percent)) } else { None }
     }
@@ -225,8 +225,8 @@ impl Percent {
 }
 
 impl Setpoint {
-    /// Returns the setpoint that follows speed mode and starts every connection: ready, no speed and no torque, and the
-    /// target at the actual position, so that no stale target remains.
+    /// Returns the setpoint that follows speed mode and starts every connection. It is ready, with zero speed and
+    /// torque and the target at the actual position, so that no stale target remains.
     pub const fn standing(actual: Actual) -> Self {
         let none = Percent::NONE;
         Setpoint { control: ControlWord::READY, speed: none, torque: none, target: actual.position }
@@ -283,14 +283,15 @@ impl OutImage {
     /// Parses an image.
     ///
     /// # Errors
-    /// Returns [`ImageError`] if the length is not the layout's.
+    /// Returns [`ImageError`] if the length does not match the layout.
     pub fn parse(bytes: &[u8], layout: Layout) -> Result<Self, ImageError> {
         let (places, pkw) = layout.places(bytes)?;
         let drives = places.into_iter().map(|place| OutData::parse(place, layout.order)).collect();
         Ok(OutImage { drives, pkw })
     }
 
-    /// Returns the image as bytes. Missing drives are zero, which does not control them; surplus drives are dropped.
+    /// Returns the image as bytes. Missing drives are filled with zeros, which do not control a drive; surplus drives
+    /// are dropped.
     pub fn emit(&self, layout: Layout) -> Vec<u8> {
         layout.image(self.drives.iter().map(|drive| drive.emit(layout.order)), self.pkw)
     }
@@ -300,14 +301,14 @@ impl InImage {
     /// Parses an image.
     ///
     /// # Errors
-    /// Returns [`ImageError`] if the length is not the layout's.
+    /// Returns [`ImageError`] if the length does not match the layout.
     pub fn parse(bytes: &[u8], layout: Layout) -> Result<Self, ImageError> {
         let (places, pkw) = layout.places(bytes)?;
         let drives = places.into_iter().map(|place| Actual::parse(place, layout.order)).collect();
         Ok(InImage { drives, pkw })
     }
 
-    /// Returns the image as bytes. Missing drives are zero; surplus drives are dropped.
+    /// Returns the image as bytes. Missing drives are filled with zeros; surplus drives are dropped.
     pub fn emit(&self, layout: Layout) -> Vec<u8> {
         layout.image(self.drives.iter().map(|drive| drive.emit(layout.order)), self.pkw)
     }

@@ -3,7 +3,7 @@
 use super::control_word::ControlWord;
 use super::status_word::{StatusBit, StatusWord};
 
-/// A control word, and the status required before the next one.
+/// A control word and the status required before the next control word.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     /// Word to send.
@@ -20,11 +20,11 @@ const READY: Step = step(ControlWord::READY, &[(StatusBit::Ready, true), (Status
 const OPERATIONAL: Step = step(ControlWord::OPERATIONAL, &[(StatusBit::Operational, true)]);
 const ENABLED: Step = step(ControlWord::ENABLED, &[(StatusBit::OperationEnabled, true)]);
 
-/// From off to enabled. [`ControlWord::holding`] follows.
+/// Steps from off to enabled. [`ControlWord::holding`] follows them.
 pub const ENABLE: [Step; 4] = [step(ControlWord::OFF, &[]), READY, OPERATIONAL, ENABLED];
 
-/// From a fault to enabled. Bit 0 stays set during the acknowledgement, so that its falling edge remains available for
-/// the lock. [`ControlWord::holding`] follows.
+/// Steps from a fault to enabled. Bit 0 stays set during the acknowledgement, so that its falling edge remains
+/// available for the lock; [`ControlWord::holding`] follows them.
 pub const ACKNOWLEDGE: [Step; 5] = [
     step(ControlWord::ACKNOWLEDGE, &[]),
     step(ControlWord::OPERATIONAL, &[(StatusBit::Fault, false), (StatusBit::SwitchOnLock, true)]),
@@ -33,7 +33,7 @@ pub const ACKNOWLEDGE: [Step; 5] = [
     ENABLED,
 ];
 
-/// Out of the lock if bit 0 is already clear: it is set first, since the lock needs its falling edge.
+/// Steps out of the lock if bit 0 is already clear. Bit 0 is set first, since the lock needs its falling edge.
 pub const UNLOCK: [Step; 2] = [step(ControlWord::OPERATIONAL, &[]), READY];
 
 impl Step {

@@ -1,21 +1,21 @@
 //! Conversion between steps, turns, millimetres and rpm by parameters 154 to 164 (reference 5).
 
-/// Conversion between transmitted steps and turns: 256 · numerator / denominator steps per turn (the formula in section
-/// 8.4 of the manual is garbled).
+/// Conversion between transmitted steps and turns, with 256 · numerator / denominator steps per turn. The formula in
+/// section 8.4 of the manual is garbled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PositionScale {
     numerator: u16,
     denominator: u16,
 }
 
-/// Conversion between transmitted speed and rpm: numerator / denominator per 1 rpm.
+/// Conversion between transmitted speed and rpm, with numerator / denominator per 1 rpm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SpeedScale {
     numerator: u16,
     denominator: u16,
 }
 
-/// Length, exact to the nanometre.
+/// A length, exact to the nanometre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Length {
     /// Number of nanometres.
@@ -33,13 +33,13 @@ pub enum Family {
     Pse441,
 }
 
-/// The reason why a scale is impossible.
+/// Reason why a scale is impossible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScaleError {
     /// A numerator or denominator is 0.
     #[error("a scale cannot have a 0 in it: numerator and denominator are 1 to 65535")]
     Zero,
-    /// The pitch or the step is 0.
+    /// The pitch or the step size is 0.
     #[error("a spindle has a pitch and a step above 0")]
     NoLength,
     /// The numerator or denominator would exceed 16 bits.
@@ -56,17 +56,17 @@ pub enum ScaleError {
     },
 }
 
-/// Steps per turn with a scale of 1/1.
+/// Steps per turn at a scale of 1/1.
 const UNIT: i64 = 256;
 
 impl PositionScale {
-    /// 256/1: 65536 steps per turn.
+    /// Factory scale of 256/1, which gives 65536 steps per turn.
     pub const FACTORY: PositionScale = PositionScale { numerator: 256, denominator: 1 };
 
     /// Creates a scale from parameters 154 and 156.
     ///
     /// # Errors
-    /// Returns [`ScaleError::Zero`] if either is 0.
+    /// Returns [`ScaleError::Zero`] if either parameter is 0.
     pub const fn new(numerator: u16, denominator: u16) -> Result<Self, ScaleError> {
         match (numerator, denominator) {
             (0, _) | (_, 0) => Err(ScaleError::Zero),
@@ -74,11 +74,11 @@ impl PositionScale {
         }
     }
 
-    /// Returns the scale in which a step has the given length on a spindle of the given pitch. If a turn has whole
-    /// steps, the numerator is their number and the denominator 256, where possible.
+    /// Returns the scale in which a step has the given length on a spindle of the given pitch. If a turn has a whole
+    /// number of steps, that number is the numerator and 256 the denominator, where possible.
     ///
     /// # Errors
-    /// Returns [`ScaleError`] if either length is 0, or no scale yields exactly this step.
+    /// Returns [`ScaleError`] if either length is 0, or if no scale yields exactly this step.
     pub fn for_spindle(pitch: Length, step: Length) -> Result<Self, ScaleError> {
         let (pitch, step) = (pitch.nanometres, step.nanometres);
         if pitch == 0 || step == 0 {
@@ -110,7 +110,7 @@ impl PositionScale {
         256.0 * f64::from(self.numerator) / f64::from(self.denominator)
     }
 
-    /// Converts degrees to steps, rounded up, at least 1.
+    /// Converts degrees to steps, rounded up to at least 1.
     pub fn steps_of_degrees(self, degrees: f64) -> u32 {
         // The float cast saturates.
         (self.steps_per_turn() * degrees / 360.0).ceil().max(1.0) as u32
@@ -144,7 +144,7 @@ impl SpeedScale {
     /// Creates a scale from parameters 162 and 164.
     ///
     /// # Errors
-    /// Returns [`ScaleError::Zero`] if either is 0.
+    /// Returns [`ScaleError::Zero`] if either parameter is 0.
     pub const fn new(numerator: u16, denominator: u16) -> Result<Self, ScaleError> {
         match (numerator, denominator) {
             (0, _) | (_, 0) => Err(ScaleError::Zero),
@@ -157,7 +157,7 @@ impl SpeedScale {
         f64::from(speed) * f64::from(self.denominator) / f64::from(self.numerator)
     }
 
-    /// Converts rpm to the nearest transmitted speed that fits into 16 bits.
+    /// Converts rpm to the nearest transmitted speed that fits in 16 bits.
     pub fn speed(self, rpm: f64) -> i16 {
         // The float cast saturates.
         (rpm * f64::from(self.numerator) / f64::from(self.denominator)).round() as i16
@@ -174,7 +174,7 @@ impl Family {
         }
     }
 
-    /// Returns the number of turns in either direction that parameters 158 and 160 have as factory values.
+    /// Returns the number of turns in either direction that gives the factory values of parameters 158 and 160.
     pub const fn factory_turns(self) -> i32 {
         match self {
             Family::Short => 511,
@@ -184,13 +184,14 @@ impl Family {
     }
 }
 
-/// Splits a position with 65536 steps per turn into whole turns and steps within the turn. −1 step is in turn −1.
+/// Splits a position with 65536 steps per turn into whole turns and steps within the turn. A position of −1 is in
+/// turn −1.
 pub const fn turns(position: i32) -> (i16, u16) {
     ((position >> 16) as i16, position as u16)
 }
 
-/// Rounds to a value that parameter 198 accepts: the nearest multiple of 64, away from 0 in a tie (`U`). `None` beyond
-/// 32 bits.
+/// Rounds to a value that parameter 198 accepts, which is the nearest multiple of 64, away from 0 in a tie (`U`).
+/// Returns `None` if the result exceeds 32 bits.
 pub fn nearest_reference(position: i32) -> Option<i32> {
     const GRAIN: i64 = 64;
     let position = i64::from(position);
@@ -198,7 +199,7 @@ pub fn nearest_reference(position: i32) -> Option<i32> {
     i32::try_from(rounded).ok()
 }
 
-/// Returns the torque percentage that the drive applies: rounded up to a multiple of 25 %.
+/// Returns the torque percentage that the drive applies, rounded up to a multiple of 25 %.
 pub const fn effective_torque(percent: u8) -> u8 {
     percent.div_ceil(25).saturating_mul(25)
 }

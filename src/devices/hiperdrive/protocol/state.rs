@@ -5,7 +5,7 @@ use std::fmt;
 
 use super::control_word::{ControlBit, ControlWord};
 
-/// State according to the status word.
+/// State of the drive according to the status word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum State {
     /// Control of the drive has not been requested.
@@ -20,7 +20,7 @@ pub enum State {
     Moving,
     /// A fault has occurred.
     Fault,
-    /// A fault has been acknowledged.
+    /// A fault has been acknowledged, and the drive is locked.
     Locked,
 }
 
@@ -31,7 +31,7 @@ pub enum Trigger {
     Set(ControlBit),
     /// A bit of the control word is clear.
     Clear(ControlBit),
-    /// A bit falls while another bit, if any, has the given level.
+    /// A bit of the control word falls while another bit, if any, has the given level.
     Falls(ControlBit, Option<(ControlBit, bool)>),
     /// A job or a run starts.
     Starts,
@@ -44,7 +44,7 @@ pub enum Trigger {
 /// Row of the transition table.
 #[derive(Clone, Copy, Debug)]
 pub struct Transition {
-    /// States in which it applies.
+    /// States in which the transition applies.
     pub from: &'static [State],
     /// Event that causes it.
     pub trigger: Trigger,
@@ -67,7 +67,7 @@ const fn assumed(from: &'static [State], trigger: Trigger, to: State, word: Cont
     Transition { from, trigger, to, word: Some(word), assumed: true }
 }
 
-/// All transitions. The first applicable one takes effect.
+/// All transitions of the state machine. The first applicable transition takes effect.
 pub const TRANSITIONS: [Transition; 14] = [
     row(&[NotReady], Set(ControlBit::Control), Ready, Some(ControlWord::READY)),
     row(&[Ready, Operational, Enabled, Moving], Clear(ControlBit::Control), NotReady, Some(ControlWord::OFF)),
@@ -107,8 +107,8 @@ impl State {
         TRANSITIONS.iter().filter(move |row| row.from.contains(&self))
     }
 
-    /// Returns the state after the control word changes from `before` to `now`: at most one step. The word alone does
-    /// not determine motion.
+    /// Returns the state after the control word changes from `before` to `now`, which is at most one transition away.
+    /// The control word alone does not determine motion.
     pub fn after(self, before: ControlWord, now: ControlWord) -> State {
         let applies = |trigger: Trigger| match trigger {
             Set(bit) => now.has(bit),
@@ -127,7 +127,7 @@ impl State {
         self.transitions().find(|row| row.trigger == trigger).map_or(self, |row| row.to)
     }
 
-    /// Returns whether the keys on the drive can move it in this state.
+    /// Returns whether the keys on the drive can move the drive in this state.
     pub const fn obeys_keys(self) -> bool {
         matches!(self, NotReady | Ready | Fault | Locked)
     }

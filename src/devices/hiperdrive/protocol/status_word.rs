@@ -22,12 +22,12 @@ pub enum StatusBit {
     NoOff2 = 4,
     /// Same as bit 4.
     NoOff3 = 5,
-    /// Locked after a fault or a falling edge of control bit 0.
+    /// The drive is locked after a fault or a falling edge of control bit 0.
     SwitchOnLock = 6,
     /// A fault is present in any state.
     Warning = 7,
-    /// The manual states both that a following error sets it and that one clears it (reference 8.1): use error 8203 and
-    /// bit 3 instead.
+    /// Following error bit, which the manual describes both as set and as cleared by a following error (reference 8.1).
+    /// Use error 8203 and bit 3 instead.
     NoFollowingError = 8,
     /// Same as bit 4.
     ControlRequested = 9,
@@ -35,7 +35,7 @@ pub enum StatusBit {
     TargetReached = 10,
     /// Same as bit 4.
     ReferenceSet = 11,
-    /// Control bit 6 of the last job.
+    /// Level of control bit 6 of the last job.
     SetpointAcknowledged = 12,
     /// The drive is at standstill.
     StandingStill = 13,
@@ -66,12 +66,12 @@ impl StatusBit {
         StatusBit::PositionLimit,
     ];
 
-    /// Returns the bit number in the word.
+    /// Returns the number of the bit in the status word.
     pub const fn number(self) -> u8 {
         self as u8
     }
 
-    /// Returns the meaning of the set bit.
+    /// Returns the meaning of the bit when set.
     pub const fn name(self) -> &'static str {
         match self {
             StatusBit::Ready => "ready to switch on",
@@ -95,7 +95,7 @@ impl StatusBit {
 }
 
 impl StatusWord {
-    /// 0A30h: a detected drive that is not at standstill.
+    /// Status word 0A30h, of a detected drive that is not at standstill.
     pub const FOUND: StatusWord = StatusWord(0x0A30);
 
     /// Creates a status word from a received value.
@@ -113,7 +113,7 @@ impl StatusWord {
         self.0 >> bit as u8 & 1 == 1
     }
 
-    /// Returns this word with a bit set or cleared.
+    /// Returns this status word with a bit set or cleared.
     pub const fn with(self, bit: StatusBit, set: bool) -> Self {
         let mask = 1 << bit as u8;
         StatusWord(if set { self.0 | mask } else { self.0 & !mask })
@@ -124,19 +124,19 @@ impl StatusWord {
         StatusBit::ALL.into_iter().filter(move |bit| self.has(*bit))
     }
 
-    /// Returns whether the drive is present: it was detected or requested.
+    /// Returns whether the drive is present, that is, detected or requested.
     pub const fn is_present(self) -> bool {
         self.has(StatusBit::NoOff2)
     }
 
-    /// Returns whether a drive can send this word: bits 4, 5, 9 and 11 rise and fall together.
+    /// Returns whether a drive can send this status word. Bits 4, 5, 9 and 11 are always set and cleared together.
     pub const fn is_plausible(self) -> bool {
         let found = self.0 & StatusWord::FOUND.0;
         found == 0 || found == StatusWord::FOUND.0
     }
 
-    /// Returns the state of the drive. A fault takes precedence over the lock, the lock over the rest (`D`; bits 0 to 2
-    /// of a fault `U`).
+    /// Returns the state of the drive. A fault takes precedence over the lock, and the lock over all other states (`D`;
+    /// bits 0 to 2 of a fault `U`).
     pub const fn state(self) -> State {
         use StatusBit::{Fault, OperationEnabled, Operational, Ready, StandingStill, SwitchOnLock};
         if self.has(Fault) {

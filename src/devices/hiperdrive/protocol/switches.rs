@@ -3,14 +3,16 @@
 
 use core::net::Ipv4Addr;
 
-/// Source of the IP address that the two switches select.
+/// Source of the IP address, selected by the two address switches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AddressSwitch {
-    /// 0: from the TCP/IP object (class F5h, attribute 3): stored, BOOTP or, as the factory setting, DHCP.
+    /// Switch position 0: the source from the TCP/IP object (class F5h, attribute 3), which is stored, BOOTP or, by
+    /// factory setting, DHCP.
     Object,
-    /// 1 to 96: 192.168.1.n with the mask 255.255.255.0 and no gateway.
+    /// Switch positions 1 to 96: address 192.168.1.n with the mask 255.255.255.0 and no gateway.
     Fixed(Ipv4Addr),
-    /// 97: the stored address. Turned to 97 at runtime, the device also stores its present address.
+    /// Switch position 97: the stored address. If the switches are turned to 97 at runtime, the device also stores its
+    /// present address.
     Stored,
     /// 98: BOOTP.
     Bootp,
@@ -19,7 +21,7 @@ pub enum AddressSwitch {
 }
 
 impl AddressSwitch {
-    /// Parses the two digits, or returns `None` above 99.
+    /// Parses the two digits of the switches, or returns `None` above 99.
     pub const fn parse(number: u8) -> Option<Self> {
         let source = match number {
             0 => AddressSwitch::Object,

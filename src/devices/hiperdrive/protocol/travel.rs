@@ -3,21 +3,21 @@
 
 use super::scaling::{Family, PositionScale};
 
-/// Turns of a drive and the scale of its steps. Unknown values impose no limit.
+/// Turns of a drive and the scale of its steps, which together limit its values. Unknown values impose no limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Travel {
-    /// Family, which determines the turns.
+    /// Drive family, which determines the number of turns.
     pub family: Option<Family>,
-    /// Scale of parameters 154 and 156.
+    /// Scale given by parameters 154 and 156.
     pub scale: Option<PositionScale>,
 }
 
-/// Limit of a number of steps, relative to 0.
+/// Limit on a number of steps, relative to 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepLimit {
-    /// Position: the number of turns of the drive in either direction (158, 160, 198).
+    /// Limit of a position: the number of turns of the drive in either direction (158, 160, 198).
     Position,
-    /// Step: no longer than from one end of the turns to the other (170, 176; `D`: the manual gives only 32 bits, and a
+    /// Limit of a step, which is no longer than the whole travel (170, 176; `D`: the manual gives only 32 bits, and a
     /// longer step ends outside from any start).
     Step,
 }
@@ -26,7 +26,7 @@ impl Travel {
     /// Travel of an unknown drive.
     pub const UNKNOWN: Travel = Travel { family: None, scale: None };
 
-    /// Returns the maximum whole steps in either direction, or `None` if turns or scale are unknown.
+    /// Returns the maximum number of whole steps in either direction, or `None` if the turns or the scale are unknown.
     pub fn steps(self, reach: StepLimit) -> Option<i64> {
         let turns = self.family?.most_turns();
         Some(self.scale?.whole_steps(match reach {

@@ -22,16 +22,16 @@ pub enum Kind {
 /// A parameter value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
-    /// A number of any numeric kind.
+    /// A number of any numeric type.
     Number(i64),
     /// A string.
     Text(String),
 }
 
-/// The reason why data or a value do not match a kind.
+/// Reason why data or a value do not match a type.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ValueError {
-    /// The length does not match the kind.
+    /// The length does not match the type.
     #[error("a value of {got} bytes instead of {expected}")]
     Length {
         /// Required length in bytes.
@@ -39,7 +39,7 @@ pub enum ValueError {
         /// Actual length in bytes.
         got: usize,
     },
-    /// The number exceeds the range of the kind.
+    /// The number exceeds the range of the type.
     #[error("{number} is not within {low} to {high}")]
     Number {
         /// Rejected number.
@@ -86,7 +86,7 @@ impl Kind {
     /// blanks are removed, and non-ASCII bytes become question marks.
     ///
     /// # Errors
-    /// Returns [`ValueError::Length`] if a number has the wrong length.
+    /// Returns [`ValueError::Length`] if the data of a number have the wrong length.
     pub fn parse(self, data: &[u8]) -> Result<Value, ValueError> {
         let wrong = |expected| ValueError::Length { expected, got: data.len() };
         let number = match self {
@@ -104,7 +104,7 @@ impl Kind {
     /// Encodes a value.
     ///
     /// # Errors
-    /// Returns [`ValueError`] if the value is not of this kind.
+    /// Returns [`ValueError`] if the value is not of this type.
     pub fn emit(self, value: &Value) -> Result<Vec<u8>, ValueError> {
         let (number, length, (low, high)) = match (value, self.length(), self.limits()) {
             (Value::Number(number), Some(length), Some(limits)) => (*number, length, limits),
@@ -121,8 +121,8 @@ impl Kind {
     }
 }
 
-/// Parses a nominal value (parameters 126 to 129) and its number of decimals: one if preceded by an `A`, because the
-/// value is then in tenths (manual 6.2).
+/// Parses a nominal value (parameters 126 to 129) and returns it with its number of decimals. The number is one if the
+/// value is preceded by an `A`, because it is then in tenths (manual 6.2).
 pub fn nominal(text: &str) -> Option<(f64, usize)> {
     let (digits, by, decimals) = text.strip_prefix('A').map_or((text, 1.0, 0), |tenths| (tenths, 10.0, 1));
     digits.parse::<u32>().ok().map(|number| (f64::from(number) / by, decimals))

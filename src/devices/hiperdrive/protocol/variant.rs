@@ -13,7 +13,7 @@ pub struct VariantRow {
     pub variant: Variant,
     /// Product name.
     pub name: &'static str,
-    /// Family, which determines the travel (of HRA `U`).
+    /// Drive family, which determines the travel (for HRA `U`).
     pub family: Family,
 }
 
@@ -41,7 +41,7 @@ pub const VARIANTS: [VariantRow; 13] = [
 impl Variant {
     /// 0: no drive.
     pub const NONE: Variant = Variant(0);
-    /// FFFFh: a variant not listed in the manual.
+    /// Variant FFFFh, which the manual does not list.
     pub const OTHER: Variant = Variant(0xFFFF);
 
     /// Creates a variant from any number.

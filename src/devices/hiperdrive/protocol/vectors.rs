@@ -211,7 +211,7 @@ fn the_state_machine_matches_the_reference() {
 }
 
 /// Returns the status word of a state in reference 3.
-fn said_in(state: State) -> StatusWord {
+fn status_in(state: State) -> StatusWord {
     let word = match state {
         State::NotReady => 0x2A30,
         State::Ready => 0x2A31,
@@ -230,9 +230,13 @@ fn recipes_reach_their_target_state() {
     let walk = |steps: &[Step], mut before: ControlWord, mut state: State| {
         let mut words = Vec::new();
         for step in steps {
-            assert!(step.until.is_empty() || !step.is_done(said_in(state)), "{state} before {:04X}", step.word.word());
+            assert!(
+                step.until.is_empty() || !step.is_done(status_in(state)),
+                "{state} before {:04X}",
+                step.word.word()
+            );
             state = state.after(before, step.word);
-            assert!(step.is_done(said_in(state)), "{state} after {:04X}", step.word.word());
+            assert!(step.is_done(status_in(state)), "{state} after {:04X}", step.word.word());
             before = step.word;
             words.push(step.word.word());
         }

@@ -5,13 +5,13 @@ use std::time::Duration;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleLoad {
-    /// Load as a percentage of the nominal torque. With less effective torque nothing moves.
+    /// Load as a percentage of the nominal torque. If the effective torque is lower, nothing moves.
     pub percent: u8,
-    /// Lower obstacle, in steps of 65536 per shaft turn.
+    /// Position of the lower obstacle, in steps of 65536 per shaft turn.
     pub wall_below: Option<f64>,
-    /// Upper obstacle, in steps of 65536 per shaft turn.
+    /// Position of the upper obstacle, in steps of 65536 per shaft turn.
     pub wall_above: Option<f64>,
-    /// Degrees Celsius around the drive.
+    /// Ambient temperature of the drive, in degrees Celsius.
     pub ambient: f64,
     pub defect: Option<Defect>,
 }
@@ -22,7 +22,7 @@ pub enum Defect {
     RunsOn,
     /// The drive turns in the wrong direction.
     Reversed,
-    /// Status bit 15 (outside the limits) is set at any position.
+    /// The drive sets status bit 15 (outside the limits) at any position.
     SaysOutside,
 }
 
@@ -42,17 +42,17 @@ pub(super) struct Axis {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AxisDemand {
     Rest,
-    /// Moves to a position at a maximum speed.
+    /// Move to a position at a maximum speed.
     Place {
         at: f64,
         speed: f64,
     },
-    /// Turns at a signed speed.
+    /// Turn at a signed speed.
     Speed(f64),
 }
 
 impl AxisDemand {
-    /// Returns the effective demand in a drive with a defect at the given position.
+    /// Returns the effective demand on a drive at the given position, taking a defect into account.
     pub(super) fn with(self, defect: Option<Defect>, place: f64) -> AxisDemand {
         let turned = |speed: f64| if defect == Some(Defect::Reversed) { -speed } else { speed };
         match (self, defect) {
@@ -66,7 +66,7 @@ impl AxisDemand {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TickOutcome {
     OnTheWay,
-    /// At its target, or at rest as requested.
+    /// The drive is at its target, or at rest as requested.
     There,
     Held {
         above: bool,
@@ -77,7 +77,7 @@ pub(super) enum TickOutcome {
 pub(super) const TURN: f64 = 65536.0;
 pub(super) const TICK: Duration = Duration::from_millis(1);
 const TICK_S: f64 = 1e-3;
-/// Acceleration (assumed): 35 rpm are reached, or lost, in a tenth of a second.
+/// Acceleration (assumed), by which 35 rpm are reached or lost in a tenth of a second.
 const ACCELERATION: f64 = 350.0 / 60.0 * TURN;
 
 impl Axis {
@@ -115,7 +115,7 @@ impl Axis {
         };
         self.speed += (aim - self.speed).clamp(-gain, gain);
         let next = self.place + self.speed * TICK_S;
-        if let Some(held) = walls(load, next) {
+        if let Some(held) = blocking_wall(load, next) {
             (self.place, self.speed) = (held.0, 0.0);
             let arrived =
                 wanted == AxisDemand::Rest || matches!(wanted, AxisDemand::Place { at, .. } if at == self.place);
@@ -133,8 +133,8 @@ impl Axis {
     }
 }
 
-/// Returns the obstacle beyond which a position is, and whether it is the upper one.
-fn walls(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
+/// Returns the obstacle beyond which a position lies, and whether it is the upper obstacle.
+fn blocking_wall(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
     let below = load.wall_below.filter(|wall| place < *wall).map(|wall| (wall, false));
     below.or_else(|| load.wall_above.filter(|wall| place > *wall).map(|wall| (wall, true)))
 }
@@ -153,7 +153,8 @@ mod tests {
         panic!("it never ends: {axis:?}");
     }
 
-    /// 35 rpm: 0.1 s up, 0.1 s down, 1/60 · 35 · 0.1 = 0.0583 turns together. A turn takes 0.2 + (1 − 0.0583) / 0.5833 s.
+    /// At 35 rpm, 0.1 s up and 0.1 s down cover 1/60 · 35 · 0.1 = 0.0583 turns together. A turn takes
+    /// 0.2 + (1 − 0.0583) / 0.5833 s.
     #[test]
     fn a_turn_takes_the_expected_time() {
         let mut axis = Axis::default();

@@ -13,38 +13,38 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, SEED, VirtualDevice, setting};
 
 parameters! {
-    /// Settings of a virtual adapter or hub and its drives. The default is an adapter with a single drive HDA30A with
-    /// factory settings, at rest and without faults. Drive settings apply to all drives.
+    /// Settings of a virtual adapter or hub and its drives, by default an adapter with a single drive HDA30A at rest,
+    /// with factory settings and without faults. Drive settings apply to all drives.
     pub struct Config: ConfigError {
-        /// Topology; by default an adapter with one drive.
+        /// Topology, by default an adapter with one drive.
         pub(super) topology: Topology = Topology::Adapter, "hub" => Checked(Expected::Hub, |text| HUBS.read(text));
-        /// Ports with a drive; all by default. Ports after the end of the list are empty.
+        /// Ports that have a drive, by default all. Ports after the end of the list are empty.
         drives: Option<String> = None, "drives" => Maybe(ANY), "connect.plugged" like "1,0,1";
-        /// Presence of a drive in each port; `None` means a drive in every port.
+        /// Whether each port has a drive; `None` means a drive in every port.
         plugged: Option<Vec<bool>> = None;
-        /// Variant: parameter 120, or its name.
+        /// Variant of the drives, given as the value of parameter 120 or by name.
         pub(super) variant: Variant = Variant::new(7), "variant" => Checked(Expected::Variant, variant);
-        /// Parameter 152; the factory setting if not given.
+        /// Value of parameter 152, by default the factory setting.
         pub(super) requested: Option<bool> = None, "requested" => Maybe(Words(&[("0", false), ("1", true)]));
         /// Position of the drives, in steps of 65536 per turn.
         pub(super) position: i32 = 0, "position" => Whole(Quantity::Steps, i32::MIN..=i32::MAX);
-        /// Maximum speed in tenths of rpm, parameter 166.
+        /// Maximum speed (parameter 166), in tenths of rpm.
         pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
         /// Spindle load in percent; no drive can move a load above 100.
         load: u8 = SpindleLoad::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
         blocked: bool = false, "blocked" => SWITCH;
-        /// Defect: the drives do not stop at a target or limit, turn in the wrong direction, or always set status bit
-        /// 15.
+        /// Defect of the drives, which then do not stop at a target or limit, turn in the wrong direction, or always
+        /// set status bit 15.
         defect: Option<Defect> = None, "defect" => Maybe(Words(&[
             ("runs-on", Defect::RunsOn), ("reversed", Defect::Reversed), ("says-outside", Defect::SaysOutside),
         ]));
-        /// Ambient temperature of the drives, which fail from 80 on.
+        /// Ambient temperature of the drives in degrees Celsius. Drives fail from 80 degrees.
         temperature: f64 = SpindleLoad::default().ambient, "temperature" => Decimal(Quantity::Celsius, -40.0..=120.0);
-        /// Switch S3; at any setting but 0 nothing moves from the bus.
+        /// Position of switch S3. Nothing can be moved over the bus unless it is 0.
         pub(super) s3: u8 = 0, "s3" => Whole(Quantity::SwitchPosition, 0..=9);
         pub(super) switch: u8 = 0, "switch" => Checked(Expected::SwitchDigits, switch);
         pub(super) volts: f64 = 24.0, "supply" => Decimal(Quantity::Volts, 0.0..=100.0);
-        /// Duration of a reset of all drives (47 = −4), after which the reply is sent.
+        /// Duration of a reset of all drives (47 = −4). The reply is sent afterwards.
         pub(super) resets: Duration = RESETS, "reset" => Milliseconds(0..=8000);
         /// Parameter 17.
         pub(super) serial_number: u16 = 4711, "serial" => Whole(Quantity::Number, 0..=u16::MAX);
@@ -55,15 +55,15 @@ parameters! {
         /// Whether parameter strings are preceded by their length (`U`).
         pub(super) counted_texts: bool = false, "text" => Words(&[("plain", false), ("counted", true)]);
         pub(super) seed: u64 = 0, "seed" => SEED;
-        /// `drop`: fraction of replies lost, and of packets in both directions; `flip`, `garbage`: fraction of replies
-        /// and returned packets with an inverted bit, or replaced by random bytes; `silent-after` counts frames and
-        /// packets.
+        /// Injected faults: `drop` is the fraction of replies and of packets in both directions that are lost; `flip`
+        /// and `garbage` are the fractions of replies and returned packets with an inverted bit or replaced by random
+        /// bytes. `silent-after` counts frames and packets.
         pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
 }
 
 impl Config {
-    /// Parses percent-decoded keys and values. If a key occurs twice, its last value counts. Numbers are decimal or
+    /// Parses percent-decoded keys and values. If a key occurs twice, the last value applies; numbers are decimal or
     /// `0x…`.
     ///
     /// # Errors
@@ -74,7 +74,7 @@ impl Config {
         Ok(config)
     }
 
-    /// Returns the control supply, in tenths of a volt.
+    /// Returns the control supply voltage, in tenths of a volt.
     pub(super) fn supply_tenths(&self) -> u16 {
         // At most 1000.
         (self.volts * 10.0).round() as u16
@@ -103,7 +103,7 @@ impl Config {
     }
 }
 
-/// The hubs, as distinct from an adapter.
+/// Allowed words for the topology of a hub.
 const HUBS: Words<Topology> = Words(&[("4", Topology::Hub4), ("8", Topology::Hub8)]);
 
 fn variant(text: &str) -> Option<Variant> {
@@ -206,7 +206,7 @@ mod tests {
         }
     }
 
-    /// The settings as read from the drive, not from the configuration.
+    /// The settings read from a station are those configured.
     #[test]
     fn a_station_has_its_configured_settings() {
         let query = "hub=4&drives=0,1&variant=HDA70&requested=1&position=-100&speed=200&switch=17&supply=23.5&serial=16&name=Feeder";
@@ -221,7 +221,7 @@ mod tests {
         assert_eq!(value(260), Some(Value::Number(1_048_576_000)));
     }
 
-    /// Moves the first drive to a target as far as possible; returns its last status and newest error.
+    /// Moves the first drive as far as possible towards a target. Returns its last status and newest error.
     fn driven(query: &str) -> (u16, Option<ErrorCode>) {
         let mut station = Station::of(&read(query).unwrap());
         let mut now = Moment::START;
@@ -241,7 +241,7 @@ mod tests {
         (status.with(StatusBit::SetpointAcknowledged, false).word(), error)
     }
 
-    /// Reference 3 and 9: done is 3E37, compared without bit 12; a fault is 2AB8.
+    /// Reference 3 and 9: the status word is 3E37 when done, compared without bit 12, and 2AB8 for a fault.
     #[test]
     fn drives_show_their_configured_faults() {
         for (query, status, error) in [

@@ -32,7 +32,7 @@ pub struct Drive {
     pub(super) celsius: f64,
     load: SpindleLoad,
     control: ControlWord,
-    /// Whether the drive moves is read from the axis.
+    /// State of the drive, except for motion, which is read from the axis.
     state: State,
     motion: Motion,
     target_reached: bool,
@@ -47,23 +47,23 @@ pub struct Drive {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Motion {
     Rest,
-    /// A move to a position; a jog step is one that a stop does not end.
+    /// A move to a position, or a jog step, which a stop does not end.
     Job {
         at: f64,
         jog: Option<Jog>,
     },
-    /// A job that waits for bit 5.
+    /// A paused job that waits for bit 5.
     Paused {
         at: f64,
     },
-    /// Run in speed mode, to a position or without an end.
+    /// A run in speed mode, to a position or without an end.
     Run {
         to: Option<f64>,
         clockwise: bool,
     },
 }
 
-/// Speed and torque of a jog step in percent.
+/// Speed and torque of a jog step, in percent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Jog {
     speed: u8,
@@ -75,12 +75,12 @@ const ERRORS: usize = 8;
 const HELD_MS: u32 = 200;
 const WEAK_MS: u32 = 500;
 const HOT: f64 = 80.0;
-/// Kelvin above the ambient temperature at full torque.
+/// Temperature rise above ambient at full torque, in kelvin.
 const WARMING: f64 = 40.0;
 const WARMING_S: f64 = 60.0;
 
 impl Drive {
-    /// Creates a drive from the factory, switched on at the start of the clock.
+    /// Creates a drive in its factory state, switched on at the start of the clock.
     pub fn new(variant: Variant, topology: Topology, load: SpindleLoad) -> Self {
         let family = variant.row().map_or(Family::Short, |row| row.family);
         Drive {
@@ -121,10 +121,10 @@ impl Drive {
         self.axis = Axis::at(self.axis.place() + steps);
     }
 
-    /// Injects an error, which is stored, and which ends the motion as a fault if the drive is operational.
+    /// Injects an error, which is stored. If the drive is operational, the error ends the motion as a fault.
     pub fn fail(&mut self, now: Moment, code: ErrorCode) {
         self.advance(now);
-        self.fails(code);
+        self.enter_fault(code);
     }
 
     pub fn command(&mut self, now: Moment, out: OutData) {
@@ -141,7 +141,7 @@ impl Drive {
         }
     }
 
-    /// Sets whether the drive may move over the bus (S3 is at 0).
+    /// Sets whether the drive may move over the bus (whether S3 is at 0).
     pub(super) const fn allow(&mut self, allowed: bool) {
         self.allowed = allowed;
     }
@@ -182,7 +182,7 @@ impl Drive {
         .fold(StatusWord::FOUND, |status, (bit, set)| status.with(bit, set))
     }
 
-    /// Returns whether nothing moves or is about to.
+    /// Returns whether nothing is moving or is going to move.
     pub(super) fn is_standing(&self) -> bool {
         self.axis.is_standing() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
     }
@@ -210,11 +210,11 @@ impl Drive {
         (limit(LOWER), limit(UPPER))
     }
 
-    /// Handles the loss of the master: an operational drive fails.
+    /// Handles the loss of the master, which is a fault for an operational drive.
     pub(super) fn abandon(&mut self, now: Moment) {
         self.advance(now);
         if self.state.by(Trigger::Fails) == State::Fault && self.state != State::Fault {
-            self.fails(ErrorCode::CONNECTION_TIMEOUT);
+            self.enter_fault(ErrorCode::CONNECTION_TIMEOUT);
         }
     }
 
@@ -223,7 +223,7 @@ impl Drive {
         self.over_current = false;
     }
 
-    pub(super) fn fails(&mut self, code: ErrorCode) {
+    pub(super) fn enter_fault(&mut self, code: ErrorCode) {
         self.errors.push_front(code);
         self.errors.truncate(ERRORS);
         self.faults = self.faults.saturating_add(1);
@@ -239,7 +239,7 @@ impl Drive {
         f64::from(position) / self.scale().steps_per_turn() * TURN - self.offset
     }
 
-    /// Advances to a moment in steps of one millisecond; an earlier moment has no effect.
+    /// Advances the simulation to a moment in steps of one millisecond. An earlier moment has no effect.
     pub(super) fn advance(&mut self, now: Moment) {
         while self.at + TICK <= now {
             let ticks = if self.is_settled() { now.since(self.at).as_millis().max(1) } else { 1 };
@@ -255,7 +255,7 @@ impl Drive {
         self.motion == Motion::Rest && self.axis.is_standing() && !begins && self.next(self.control) == self.state
     }
 
-    /// Returns the state to which the word leads after another one.
+    /// Returns the state to which the current control word leads after the given one.
     fn next(&self, before: ControlWord) -> State {
         match self.state {
             State::NotReady if !self.may_move() => State::NotReady,
@@ -263,7 +263,7 @@ impl Drive {
         }
     }
 
-    /// Returns whether the drive is requested, and S3 does not select a drive.
+    /// Returns whether the drive is requested and S3 does not select a drive.
     fn may_move(&self) -> bool {
         self.allowed && self.memory.get(REQUESTED) == Some(1)
     }
@@ -283,9 +283,9 @@ impl Drive {
         self.stuck_ms = if stuck { self.stuck_ms + 1 } else { 0 };
         match came {
             TickOutcome::Held { above } if self.stuck_ms >= HELD_MS => {
-                self.fails(if above { ErrorCode::BLOCK_FORWARD } else { ErrorCode::BLOCK_REVERSE });
+                self.enter_fault(if above { ErrorCode::BLOCK_FORWARD } else { ErrorCode::BLOCK_REVERSE });
             }
-            _ if weak && self.stuck_ms >= WEAK_MS => self.fails(ErrorCode::FOLLOWING),
+            _ if weak && self.stuck_ms >= WEAK_MS => self.enter_fault(ErrorCode::FOLLOWING),
             TickOutcome::There if wants && !weak => {
                 self.target_reached |= matches!(self.motion, Motion::Job { .. });
                 self.motion = Motion::Rest;
@@ -318,7 +318,7 @@ impl Drive {
         let before = self.celsius;
         self.celsius = ends + (before - ends) * left;
         if self.celsius >= HOT && (before < HOT || torque > 0) && self.state != State::Fault {
-            self.fails(ErrorCode::OVER_TEMPERATURE);
+            self.enter_fault(ErrorCode::OVER_TEMPERATURE);
         }
     }
 
@@ -335,7 +335,7 @@ impl Drive {
         self.state = state;
     }
 
-    /// Applies the control word to a running motion. A jog step is not affected.
+    /// Applies the control word to a running motion, without affecting a jog step.
     fn obey(&mut self) {
         let has = |bit| self.control.has(bit);
         let speed_mode = has(ControlBit::SpeedMode);
@@ -372,7 +372,7 @@ impl Drive {
         if (low..=high).contains(&target) {
             self.moves(Motion::Job { at: self.place_of(target), jog });
         } else if jog.is_some() || (self.out.speed > 0 && self.out.torque > 0) {
-            self.fails(ErrorCode::INVALID_TARGET);
+            self.enter_fault(ErrorCode::INVALID_TARGET);
         }
     }
 

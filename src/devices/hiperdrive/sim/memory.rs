@@ -12,11 +12,11 @@ pub(super) struct Memory {
     kept: BTreeMap<u16, i64>,
 }
 
-/// Value of parameter 192 that the drive determines (assumed).
+/// Value of parameter 192 in milliseconds, determined by the drive (assumed).
 const COMPLETE_TIME_MS: i64 = 5;
 
 impl Memory {
-    /// Creates the memory with factory settings, for the parameters that `holds` selects.
+    /// Creates a memory with factory settings for the parameters selected by `holds`.
     pub(super) fn new(topology: Topology, family: Family, holds: fn(&ParameterRow) -> bool) -> Self {
         let value = |row: &ParameterRow| {
             let found = (row.number == RS485_COMPLETE).then_some(COMPLETE_TIME_MS);
@@ -26,7 +26,7 @@ impl Memory {
         Memory { now: factory.clone(), kept: factory.clone(), factory }
     }
 
-    /// Returns the value of a parameter, or `None` if it is not stored here.
+    /// Returns the value of a parameter, or `None` if this memory does not store it.
     pub(super) fn get(&self, number: u16) -> Option<i64> {
         self.now.get(&number).copied()
     }
@@ -46,7 +46,7 @@ impl Memory {
         self.kept.extend(self.now.iter().filter(|(number, _)| is_saved(**number)));
     }
 
-    /// Stores the first half of the values, as if the supply were lost in the meantime.
+    /// Stores the first half of the values, as if the supply were lost during the save.
     pub(super) fn save_half(&mut self) {
         let saved: Vec<(u16, i64)> = self.now.iter().map(|(n, v)| (*n, *v)).filter(|(n, _)| is_saved(*n)).collect();
         let half = saved.len() / 2;
@@ -61,17 +61,18 @@ impl Memory {
         reference.into_iter().for_each(|position| self.set(REFERENCE, position));
     }
 
-    /// 47 = −2: restores the last saved values that the adapter or hub stores itself.
+    /// Handles 47 = −2, which restores the last saved values that the adapter or hub itself stores.
     pub(super) fn recall(&mut self) {
         copy_own(&self.kept, &mut self.now);
     }
 
-    /// 47 = −1: restores the factory settings of the values that the adapter or hub stores itself, without saving.
+    /// Handles 47 = −1, which restores the factory settings of the values that the adapter or hub itself stores,
+    /// without saving them.
     pub(super) fn reset_device_values(&mut self) {
         copy_own(&self.factory, &mut self.now);
     }
 
-    /// Restores all factory settings, not saved yet.
+    /// Restores all factory settings without saving them.
     pub(super) fn forget(&mut self) {
         self.now = self.factory.clone();
     }

@@ -42,7 +42,7 @@ impl Refused {
 }
 
 impl Drive {
-    /// Returns a parameter by the number of drive 1.
+    /// Returns a parameter, given its number for drive 1.
     pub(super) fn read(&mut self, now: Moment, number: u16) -> Option<Value> {
         let actual = self.actual(now);
         let text = |text: &str| Some(Value::Text(text.to_owned()));
@@ -77,12 +77,12 @@ impl Drive {
         Some(Value::Number(value))
     }
 
-    /// Returns whether writing this value restarts the drive: 0 → 1 of 152, and 199.
+    /// Returns whether writing this value restarts the drive, as do a change of 152 from 0 to 1 and writing 199.
     pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
         number == RESET || (number, value) == (REQUESTED, 1) && self.memory.get(REQUESTED) == Some(0)
     }
 
-    /// Writes a parameter by the number of drive 1, after its range has been checked.
+    /// Writes a parameter, given its number for drive 1, after its range has been checked.
     pub(super) fn write(&mut self, now: Moment, number: u16, value: i64) -> Result<(), Refused> {
         self.advance(now);
         let mut out = self.out;
@@ -120,7 +120,7 @@ impl Drive {
         Ok(())
     }
 
-    /// Writes a limit: 160 must be above 158, with the position between them.
+    /// Writes a limit. Limit 160 must be above limit 158, with the position between them.
     fn write_limit(&mut self, number: u16, value: i64) -> Result<(), Refused> {
         let (low, high) = self.limits();
         let (low, high) = if number == LOWER { (value, high.into()) } else { (low.into(), value) };
@@ -131,7 +131,7 @@ impl Drive {
         Ok(())
     }
 
-    /// The position becomes the nearest multiple of 64.
+    /// Sets the position to the nearest multiple of 64.
     fn write_position(&mut self, value: i64) -> Result<(), Refused> {
         let (low, high) = self.limits();
         let inside = |position: &i32| (low..=high).contains(position);
@@ -145,18 +145,18 @@ impl Drive {
         Ok(())
     }
 
-    /// Sets the position to that of the shaft, between 0 and 1 turn (manual, 198).
+    /// Sets the position to that of the shaft, which is between 0 and 1 turn (manual, 198).
     pub(super) fn invalidate_position(&mut self) {
         self.offset = -(self.axis.place() / TURN).floor() * TURN;
     }
 
     pub(super) fn refuses(&mut self) -> Refused {
-        self.fails(ErrorCode::INVALID_VALUE);
+        self.enter_fault(ErrorCode::INVALID_VALUE);
         Refused::Value
     }
 }
 
-/// Returns an element of a string; each contains four characters.
+/// Returns an element of a string, which contains four of its characters.
 pub(super) fn element(text: &str, element: u16) -> Option<u32> {
     let bytes = text.as_bytes();
     let part = bytes.chunks(4).nth(element.into())?;

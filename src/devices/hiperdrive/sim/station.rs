@@ -23,7 +23,7 @@ use crate::units::Moment;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     pub topology: Topology,
-    /// Drives by port; `None` for an empty port.
+    /// Drives by port, with `None` for an empty port.
     pub drives: Vec<Option<(Variant, SpindleLoad)>>,
     /// Parameter 17.
     pub serial_number: u16,
@@ -36,11 +36,11 @@ pub struct Station {
     memory: Memory,
     master: Option<Master>,
     busy_until: Moment,
-    /// Time of the reply to the last write, which follows a reset of drives.
+    /// Time at which the last write is answered, if it resets drives.
     answers_at: Option<Moment>,
-    /// Parameter words received last, and the answer in the process data.
+    /// Last received parameter words, and the answer in the process data.
     words: (Pkw, Pkw),
-    /// Next answer, and when it appears.
+    /// Next answer, with the time at which it appears.
     answers: Option<(Moment, Pkw)>,
     resets: Duration,
     plate: NamePlate,
@@ -48,7 +48,7 @@ pub struct Station {
     hindered: ActiveWriteFault,
 }
 
-/// The identity data that no [`Setup`] contains.
+/// Identity data that are not part of a [`Setup`].
 #[derive(Clone, Debug)]
 struct NamePlate {
     name: String,
@@ -56,11 +56,11 @@ struct NamePlate {
     supply_tenths: u16,
 }
 
-/// The possible ends of a save.
+/// State of the saves, which can be interrupted by a loss of supply.
 #[derive(Clone, Copy, Debug, Default)]
 struct Store {
     count: u32,
-    /// Number of the save in which the supply is lost, counted from 1.
+    /// Number of the save during which the supply is lost, counted from 1.
     dies_in: Option<u32>,
     dies_at: Option<Moment>,
     /// The supply was lost.
@@ -73,14 +73,14 @@ struct Master {
     heard: Moment,
 }
 
-/// Chosen, within the time given by the manual.
+/// Duration of a save, chosen within the time given by the manual.
 const SAVES: Duration = Duration::from_millis(150);
 /// Duration of a reset of all drives, unless the settings specify another.
 pub(super) const RESETS: Duration = Duration::from_secs(1);
 const DRIVE_RESETS: Duration = Duration::from_millis(300);
 
 impl Default for Setup {
-    /// Creates an adapter with a drive HDA30A.
+    /// Creates an adapter with a drive of type HDA30A.
     fn default() -> Self {
         let drives = vec![Some((Variant::new(7), SpindleLoad::default()))];
         Setup { topology: Topology::Adapter, drives, serial_number: 4711 }
@@ -88,7 +88,7 @@ impl Default for Setup {
 }
 
 impl Station {
-    /// Creates a station from the factory, switched on at the start of the clock.
+    /// Creates a station in its factory state, switched on at the start of the clock.
     pub fn new(setup: Setup) -> Self {
         let places = setup.drives.iter().copied().chain(std::iter::repeat(None));
         let drives = places
@@ -145,12 +145,12 @@ impl Station {
         self.store.dead
     }
 
-    /// Sets the number of the save, starting at 1, during which the supply is lost; `None` disables this.
+    /// Sets the number of the save, counted from 1, during which the supply is lost; `None` disables the loss.
     pub const fn die_in_store(&mut self, number: Option<u32>) {
         self.store.dies_in = number;
     }
 
-    /// Injects a failure of writes; `None` removes it and repairs a lost line.
+    /// Injects a failure of writes. `None` removes the failure and repairs a lost line.
     pub const fn set_write_fault(&mut self, what: Option<(ParameterNumber, WriteFault)>) {
         self.hindered = ActiveWriteFault::by(what);
     }
@@ -163,7 +163,8 @@ impl Station {
         self.drives.get_mut(usize::from(number.get()) - 1)?.as_mut()
     }
 
-    /// Records that a master has opened the cyclic connection, which is lost without a packet for the given time.
+    /// Records that a master has opened the cyclic connection. The connection is lost if no packet arrives for the
+    /// given time.
     pub fn open(&mut self, now: Moment, timeout: Duration) {
         self.advance(now);
         self.master = Some(Master { timeout, heard: now });
@@ -181,7 +182,7 @@ impl Station {
         self.master.is_some()
     }
 
-    /// Handles process data. Without a connection, and during a reset of drives, they are dropped.
+    /// Handles process data, which are dropped without a connection and during a reset of drives.
     pub fn cyclic(&mut self, now: Moment, image: &OutImage, runs: bool) {
         self.advance(now);
         let Some(master) = &mut self.master else { return };
@@ -211,7 +212,7 @@ impl Station {
         InImage { drives: self.drives.iter_mut().map(actual).collect(), pkw: Some(self.words.1) }
     }
 
-    /// Sets switch S3. At any setting but 0 nothing moves from the bus.
+    /// Sets switch S3. Nothing can be moved over the bus unless it is at 0.
     pub fn turn_s3(&mut self, now: Moment, position: u8) {
         self.advance(now);
         self.present().for_each(|drive| drive.allow(position == 0));
@@ -229,7 +230,7 @@ impl Station {
     /// Reads a parameter.
     ///
     /// # Errors
-    /// [`Refused`] for an unknown parameter, or one of a missing drive.
+    /// Returns [`Refused`] for an unknown parameter or a parameter of a missing drive.
     pub fn read(&mut self, now: Moment, number: ParameterNumber) -> Result<Value, Refused> {
         self.advance(now);
         self.answers_at = None;
@@ -245,7 +246,7 @@ impl Station {
         }
     }
 
-    /// Returns the time of the reply to the last write, if it is delayed.
+    /// Returns the time at which the last write is answered, if the reply is delayed.
     pub const fn answers_at(&mut self) -> Option<Moment> {
         self.answers_at.take()
     }
@@ -253,7 +254,7 @@ impl Station {
     /// Writes a parameter.
     ///
     /// # Errors
-    /// [`Refused`]; nothing was written.
+    /// Returns [`Refused`]; nothing was written.
     pub fn write(&mut self, now: Moment, number: ParameterNumber, value: &Value) -> Result<(), Refused> {
         self.advance(now);
         self.answers_at = None;
@@ -363,8 +364,8 @@ impl Station {
         self.drives.iter_mut().flatten()
     }
 
-    /// Executes timed events when they are due rather than at the next access, such as a loss of supply during a save
-    /// or a time-out of the master.
+    /// Executes timed events, such as a loss of supply during a save or a time-out of the master, at the time they are
+    /// due rather than at the next access.
     fn advance(&mut self, now: Moment) {
         if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
             self.store.dead = true;

@@ -5,9 +5,9 @@ use crate::devices::hiperdrive::protocol::ParameterNumber;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WriteFault {
-    /// The write is refused: not possible in this state.
+    /// The write is refused as not possible in this state.
     Refused,
-    /// The line is lost after a write, which takes effect.
+    /// The line is lost after a write that takes effect.
     CutOff,
 }
 

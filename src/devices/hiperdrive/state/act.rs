@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest};
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Body;
 
-/// Interval of reading a watched temperature, which changes slowly.
+/// Interval for reading a watched temperature, which changes slowly.
 const WATCHED_EVERY: Duration = Duration::from_secs(2);
 
 impl Unit {
@@ -72,7 +72,7 @@ impl Unit {
         device.into_iter().chain(self.watches_drive.then_some(Temperature::Drive(self.drive()))).collect()
     }
 
-    /// Passes the watched temperatures to the recording and to the session.
+    /// Passes the list of watched temperatures to the recording and to the session.
     pub(super) fn request_temperatures(&mut self) {
         let wished = self.watched_temperatures();
         self.record.watch_temperatures(&wished);
@@ -81,7 +81,7 @@ impl Unit {
         }
     }
 
-    /// Moves a drive; refused with a reason if it may not move.
+    /// Moves a drive, or refuses with a reason if the drive may not move.
     fn drive_by(&mut self, motor: Motor, services: &mut Services) {
         let drive = self.drive();
         let request = match motor {
@@ -127,7 +127,7 @@ impl Unit {
         }
     }
 
-    /// Opens the cyclic connection; from then on the selected drive is read continuously.
+    /// Opens the cyclic connection, after which the selected drive is read continuously.
     fn take_control(&mut self, services: &mut Services) {
         if let Err(why) = self.check_can_take_control() {
             services.notify(Severity::Warning, vec![why], Some(&self.session.name()));
@@ -143,12 +143,12 @@ impl Unit {
         };
     }
 
-    /// Starts a job; reports the reason and returns `false` if it cannot be started.
+    /// Starts a job. Reports the reason and returns `false` if the job cannot be started.
     pub(super) fn submit(&mut self, job: HiperdriveJob, services: &mut Services) -> bool {
         self.session.submit(job, services)
     }
 
-    /// Handles a profile that was read for a file.
+    /// Handles a profile that was read in order to be saved to a file.
     pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         self.notice_scales(&profile.image);
         self.staged.refresh_some(&profile.image);

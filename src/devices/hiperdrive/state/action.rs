@@ -24,7 +24,7 @@ pub enum HiperdriveAction {
     /// Open the cyclic connection, which does not move anything.
     Take,
     Give,
-    /// Move the selected drive, or lead it to another state.
+    /// Move the selected drive, or change its state.
     Drive(Motor),
     /// Set up the axis of the selected drive.
     Axis(axis::AxisAction),
@@ -38,21 +38,21 @@ pub enum Motor {
     Acknowledge,
     JogPress {
         direction: Direction,
-        /// Set for an automatic repetition of the key, which starts nothing.
+        /// Whether this is an automatic key repetition, which starts nothing.
         repeated: bool,
     },
-    /// Press of a slow and weak jog in the axis set-up, independent of the settings of other jogs.
+    /// Press of a jog button in the axis set-up. Jogging there is slow and weak, independent of other jog settings.
     SlowJogPress {
         direction: Direction,
-        /// Set for an automatic repetition of the key, which starts nothing.
+        /// Whether this is an automatic key repetition, which starts nothing.
         repeated: bool,
     },
-    /// Allow the next jog in this direction to lead further out from outside the limits.
+    /// Allow the next jog in this direction to lead further outside the limits.
     FreeOutward(Direction),
-    /// The jog is still held; sent in every frame.
+    /// Confirm that the jog is still held. Sent in every frame.
     JogHold,
     JogRelease,
-    /// Move by this number of steps from the present position, to the end.
+    /// Move by this number of steps from the present position and stop there.
     Step {
         /// In scaled steps.
         by: i32,

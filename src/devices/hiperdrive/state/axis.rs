@@ -3,8 +3,8 @@
 //! performs no I/O, and no step continues before the drive confirms it.
 //!
 //! The results of the steps form a chain: each depends on facts of the drive (scale, pitch, reference, limits) and
-//! becomes void when they change, together with all later results, even if another program changed them. The displayed step is
-//! independent of that: it changes only when the user presses a button.
+//! becomes void when they change, together with all later results, even if another program changed them. The displayed
+//! step is independent of that: it changes only when the user presses a button.
 //!
 //! Parameters are tried first: they are written and read back, but not saved. Saving is a separate step, the last but
 //! one. The manual does not guarantee that unsaved values are lost at power-off, so the previous ones are written back.
@@ -40,22 +40,22 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum AxisStep {
-    /// The drive is requested: parameter 152.
+    /// The drive is requested (parameter 152).
     Request,
-    /// Pitch and resolution become parameters 154 and 156.
+    /// Pitch and resolution are written as parameters 154 and 156.
     Scale,
-    /// The user checks the limits for the set-up, in millimetres.
+    /// The user checks the limits for the set-up in millimetres.
     Confirm,
-    /// The axis is moved slowly, to see which direction is positive.
+    /// The axis is moved slowly to find out which direction is positive.
     Jog,
-    /// The present position gets its number: parameter 198.
+    /// The present position is assigned a number (parameter 198).
     Reference,
     Lower,
-    /// The upper limit is taught, and both are written: parameters 158 and 160.
+    /// The upper limit is taught, and both limits are written (parameters 158 and 160).
     Upper,
-    /// The axis is moved to the middle of the range, and to both limits.
+    /// The axis is moved to the middle of the range and to both limits.
     Test,
-    /// Everything is saved: 47 = 1.
+    /// Everything is saved (47 = 1).
     Save,
     PowerCycle,
 }
@@ -76,10 +76,10 @@ pub enum End {
     Cancelled,
 }
 
-/// A change made by the run, in order.
+/// A change made by the set-up. Changes are kept in order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AxisChange {
-    /// A parameter, by the number of drive 1.
+    /// Change of a parameter, identified by its number for drive 1.
     Parameter(u16, i64),
     Position(i32),
 }
@@ -96,13 +96,13 @@ pub struct RunSummary {
 struct Confirmed {
     scale: Option<PositionScale>,
     seen: (i32, i32),
-    /// The same, or the ones taught and written since by a reviewed plan.
+    /// Limits seen by the user, or the limits taught and written since by a reviewed plan.
     agreed: (i32, i32),
-    /// Taught limits of an interrupted plan: each of them may have been written.
+    /// Taught limits of an interrupted plan, each of which may have been written.
     begun: Option<(i32, i32)>,
 }
 
-/// The run for one drive.
+/// Set-up of the axis of one drive.
 #[derive(Clone, Debug)]
 pub struct Axis {
     drive: DriveNumber,
@@ -111,21 +111,21 @@ pub struct Axis {
     chain: StepOutcomes,
     confirmed: Option<Confirmed>,
     travel: Travel,
-    /// The position that was set, and the origin of positions since then.
+    /// Position that was set, and the origin of positions since then.
     reference: Option<(i32, Origin)>,
     sets: Option<i32>,
     standstill: Standstill,
-    /// Number of jumps of the position at a standstill.
+    /// Number of times the position jumped at standstill.
     jumps: u32,
     /// Steps by which the position changed while it was not read, since the reference.
     unexplained: Option<i64>,
     outcomes: [Option<Outcome>; 3],
-    /// The running test move: its target, and the act that started it.
+    /// Running test move: which target, its position, and the act that started the move.
     going: Option<(TestTarget, i32, u64)>,
     saved: bool,
     power: Option<Power>,
     changes: Vec<AxisChange>,
-    /// Set if only some of the changes may have been made.
+    /// Whether only some of the changes may have been made.
     partly: bool,
     returned: Vec<(u16, i64)>,
     asked: Option<DriveRequest>,
@@ -151,7 +151,7 @@ impl AxisStep {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Test)
     }
 
-    /// Returns whether the drive is moved by hand in it.
+    /// Returns whether the drive is moved by hand in this step.
     pub const fn jogs(self) -> bool {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper)
     }
@@ -209,7 +209,7 @@ impl Axis {
         &self.entries
     }
 
-    /// Returns the end; `None` while it runs.
+    /// Returns how the set-up ended, or `None` while it is running.
     pub fn end(&self) -> Option<End> {
         self.over.as_ref().map(|over| over.end)
     }
@@ -218,7 +218,7 @@ impl Axis {
         self.over.as_ref()
     }
 
-    /// Returns the facts known at its end; before that, the present ones.
+    /// Returns the facts known when the set-up ended, or the present facts while it is running.
     pub fn as_seen<'a>(&'a self, now: &'a DriveFacts) -> &'a DriveFacts {
         self.over.as_ref().map_or(now, |over| &over.seen)
     }
@@ -227,7 +227,7 @@ impl Axis {
         &self.changes
     }
 
-    /// Returns whether a write ended early: some of the changes may not have been made.
+    /// Returns whether a write ended early, so that some of the changes may not have been made.
     pub const fn is_partly_written(&self) -> bool {
         self.partly
     }
@@ -261,7 +261,7 @@ impl Axis {
         self.power
     }
 
-    /// Returns an earlier step whose result the drive no longer has: it must be repeated, with all later steps.
+    /// Returns an earlier step whose result the drive no longer has. That step and all later steps must be repeated.
     pub fn invalidated_text(&self) -> Option<AxisStep> {
         self.chain.end().filter(|step| *step < self.step)
     }
@@ -280,7 +280,7 @@ impl Axis {
         }
     }
 
-    /// Returns whether the supply was off, the saved values are present, and the axis is where it was.
+    /// Returns whether the supply was off, the saved values are present, and the axis has not moved.
     pub fn survived(&self) -> bool {
         self.power.is_some_and(Power::is_survived)
     }
@@ -289,7 +289,7 @@ impl Axis {
         Origin::of(seen, self.jumps)
     }
 
-    /// Returns the facts of now on which results rest.
+    /// Returns the present facts on which results depend.
     fn basis(&self, seen: &DriveFacts) -> Preconditions {
         Preconditions {
             requested: seen.requested,

@@ -27,24 +27,24 @@ pub enum VirtualHub {
     Eight,
 }
 
-/// Entries of the connection form. Entries of other connection types are preserved and left out of the link. An empty
-/// entry selects the default.
+/// Entries of the connection form, where an empty entry selects the default. Entries of other connection types are
+/// preserved but left out of the link.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HiperdriveForm {
     pub kind: HiperdriveLinkKind,
     pub hub: VirtualHub,
     pub host: String,
-    /// TCP port; empty for 44818.
+    /// TCP port, or empty for 44818.
     pub tcp_port: String,
     pub file: String,
-    /// Process data have the high byte first.
+    /// Whether process data have the high byte first.
     pub big_endian: bool,
     pub typed: Typed,
-    /// Parameters of the link that have no entry.
+    /// Link parameters that have no entry in the form.
     pub rest: Vec<(String, String)>,
 }
 
-/// Name and non-default value of the byte order parameter.
+/// Name of the byte order parameter and its non-default value.
 const BIG_ENDIAN: (&str, &str) = ("order", "big");
 const PORT: &str = "44818";
 
@@ -102,13 +102,13 @@ impl FormModel for HiperdriveForm {
 }
 
 impl HiperdriveForm {
-    /// Returns the parameters to enter: those of the virtual device, if applicable, and those of the link.
+    /// Returns the parameters that can be entered: those of the link and, if applicable, those of the virtual device.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == HiperdriveLinkKind::Virtual { Config::entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Returns the entry of the setpoint interval, and the rarely used ones.
+    /// Returns the entry for the setpoint interval, and the rarely used entries.
     pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "rpi")
     }
@@ -119,7 +119,7 @@ impl HiperdriveForm {
         Config::entries().into_iter().filter(has).collect()
     }
 
-    /// Fills in the entry of a parameter; returns `false` if no entry can show it.
+    /// Fills in the entry for a parameter. Returns `false` if no entry can show the value.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("hub", HiperdriveLinkKind::Virtual) {
             let hub = VirtualHub::of_word(value);

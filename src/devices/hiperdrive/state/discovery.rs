@@ -18,9 +18,9 @@ use crate::link::{Cancel, Clock, RealClock, UdpBroadcast};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Discovery {
-    /// Number of the discovery; replies to earlier ones are dropped.
+    /// Number of the current discovery. Replies to earlier discoveries are dropped.
     number: u32,
-    /// Devices found, or the reason why the request failed; `None` while replies arrive.
+    /// Devices found, or the reason why the request failed; `None` while replies are being collected.
     pub found: Option<Result<Vec<FoundDevice>, Text>>,
 }
 
@@ -61,7 +61,7 @@ impl Discovery {
     }
 }
 
-/// A substitute for the broadcast, used by tests only.
+/// A substitute for the discovery broadcast, used by tests only.
 #[derive(Clone)]
 pub struct Discover(Arc<dyn Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync>);
 
@@ -77,7 +77,7 @@ impl fmt::Debug for Discover {
     }
 }
 
-/// Broadcasts a discovery request, and waits for a second.
+/// Broadcasts a discovery request and collects replies for a second.
 ///
 /// # Errors
 /// The request could not be sent.
@@ -94,7 +94,7 @@ pub struct DiscoveryFinder {
 
 pub enum DiscoveryAction {
     Discover,
-    /// Fill in a device that replied; the Connect button then connects to it.
+    /// Fill in the address of a device that replied, so that the Connect button connects to it.
     Choose(usize),
 }
 
@@ -132,7 +132,7 @@ impl Finder for DiscoveryFinder {
         }
     }
 
-    /// Handles the replies, those of HIPERDRIVE first.
+    /// Handles the discovery replies, placing HIPERDRIVE devices first.
     fn done(finder: Option<&mut Self>, done: DiscoveryReplies, _services: &mut Services) {
         let DiscoveryReplies { number, found } = done;
         let discovery = finder.and_then(|finder| finder.discovery.as_mut());

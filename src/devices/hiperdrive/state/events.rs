@@ -24,10 +24,10 @@ use crate::link::{LinkUrl, TraceEntry};
 use crate::store::Store;
 use crate::worker::{OpenError, Session};
 
-/// Default interval of reading a drive's position.
+/// Default interval for reading the position of a drive.
 const PACE: Duration = Duration::from_millis(200);
-/// Text id of the notice that the limits of a drive under control cannot be read, which ends once they are read or not
-/// required.
+/// Text ID of the notice that the limits of a drive under control cannot be read. The notice ends once they are read or
+/// no longer required.
 const RULES: &str = "hd_end.rules";
 
 /// Returns whether a drive in this state requires an acknowledgement before it moves.
@@ -85,7 +85,8 @@ impl Kind for Hiperdrive {
 }
 
 impl Unit {
-    /// Requests missing data as soon as the line is free: the cause of a fault, and the position of the selected drive.
+    /// Requests missing data as soon as the line is free, namely the cause of a fault and the position of the selected
+    /// drive.
     fn request_next(&mut self, services: &mut Services) {
         if self.survey.is_none() || !self.session.is_ready() {
             return;
@@ -120,7 +121,7 @@ impl Unit {
         services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
-    /// Ends the notice of a fault once no drive has one; all drives share the notice.
+    /// Ends the fault notice, which all drives share, once no drive has a fault.
     fn update_fault_notice(&self, failed: bool, services: &mut Services) {
         let fails = |drive: &DriveNumber| self.moves.actual(*drive).is_some_and(|own| has_failed(own.status.state()));
         if !failed && !self.drives().iter().any(fails) {
@@ -137,7 +138,7 @@ impl Unit {
         self.report_drive_message(drive, weight, vec![words], services);
     }
 
-    /// Processes the position of a drive, and records it for the selected drive.
+    /// Processes the position of a drive and, if the drive is selected, records it.
     fn see(&mut self, reading: DriveReading) {
         self.take_reading(reading);
         let drive = reading.drive;
@@ -172,10 +173,10 @@ impl SessionEvents for Unit {
         super::trace::meaning(frame)
     }
 
-    /// Processes the events of the line since the last call, and refreshes the acts that the window must keep alive.
+    /// Processes the session events since the last call and refreshes the acts that the window must keep alive.
     fn pump(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
-        self.moves.beat();
+        self.moves.send_heartbeat();
         self.notice_limits();
         for (drive, before) in before {
             self.notice_fault(drive, before);
@@ -241,7 +242,7 @@ impl SessionEvents for Unit {
             HiperdriveOutput::Prepared(prepared) => self.planned(prepared, services),
             HiperdriveOutput::Committed(committed) => self.committed(*committed, services),
             HiperdriveOutput::Taken => {
-                self.moves.beat();
+                self.moves.send_heartbeat();
                 self.notice_limits();
                 for lost in words::LOST.into_iter().chain([RULES]) {
                     services.log.settle(lost, Some(&self.session.name()));
@@ -252,7 +253,7 @@ impl SessionEvents for Unit {
                 (self.is_stale, self.looks_at_all) = (true, true);
             }
             HiperdriveOutput::Given => {
-                self.moves.beat();
+                self.moves.send_heartbeat();
                 // They are no longer read.
                 services.log.settle(RULES, Some(&self.session.name()));
                 // Values not read while another master was in control are read now.

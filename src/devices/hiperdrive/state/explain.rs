@@ -24,7 +24,8 @@ use crate::app::explain::{link, plain};
 use crate::devices::hiperdrive::jobs::{JobError, JobStep};
 use crate::devices::hiperdrive::procedures::Error;
 
-/// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
+/// Returns the messages for a job that ended early. Each consists of at least one sentence and may be placed on its own
+/// line.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![device(error)],
@@ -36,7 +37,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns why the connection failed, if nothing more can be requested over it.
+/// Returns why the connection failed, if no further requests are possible over it.
 pub fn loss(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link(error)),
@@ -44,7 +45,7 @@ pub fn loss(error: &JobError) -> Option<Text> {
     }
 }
 
-/// Returns whether the error means that the link is open but nothing answers.
+/// Returns whether the error means that the link is open but no device replies.
 pub fn is_silence(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }

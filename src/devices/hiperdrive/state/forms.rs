@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::state::explain as words;
 /// Parses the distance of a step; `sign` is −1 for backward.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Explains why the entry is invalid.
 pub fn step(unit: &Unit, text: &str, measure: Measure, sign: i32) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     if steps == 0 {
@@ -24,7 +24,7 @@ pub fn step(unit: &Unit, text: &str, measure: Measure, sign: i32) -> Result<i32,
 /// Parses a position within the limits of the selected drive.
 ///
 /// # Errors
-/// A text that states why the entry is invalid.
+/// Explains why the entry is invalid.
 pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     let place = |steps| unit.place(unit.drive(), steps);
@@ -38,10 +38,10 @@ pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     }
 }
 
-/// Parses a position independently of the limits: for the limits themselves, and for setting the position.
+/// Parses a position without checking the limits, as needed for entering limits and for setting the position.
 ///
 /// # Errors
-/// A text that states why the entry is invalid.
+/// Explains why the entry is invalid.
 pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     let value = number(text).ok_or_else(|| TEXTS.text("hd_entry.number").with("entry", text.trim()))?;
     if measure == Measure::Steps && value.fract() != 0.0 {
@@ -57,20 +57,20 @@ pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     })
 }
 
-/// Returns a share that was typed, from 1 to 100.
+/// Parses a percentage from 1 to 100.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Explains why the entry is invalid.
 pub fn percent(text: &str) -> Result<Percent, Text> {
     let digits = text.trim().trim_end_matches('%').trim();
     let percent = digits.parse().ok().filter(|percent| *percent >= 1).and_then(Percent::new);
     percent.ok_or_else(|| TEXTS.text("hd_entry.percent").with("entry", text.trim()))
 }
 
-/// Parses a parameter value, decimal or with `0x`. An empty entry removes it from a profile.
+/// Parses a parameter value, decimal or with `0x`. An empty entry removes the value from a profile.
 ///
 /// # Errors
-/// A text that states why the entry is invalid.
+/// Explains why the entry is invalid.
 pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let digits = digits.replace('\u{2212}', "-");
@@ -86,10 +86,10 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     checked.map(|value| Edit::Set(row.number, value)).map_err(|error| words::out_of_range(&error))
 }
 
-/// Returns the millimetres that were typed, above 0 and exact to the nanometre.
+/// Parses a length in millimetres, which must be above 0 and is exact to the nanometre.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// Explains why the entry is invalid.
 pub fn length(text: &str) -> Result<Length, Text> {
     let millimetres = number(text).filter(|own| *own > 0.0 && *own <= 1e6);
     let nanometres = millimetres.map(|own| (own * 1e6).round() as u64).filter(|own| *own > 0);
@@ -101,7 +101,7 @@ pub fn length(text: &str) -> Result<Length, Text> {
 /// Returns the scale that gives a step the required length for a spindle pitch.
 ///
 /// # Errors
-/// Explains why there is none.
+/// Explains why there is no such scale.
 pub fn scale(pitch: Length, step: Length) -> Result<PositionScale, Text> {
     PositionScale::for_spindle(pitch, step).map_err(|error| match error {
         ScaleError::Zero | ScaleError::NoLength => TEXTS.text("hd_entry.length").with("entry", 0),

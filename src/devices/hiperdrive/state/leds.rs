@@ -6,9 +6,9 @@ use crate::devices::hiperdrive::state::TEXTS;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Leds {
-    /// Set for a hub, clear for a bus adapter.
+    /// Whether the device is a hub rather than a bus adapter.
     pub hub: bool,
-    /// Switch S3 of a hub: 0 for all drives, otherwise the drive shown by the RS485 LED.
+    /// Position of switch S3 of a hub: 0 for all drives, otherwise the number of the drive shown by the RS485 LED.
     pub s3: u8,
     /// RS485.
     pub drives: DriveLight,
@@ -18,7 +18,7 @@ pub struct Leds {
     pub port: PortLight,
 }
 
-/// An LED, or the two of a port.
+/// An LED of the device, or the two LEDs of a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Led {
     /// RS485.
@@ -75,7 +75,7 @@ impl Leds {
         }
     }
 
-    /// Sets the device and the setting of S3. An LED whose state is then impossible is off.
+    /// Sets the device and the position of S3. An LED whose state becomes impossible is switched off.
     pub fn look_at(&mut self, hub: bool, s3: u8) {
         (self.hub, self.s3) = (hub, s3.min(8));
         if self.subject().row(self.drives).is_none() {
@@ -141,13 +141,13 @@ const BUS: [BusLight; 6] = [
     BusLight::Alternating,
 ];
 
-/// Returns the element after `now`, or the first after the last.
+/// Returns the element after `now`, or the first element after the last.
 fn next<T: Copy + PartialEq>(all: &[T], now: T) -> T {
     let at = all.iter().position(|own| *own == now).map_or(0, |at| at + 1);
     all.get(at).or(all.first()).copied().unwrap_or(now)
 }
 
-/// Severity, and text ids of meaning and remedy; the English texts are those of the protocol tables.
+/// Severity, and text IDs of meaning and remedy. The English texts are those of the protocol tables.
 type Row = (Severity, &'static str, &'static str);
 
 fn drives(subject: LedSubject, light: DriveLight) -> Row {
@@ -205,7 +205,7 @@ mod tests {
     use crate::app::Language;
     use crate::devices::hiperdrive::protocol::{BUS_LEDS, PORT_LEDS};
 
-    /// A sentence of the window is the phrase of the table with a capital letter and a full stop.
+    /// Checks that a sentence in the window is the phrase of the table with a capital letter and a full stop.
     #[track_caller]
     fn same(said: &Text, phrase: &str) {
         let words = said.words(Language::English);

@@ -117,7 +117,7 @@ impl MotionControl for Unit {
         Unit::is_moving(self)
     }
 
-    fn moves_by_hand(&self) -> bool {
+    fn is_turned_by_hand(&self) -> bool {
         self.moves.is_moving() || self.moves.is_under_way()
     }
 

@@ -15,18 +15,18 @@ use crate::devices::hiperdrive::procedures::{DriveLimits, LimitsSeen};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, Setpoint, State};
 use crate::units::Moment;
 
-/// Motion of a session's drives by the user.
+/// Motion of the drives of a session, as requested by the user.
 pub struct Moves {
-    /// While the session is open.
+    /// Motion handle, present while the session is open.
     motion: Option<Motion>,
     view: MotionSnapshot,
     act: Option<Act>,
-    /// Effort of jogs and moves, if it differs from the default.
+    /// Effort of jogs, for drives on which it differs from the default.
     jogs: BTreeMap<DriveNumber, Effort>,
     jobs: BTreeMap<DriveNumber, Effort>,
     /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
-    /// Direction further out from outside the limits, enabled for the next press and used by the press in progress.
+    /// Direction enabled to lead further outside the limits, for the next press and the press in progress.
     freed: Option<(DriveNumber, Direction)>,
     used: Option<(DriveNumber, Direction)>,
     /// Limits of the drives at the last update. Unconfirmed limits outlive a session.
@@ -34,7 +34,7 @@ pub struct Moves {
     looked: Moment,
     /// Drives whose limits have changed since the last query.
     limits_changed: BTreeSet<DriveNumber>,
-    /// Whether the cyclic connection was opened since the last query.
+    /// Whether the cyclic connection has been opened since the last query.
     taken: bool,
 }
 
@@ -43,7 +43,7 @@ struct Act {
     drive: DriveNumber,
     number: u64,
     kind: Kind,
-    /// Whether the drive is moving because of the act, or has a waiting job.
+    /// Whether the drive is moving because of the act or has a waiting job.
     moves: bool,
     is_reported: bool,
 }
@@ -52,7 +52,7 @@ struct Act {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Held,
-    /// Refreshed by every frame; does not end without a stop.
+    /// An act that is refreshed in every frame and does not end without a stop.
     Run,
     Other,
 }
@@ -77,10 +77,10 @@ impl Default for Moves {
 }
 
 impl Moves {
-    /// Begins a session. Unconfirmed limits remain unconfirmed, the endless run is not allowed yet, and jogs are slow
+    /// Begins a session. Unconfirmed limits remain unconfirmed, endless runs are not allowed yet, and jogs are slow
     /// ([`Effort::JOG`]).
     pub(super) fn begin(&mut self, motion: Motion) {
-        for drive in self.unconfirmed() {
+        for drive in self.unconfirmed_drives() {
             motion.revoke_limits_confirmation(drive);
         }
         (self.experts, self.act) = (BTreeSet::new(), None);
@@ -110,8 +110,8 @@ impl Moves {
         }
     }
 
-    /// Fetches the state of the drives, and refreshes the acts that frames keep alive. Call this in every frame.
-    pub(super) fn beat(&mut self) {
+    /// Fetches the state of the drives and refreshes the acts that frames keep alive. Must be called in every frame.
+    pub(super) fn send_heartbeat(&mut self) {
         if let (Some(motion), Some(act)) = (&self.motion, &self.act)
             && act.kind != Kind::Held
             && motion.is_latest(act.number)
@@ -135,12 +135,12 @@ impl Moves {
         (self.looked, self.view, self.limits) = (at, view, limits);
     }
 
-    /// Returns the drives whose limits have changed since the last query, by this program or by another master.
+    /// Returns the drives whose limits this program or another master has changed since the last query.
     pub(super) fn take_limits_changed(&mut self) -> BTreeSet<DriveNumber> {
         std::mem::take(&mut self.limits_changed)
     }
 
-    /// Returns whether the cyclic connection was opened since the last query.
+    /// Returns whether the cyclic connection has been opened since the last query.
     pub(super) fn take_control_taken(&mut self) -> bool {
         std::mem::take(&mut self.taken)
     }
@@ -188,13 +188,13 @@ impl Moves {
         }
     }
 
-    /// Ends the jog when it is released, or when its button is no longer visible: the drive stops immediately, not at
-    /// the next update.
+    /// Ends the jog when its button is released or no longer visible. The drive stops immediately, not at the next
+    /// update.
     pub(crate) fn release(&mut self) {
         self.stop_if(|kind| kind == Kind::Held);
     }
 
-    /// Ends every act that lasts until it is stopped: a jog or a run.
+    /// Ends any act that lasts until it is stopped, that is, a jog or a run.
     pub(crate) fn let_go(&mut self) {
         self.freed = None;
         self.stop_if(|kind| matches!(kind, Kind::Held | Kind::Run));
@@ -213,7 +213,7 @@ impl Moves {
         self.freed = Some((drive, direction));
     }
 
-    /// Returns whether the next or current jog in this direction may lead further out.
+    /// Returns whether the next or current jog in this direction may lead further outside the limits.
     pub fn is_freed(&self, drive: DriveNumber, direction: Direction) -> bool {
         let way = Some((drive, direction));
         self.freed == way || self.used == way && self.is_held()
@@ -244,14 +244,14 @@ impl Moves {
         }
     }
 
-    /// Confirms the limits as shown to the user; returns whether this took effect.
+    /// Confirms the limits as shown to the user. Returns whether the confirmation took effect.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: LimitsSeen) -> bool {
         let counts = self.motion.as_ref().is_some_and(|motion| motion.confirm_limits(drive, seen));
         self.look();
         counts
     }
 
-    pub fn unconfirmed(&self) -> BTreeSet<DriveNumber> {
+    pub fn unconfirmed_drives(&self) -> BTreeSet<DriveNumber> {
         self.limits.iter().filter(|(_, own)| own.is_unconfirmed()).map(|(drive, _)| *drive).collect()
     }
 
@@ -300,7 +300,7 @@ impl Moves {
         self.drive(drive).map(|own| own.sent)
     }
 
-    /// Returns the target of a drive's job, if it has one.
+    /// Returns the target of the job of a drive, if any.
     pub fn target(&self, drive: DriveNumber) -> Option<i32> {
         match self.phase(drive)? {
             Phase::Starting(MotionKind::Job { target }) | Phase::Moving(MotionKind::Job { target }) => Some(target),
@@ -313,7 +313,7 @@ impl Moves {
         self.drive(drive).map(|own| own.phase)
     }
 
-    /// Returns the permit of a drive, or `None` while the session is not open.
+    /// Returns the motion permit of a drive, or `None` while the session is not open.
     pub fn permit(&self, drive: DriveNumber) -> Option<Permit> {
         self.motion.as_ref().map(|motion| motion.permitted(drive))
     }
@@ -323,7 +323,7 @@ impl Moves {
         self.limits.get(&drive)
     }
 
-    /// Returns whether a motion of a drive may start with the limits at the last update.
+    /// Returns whether a motion of a drive may start, given the limits at the last update.
     pub(super) fn are_limits_valid(&self, drive: DriveNumber) -> bool {
         self.limits(drive).is_some_and(|limits| limits.is_valid(self.looked))
     }
@@ -348,7 +348,7 @@ impl Moves {
         held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number)))
     }
 
-    /// Returns the act and direction of a drive's held jog button.
+    /// Returns the act and direction of a held jog button of a drive.
     pub fn held_motion(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
         let act = self.act.filter(|act| act.drive == drive && self.is_held())?;
         match self.phase(drive)? {
@@ -357,8 +357,8 @@ impl Moves {
         }
     }
 
-    /// Returns whether data have arrived for long enough, since the first packets of a connection contain no valid
-    /// positions.
+    /// Returns whether data have been arriving for long enough to be valid. The first packets of a connection contain
+    /// no valid positions.
     pub fn is_heard(&self) -> bool {
         let link = &self.view.link;
         let packets = u32::try_from(link.received).unwrap_or(u32::MAX);
@@ -369,7 +369,7 @@ impl Moves {
         self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_under_way()
     }
 
-    /// Returns whether an act is running that must be refreshed.
+    /// Returns whether an act that must be refreshed is running.
     pub fn is_under_way(&self) -> bool {
         let own = |act: &Act| {
             let is_latest = self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number));
@@ -378,12 +378,12 @@ impl Moves {
         self.act.as_ref().is_some_and(own)
     }
 
-    /// Returns whether a drive is moving, or is being led to another state.
+    /// Returns whether a drive is moving or changing to another state.
     pub fn is_drive_moving(&self, drive: DriveNumber) -> bool {
         self.drive(drive).is_some_and(moves) || self.moving_drive() == Some(drive)
     }
 
-    /// Returns the drive that this window moves, or whose job is paused. Any other request ends that motion.
+    /// Returns the drive that this window is moving or whose job is paused. Any other request ends that motion.
     pub fn moving_drive(&self) -> Option<DriveNumber> {
         let asked = self.act.filter(|act| act.moves && self.is_under_way()).map(|act| act.drive);
         let has_job =
@@ -396,7 +396,7 @@ impl Moves {
         self.jogs.get(&drive).copied().unwrap_or(Effort::JOG)
     }
 
-    /// Returns speed and torque of a move, a step and a run.
+    /// Returns the speed and torque for moves, steps and runs.
     pub fn move_effort(&self, drive: DriveNumber) -> Effort {
         self.jobs.get(&drive).copied().unwrap_or(Effort::MOVE)
     }

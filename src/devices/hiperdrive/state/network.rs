@@ -15,9 +15,9 @@ pub struct Form {
     pub source: AddressSource,
     pub address: String,
     pub mask: String,
-    /// Default gateway; empty if there is none.
+    /// Default gateway, or empty if there is none.
     pub gateway: String,
-    /// Name servers; empty if there are none.
+    /// Name servers, empty where there is none.
     pub name_servers: [String; 2],
     pub domain: String,
 }
@@ -27,7 +27,7 @@ pub struct Form {
 pub enum PowerUpAddress {
     Fixed(Ipv4Addr),
     Stored(Ipv4Addr),
-    /// The stored address is selected, but no address is stored.
+    /// The stored address is selected, but none is stored.
     NothingStored,
     Bootp,
     Dhcp,
@@ -36,7 +36,7 @@ pub enum PowerUpAddress {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Position {
-    /// Digits of the switches, such as `0` or `1…96`.
+    /// Numbers of the switch position, such as `0` or `1…96`.
     pub digits: &'static str,
     pub meaning: Text,
     pub is_now: bool,
@@ -56,13 +56,13 @@ impl Form {
         }
     }
 
-    /// Returns whether addresses can be entered, which is only the case for stored ones; otherwise a server assigns
-    /// them.
+    /// Returns whether addresses can be entered, which requires the stored source. With any other source a server
+    /// assigns the addresses.
     pub fn has_addresses(&self) -> bool {
         self.source == AddressSource::Stored
     }
 
-    /// Returns the edited settings. If a server assigns the addresses, the present ones are kept.
+    /// Returns the edited settings. If a server assigns the addresses, the present addresses are kept.
     ///
     /// # Errors
     /// Explains why an entry is invalid.
@@ -83,7 +83,7 @@ impl Form {
     }
 }
 
-/// Parses an address of four numbers separated by dots; empty for none.
+/// Parses an address of four numbers separated by dots. An empty string means no address.
 fn address(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
     match text.trim() {
         "" => Ok(Ipv4Addr::UNSPECIFIED),
@@ -117,8 +117,8 @@ pub fn refused(error: &AddressError) -> Text {
 }
 
 impl PowerUpAddress {
-    /// Returns the source of the address for these switches and settings. Unreadable switches count as 0, since not all
-    /// devices have any.
+    /// Returns the address source for the given switches and settings. Unreadable switches count as 0, since not all
+    /// devices have switches.
     pub fn of(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
         let stored = match settings.interface.address {
             address if address.is_unspecified() => PowerUpAddress::NothingStored,
@@ -138,7 +138,7 @@ impl PowerUpAddress {
         }
     }
 
-    /// Returns the future address, if already known.
+    /// Returns the address after the next power-up, if already known.
     pub const fn address(self) -> Option<Ipv4Addr> {
         match self {
             PowerUpAddress::Fixed(address) | PowerUpAddress::Stored(address) => Some(address),
@@ -161,7 +161,7 @@ impl PowerUpAddress {
     }
 }
 
-/// Describes the effect of the settings after the next power-up, and the consequences for the link. `host` is the
+/// Describes the effect of the settings after the next power-up and the consequences for the link. `host` is the
 /// present address of the device, if it is numeric.
 pub fn consequences(
     switch: Option<AddressSwitch>,
@@ -233,7 +233,7 @@ mod tests {
         NetworkSettings { source, interface }
     }
 
-    /// Manual 5: the five ways to get an address.
+    /// Manual 5: the switches select among the five ways to obtain an address.
     #[test]
     fn the_switches_select_the_address_source() {
         let stored = Ipv4Addr::new(10, 0, 0, 7);

@@ -16,13 +16,14 @@ pub struct OutOfRangePosition {
     pub position: i32,
     /// Parameters 158 and 160.
     pub limits: (i32, i32),
-    /// Whether the drive is farther outside than its repeatability, and therefore not merely at the end of its range.
+    /// Whether the drive is outside its limits by more than its repeatability, and therefore not merely at the end of
+    /// its range.
     pub is_far: bool,
 }
 
 impl Unit {
-    /// Returns how a drive is outside its limits, by its position or by status bit 15, or `None` if it is inside or
-    /// either is unknown.
+    /// Returns how a drive is outside its limits according to its position or status bit 15, or `None` if it is inside
+    /// or position or limits are unknown.
     pub fn outside(&self, drive: DriveNumber) -> Option<OutOfRangePosition> {
         let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
         let degree = self.drive_limits(drive).map_or(1, |own| own.degree());
@@ -35,7 +36,7 @@ impl Unit {
         Some(OutOfRangePosition { outside, position: actual.position, limits, is_far })
     }
 
-    /// Returns the message for a drive outside its limits, or `None` inside and at the end of the range.
+    /// Returns the message for a drive outside its limits, or `None` if it is inside or at the end of its range.
     pub fn outside_words(&self, drive: DriveNumber) -> Option<Text> {
         let own = self.outside(drive).filter(|own| own.is_far)?;
         let id = if own.outside == Outside::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
@@ -46,19 +47,19 @@ impl Unit {
     /// Checks whether a drive may be jogged in this direction now.
     ///
     /// # Errors
-    /// Explains why it may not.
+    /// Explains why the drive may not be jogged.
     pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
         let outward = self.moves.is_freed(drive, direction);
         self.check_motion_allowed(drive, MotionRequest::Jog { direction, effort: Effort::JOG, outward })
     }
 
-    /// Returns whether this direction may lead further out from outside the limits, and is not enabled.
+    /// Returns whether this direction may lead further outside the limits and has not been enabled.
     pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
         let is_outward = self.outside(drive).is_some_and(|own| own.outside.is_outward(direction));
         is_outward && !self.moves.is_freed(drive, direction)
     }
 
-    /// Returns whether this direction is blocked, and can be enabled for one press.
+    /// Returns whether this direction is blocked but can be enabled for one press.
     pub fn can_free(&self, drive: DriveNumber, direction: Direction) -> bool {
         self.may_move(drive).is_ok() && self.is_blocked(drive, direction)
     }
@@ -71,10 +72,10 @@ impl Unit {
         self.report_drive_message(drive, Severity::Warning, vec![why], services);
     }
 
-    /// Returns the change that assigns a position in scaled steps to the present location of a drive, and saves it.
+    /// Returns the change that assigns a position in scaled steps to the present location of a drive and saves it.
     ///
     /// # Errors
-    /// Explains why the drive would not accept it: outside the limits.
+    /// Explains why the drive would not accept a position outside the limits.
     pub fn reference_here(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
         let (low, high) = self.limits(drive).ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(position).filter(|own| (low..=high).contains(own));

@@ -13,9 +13,9 @@ use crate::devices::hiperdrive::protocol::SpeedScale;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum RecordedValue {
-    /// The drive's own speed, in rpm.
+    /// Actual speed of the drive, in rpm.
     Speed,
-    /// Target in steps of this ruler.
+    /// Target in the steps of a ruler.
     Target(Ruler),
     Temperature(Temperature),
 }
@@ -37,7 +37,7 @@ impl Record {
         self.track.note_dropped(dropped);
     }
 
-    /// Records a reading with the target of the drive at that time.
+    /// Records a reading together with the target of the drive at that time.
     pub(super) fn add(&mut self, reading: DriveReading, ruler: Ruler, speed: SpeedScale, target: Option<i32>) {
         let (at, actual) = (reading.at, reading.actual);
         let status = actual.status;
@@ -63,7 +63,7 @@ impl Record {
         self.last = Some(reading);
     }
 
-    /// Starts recording the given temperatures. Recordings of others are kept.
+    /// Starts recording the given temperatures. Existing recordings of other temperatures are kept.
     pub(super) fn watch_temperatures(&mut self, wished: &[Temperature]) {
         self.temperatures = wished.to_vec();
         let others = self.track.watched().into_iter().filter(|own| !matches!(own, RecordedValue::Temperature(_)));
@@ -71,7 +71,7 @@ impl Record {
         self.track.watch(&others.chain(wished).collect::<Vec<_>>());
     }
 
-    /// Records a temperature; one that is not recorded here belongs to another drive.
+    /// Records a temperature. Temperatures that are not being recorded are ignored, since they belong to another drive.
     pub(super) fn add_temperature(&mut self, reading: TemperatureReading) {
         let never = reading.celsius.is_none().then(|| TEXTS.text("hd_watch.never"));
         let value = reading.celsius.map(Value::Whole);
@@ -83,7 +83,7 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Marks a gap before the next samples, because another drive was selected.
+    /// Marks a gap before the next samples because another drive was selected.
     pub(super) fn gap(&mut self) {
         self.last = None;
         self.track.gap();
@@ -95,7 +95,7 @@ impl Record {
     }
 }
 
-/// Returns the meaning of positions, with millimetres first if the drive turns a spindle.
+/// Returns the meaning of recorded positions, with millimetres first if the drive turns a spindle.
 fn meaning(ruler: Ruler) -> Meaning {
     let mut meaning = Meaning::of_turns(None, ruler.scale.steps_per_turn());
     if let Some(millimetres) = ruler.of(1, Measure::Millimetres) {
@@ -113,8 +113,8 @@ impl Watchable for RecordedValue {
         matches!(self, RecordedValue::Target(_) | RecordedValue::Temperature(_))
     }
 
-    /// Returns whether the recording continues under another meaning: the pitch only changes how steps are displayed,
-    /// but under another scale a step is another distance.
+    /// Returns whether the recording can continue under another meaning. The pitch changes only how steps are
+    /// displayed, whereas a step is a different distance under another scale.
     fn continues(&self, other: &Self) -> bool {
         match (self, other) {
             (RecordedValue::Target(own), RecordedValue::Target(other)) => own.scale == other.scale,

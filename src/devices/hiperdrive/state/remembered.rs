@@ -7,7 +7,7 @@ use super::unit::Unit;
 use crate::app::{DriveMemory, RememberedDrives, SettingsReadState};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 
-/// Values last exchanged between a device's session and the settings.
+/// Values last exchanged between the session of a device and the settings.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ExchangedValues {
     kept: RememberedDrives,
@@ -91,7 +91,7 @@ impl Unit {
     }
 
     fn remembered_values(&self) -> ExchangedValues {
-        let unconfirmed = self.moves.unconfirmed();
+        let unconfirmed = self.moves.unconfirmed_drives();
         let scale = |drive: &DriveNumber| Some((*drive, self.drive_limits(*drive)?.seen()?.scale));
         ExchangedValues {
             kept: RememberedDrives::default(),

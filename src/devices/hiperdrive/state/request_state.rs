@@ -25,7 +25,7 @@ impl Unit {
     /// Checks whether the cyclic connection can be opened now.
     ///
     /// # Errors
-    /// Explains why it cannot.
+    /// Explains why the connection cannot be opened.
     pub fn check_can_take_control(&self) -> Result<(), Text> {
         match self.session.why_not_ready() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
@@ -39,7 +39,7 @@ impl Unit {
     /// Checks whether the cyclic connection can be closed now.
     ///
     /// # Errors
-    /// Explains why it cannot.
+    /// Explains why the connection cannot be closed.
     pub fn check_can_release_control(&self) -> Result<(), Text> {
         // Also while the device does not answer.
         match self.session.line() {
@@ -53,7 +53,7 @@ impl Unit {
     /// Checks whether a drive may be moved now.
     ///
     /// # Errors
-    /// Explains why it may not.
+    /// Explains why the drive may not be moved.
     pub fn may_move(&self, drive: DriveNumber) -> Result<(), Text> {
         self.check_controllable()?;
         if let Phase::Silent(why) = &self.session.phase {
@@ -75,7 +75,7 @@ impl Unit {
     /// Checks whether a drive may run past its limits.
     ///
     /// # Errors
-    /// Explains why it may not.
+    /// Explains why the drive may not do so.
     pub fn may_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move(drive)?;
         let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
@@ -85,7 +85,7 @@ impl Unit {
     /// Checks whether an endless run can be enabled, which requires factory limits and scaling.
     ///
     /// # Errors
-    /// Explains why it cannot.
+    /// Explains why an endless run cannot be enabled.
     pub fn could_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         let could = self.moves.limits(drive).is_some_and(DriveLimits::allows_endless);
         if could { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
@@ -118,8 +118,8 @@ impl Unit {
         permit.check(request, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
     }
 
-    /// Checks that a request may end the present motion. A stop may, and so may a jog of the same drive. The motion of
-    /// another drive must not be ended this way, and a step or move must not be replaced before its end.
+    /// Checks that a request may end the present motion. A stop or a jog of the same drive may; other requests must not
+    /// end the motion of another drive, nor replace a step or move before its end.
     fn may_stop_other_drive(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
         match self.moves.moving_drive() {
             Some(mover) if mover != drive && request != MotionRequest::Stop => {
@@ -137,7 +137,7 @@ impl Unit {
         }
     }
 
-    /// Reports a message about a drive, which is named if there are several.
+    /// Reports a message about a drive. The drive is named if there are several.
     pub(super) fn report_drive_message(
         &self,
         drive: DriveNumber,
@@ -164,8 +164,8 @@ impl Unit {
         TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
     }
 
-    /// Formats a position in all units, since under another scale the same number of steps may be another position.
-    /// Degrees are only included if selected.
+    /// Formats a position in all units, since the same number of steps may be another position under another scale.
+    /// Degrees are included only if selected.
     pub fn position_texts(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
         let ruler = self.ruler(drive);
         let wanted = |own: &Measure| *own != Measure::Degrees || *own == self.measure;
@@ -178,14 +178,14 @@ impl Unit {
         ruler.measures().filter(wanted).filter_map(place).collect()
     }
 
-    /// Formats a range between two positions with their unit.
+    /// Formats a range between two positions with the unit.
     pub fn places(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
         let ((low, ..), (high, decimals, unit)) = (self.measured(drive, low), self.measured(drive, high));
         let text = TEXTS.text("hd_entry.range").with_number("low", low, decimals);
         text.with_number("high", high, decimals).with_text("unit", unit)
     }
 
-    /// Returns a position in the user's unit: value, decimals and unit.
+    /// Returns a position as value, number of decimals and unit, in the user's unit.
     fn measured(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
         let ruler = self.ruler(drive);
         let value = ruler.of(i64::from(steps), self.measure);
@@ -193,7 +193,7 @@ impl Unit {
         (value, ruler.decimals(measure), TEXTS.text(measure.unit()))
     }
 
-    /// Returns the states to which a single word leads from the present one; none without control.
+    /// Returns the states that a single control word can reach from the present state; none without control.
     pub fn reachable(&self, drive: DriveNumber) -> Vec<State> {
         let Some(state) = self.state(drive).filter(|_| self.check_controllable().is_ok()) else { return Vec::new() };
         let mut reachable = Vec::new();
@@ -205,15 +205,15 @@ impl Unit {
         reachable
     }
 
-    /// Returns the control word that leads a drive to a state, and whether the manual describes it.
+    /// Describes the control word that leads a drive to a state, and whether the manual documents it.
     pub fn hint(&self, drive: DriveNumber, to: State) -> Option<Text> {
         let row = self.state(drive)?.transitions().find(|row| row.to == to && row.word.is_some())?;
         let id = if row.assumed { "hd_hint.assumed" } else { "hd_hint.word" };
         Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.word())))
     }
 
-    /// Returns the request that leads a drive to a [`reachable`](Self::reachable) state, or `None` for states without
-    /// one. A fault is left by acknowledging, which leads to the lock.
+    /// Returns the request that leads a drive to a [`reachable`](Self::reachable) state, or `None` if no request does.
+    /// A fault is left by acknowledging it, which leads to the lock.
     pub const fn leads_to(to: State) -> Option<Motor> {
         match to {
             State::NotReady => Some(Motor::Lead(Goal::Off)),
@@ -225,8 +225,8 @@ impl Unit {
         }
     }
 
-    /// Describes the running act of a drive, or the end of the last one; `None` without a cyclic connection, and before
-    /// the first.
+    /// Describes the running act of a drive, or the end of the last act. Returns `None` without a cyclic connection and
+    /// before the first act.
     pub fn current_or_last_request(&self, drive: DriveNumber) -> Option<RequestState> {
         let view = self.moves.drive(drive)?;
         if view.phase != Doing::Idle {
@@ -237,13 +237,14 @@ impl Unit {
         Some(RequestState { words, is_well: words::weight(ended) == Severity::Note })
     }
 
-    /// Explains why control was lost, until it is taken again; `None` if it was never taken, or was given up.
+    /// Explains why control was lost, until control is taken again. Returns `None` if control was never taken or was
+    /// released.
     pub fn loss_reason(&self) -> Option<Text> {
         let view = self.moves.view();
         view.lost.as_ref().filter(|_| !view.open).map(|lost| words::lost(Some(lost)))
     }
 
-    /// Returns the speed of a percentage, by parameter 166.
+    /// Returns the speed for a percentage, based on parameter 166.
     pub fn speed_of(&self, percent: Percent) -> Option<Text> {
         let most = self.number(self.drive(), MAXIMUM_SPEED)?;
         // Tenths of rpm, and percent.
@@ -251,7 +252,7 @@ impl Unit {
         Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))
     }
 
-    /// Returns the torque that the drive applies for a percentage: rounded up to the next 25 %.
+    /// Returns the torque that the drive applies for a percentage, rounded up to the next 25 %.
     pub fn torque_of(&self, percent: Percent) -> Option<Text> {
         let effective = effective_torque(percent.get());
         (effective != percent.get()).then(|| TEXTS.text("hd_entry.torque").with("percent", effective))

@@ -95,7 +95,7 @@ impl Reviewed for Hiperdrive {
     }
 }
 
-/// Describes an operation, with positions in millimetres if the spindle pitch of the drive is known.
+/// Describes an operation. Positions are in millimetres if the spindle pitch of the drive is known.
 pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber) -> Option<Length>) -> OperationTexts {
     let mut words = explained::op(op);
     if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {
@@ -114,7 +114,8 @@ pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber)
     words
 }
 
-/// Describes a value beyond its number: positions in millimetres, or else in turns, under the scale at that time.
+/// Describes the meaning of a value. Positions are given in millimetres, or else in turns, under the scale in effect at
+/// that time.
 fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
     match (number.base(), number.drive()) {
         (LOWER | UPPER | 170 | 176 | REFERENCE, Some(drive)) => {

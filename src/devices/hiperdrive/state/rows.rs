@@ -21,13 +21,13 @@ use crate::devices::hiperdrive::state::explain as explained;
 pub struct Row {
     pub number: ParameterNumber,
     pub name: Text,
-    /// Row of the manual's table.
+    /// Row of the manual's parameter table.
     pub kind: &'static ParameterRow,
-    /// Value read, or `None` if it was not read or is not in the profile.
+    /// Value of the parameter, or `None` if it was not read or is not in the profile.
     pub value: Option<Value>,
-    /// Value as shown in the table; empty if there is none.
+    /// Value as shown in the table, or empty if there is none.
     pub shown: String,
-    /// Meaning of the value, if the number does not reveal it.
+    /// Meaning of the value, if the number is not self-explanatory.
     pub meaning: Option<Text>,
     /// Unit, if any.
     pub unit: Option<Text>,
@@ -35,12 +35,12 @@ pub struct Row {
     pub range: Option<Text>,
     /// Travel of the drive in steps of the edited scale.
     pub travel: Travel,
-    /// The factory setting; empty if not known.
+    /// Factory setting, or empty if unknown.
     pub factory: String,
-    /// Edited value, or `None` if the parameter is not edited or cannot be.
+    /// Edited value, or `None` if the parameter has not been or cannot be edited.
     pub staged: Option<i64>,
     pub is_edited: bool,
-    /// Value of the previous reading, if it was different.
+    /// Value in the previous reading, if it was different.
     pub changed_from: Option<i64>,
     /// Whether the parameter can be edited as a value.
     pub is_editable: bool,
@@ -59,7 +59,8 @@ impl Row {
 }
 
 impl Unit {
-    /// Returns the parameters of a drive or of the device: those that were read, or those that a profile can contain.
+    /// Returns the parameters of a drive or of the device, either those that were read or those that a profile can
+    /// contain.
     pub fn rows(&self, of: Option<DriveNumber>) -> Vec<Row> {
         let number = |row: &ParameterRow| match of {
             Some(drive) => ParameterNumber::of_drive(row.number, drive),
@@ -104,7 +105,7 @@ impl Unit {
         }
     }
 
-    /// Returns cyclic data of a drive that are newer than the reading: words, measurements and errors.
+    /// Returns a value from the cyclic data of a drive if it is newer than the reading: words, measurements and errors.
     fn cyclic_value(&self, number: ParameterNumber) -> Option<Value> {
         let drive = number.drive()?;
         let value = match number.base() {
@@ -138,15 +139,15 @@ impl Unit {
         variant.row().map(|row| row.family)
     }
 
-    /// Returns the travel of a parameter's drive in steps of the edited scale.
+    /// Returns the travel of the drive of a parameter, in steps of the edited scale.
     fn travel(&self, number: ParameterNumber) -> Travel {
         number.drive().map_or(Travel::UNKNOWN, |drive| Travel {
             family: self.family(drive),
-            scale: Some(self.wanted_ruler(drive).scale),
+            scale: Some(self.requested_ruler(drive).scale),
         })
     }
 
-    /// Describes a value, if the number does not reveal its meaning.
+    /// Describes a value if the number is not self-explanatory.
     fn meaning(&self, number: ParameterNumber, value: &Value) -> Option<Text> {
         let value = match value {
             Value::Number(value) => value,
@@ -156,7 +157,7 @@ impl Unit {
         match (number.base(), drive) {
             // Positions in the edited scale.
             (LOWER | UPPER | REFERENCE | TARGET | POSITION | 170 | 176, Some(drive)) => {
-                let ruler = self.wanted_ruler(drive);
+                let ruler = self.requested_ruler(drive);
                 let measure = if ruler.pitch.is_some() { Measure::Millimetres } else { Measure::Turns };
                 let place = ruler.of(*value, measure)?;
                 let text = TEXTS.text("hd_entry.place").with_number(
@@ -167,7 +168,7 @@ impl Unit {
                 Some(text.with_text("unit", TEXTS.text(measure.unit())))
             }
             (NUMERATOR | DENOMINATOR, Some(drive)) => {
-                let steps = self.wanted_ruler(drive).scale.steps_per_turn();
+                let steps = self.requested_ruler(drive).scale.steps_per_turn();
                 Some(TEXTS.text("hd_meaning.steps_a_turn").with_number("steps", steps, decimals_of(steps, 3)))
             }
             (SPEED, Some(drive)) => {

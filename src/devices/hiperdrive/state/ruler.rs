@@ -7,14 +7,14 @@ use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 pub struct Ruler {
     /// Parameters 154 and 156.
     pub scale: PositionScale,
-    /// Millimetres a turn, if entered by the user.
+    /// Millimetres per turn, if entered by the user.
     pub pitch: Option<Length>,
 }
 
-/// A number that no position has.
+/// Error for a number that is not a valid position.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PositionRangeError {
-    /// The position exceeds 32 bits; minimum and maximum.
+    /// The position exceeds 32 bits. The fields are minimum and maximum.
     #[error("a position is between {least} and {most}")]
     Bits { least: f64, most: f64 },
     /// Millimetres without a pitch.
@@ -23,7 +23,7 @@ pub enum PositionRangeError {
 }
 
 impl Ruler {
-    /// Factory scale, without a spindle.
+    /// Ruler with the factory scale and no spindle.
     pub const FACTORY: Ruler = Ruler { scale: PositionScale::FACTORY, pitch: None };
 
     /// Returns the number of steps per unit, or `None` for millimetres without a pitch.
@@ -43,15 +43,15 @@ impl Ruler {
         Measure::ALL.into_iter().filter(move |measure| self.steps_in(*measure).is_some())
     }
 
-    /// Converts steps to a unit, or returns `None` for millimetres without a pitch.
+    /// Converts steps to a unit. Returns `None` for millimetres without a pitch.
     pub fn of(self, steps: i64, measure: Measure) -> Option<f64> {
         Some(steps as f64 / self.steps_in(measure)?)
     }
 
-    /// Returns the nearest step.
+    /// Returns the step nearest to a position.
     ///
     /// # Errors
-    /// [`PositionRangeError`] if there is none.
+    /// Returns [`PositionRangeError`] if there is none.
     pub fn steps(self, value: f64, measure: Measure) -> Result<i32, PositionRangeError> {
         let unit = self.steps_in(measure).ok_or(PositionRangeError::NoPitch)?;
         let steps = (value * unit).round();
@@ -64,14 +64,14 @@ impl Ruler {
         }
     }
 
-    /// Decimals with which every step is another number.
+    /// Returns the number of decimals that distinguishes all steps.
     pub fn decimals(self, measure: Measure) -> usize {
         let unit = self.steps_in(measure).unwrap_or(1.0);
         // At most 9: steps per turn have five digits in addition to those of 256.
         (0..9).find(|decimals| 10f64.powi(*decimals) >= unit * 0.999_999).map_or(9, |decimals| decimals as usize)
     }
 
-    /// Converts steps of a position to another scale; the result may not fit into 32 bits.
+    /// Converts the steps of a position to another scale. The result may not fit in 32 bits.
     pub fn rescaled(self, steps: i64, to: PositionScale) -> i64 {
         // Two 32-bit products of 16-bit numbers and a 33-bit one.
         let above = i128::from(steps) * i128::from(to.numerator()) * i128::from(self.scale.denominator());

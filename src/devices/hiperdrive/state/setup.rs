@@ -19,7 +19,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::store::write_atomically;
 
-/// Parameters of a drive used by the set-up, by the numbers of drive 1.
+/// Parameters of a drive that the set-up uses, by their numbers for drive 1.
 const AXIS: std::ops::RangeInclusive<u16> = 152..=REFERENCE;
 
 impl Unit {
@@ -31,8 +31,8 @@ impl Unit {
     /// Checks whether the selected drive can be set up.
     ///
     /// # Errors
-    /// Explains why it cannot.
-    pub fn may_set_up(&self) -> Result<(), Text> {
+    /// Explains why the drive cannot be set up.
+    pub fn check_can_set_up(&self) -> Result<(), Text> {
         match self.session.why_not_ready() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
             Some(why) => Err(why),
@@ -46,8 +46,8 @@ impl Unit {
     /// Checks whether a change can be planned now.
     ///
     /// # Errors
-    /// Explains why it cannot.
-    pub fn may_plan(&self) -> Result<(), Text> {
+    /// Explains why no change can be planned.
+    pub fn check_can_plan(&self) -> Result<(), Text> {
         self.session.why_not_ready().map_or(Ok(()), Err)
     }
 
@@ -83,18 +83,18 @@ impl Unit {
         }
     }
 
-    /// Returns the TCP/IP object, or `None` if it was not read or is not provided.
+    /// Returns the settings in the TCP/IP object, or `None` if they were not read or are not provided.
     pub fn network_settings(&self) -> Option<NetworkSettings> {
         let own = self.network()?;
         Some(NetworkSettings { source: own.control?.source(), interface: own.interface.clone()? })
     }
 
-    /// Returns the positions of the address switches at power-up.
+    /// Returns the setting of the address switches at power-up.
     pub fn address_switch(&self) -> Option<AddressSwitch> {
         self.network()?.address_switch()
     }
 
-    /// Returns the address of the device, if its link contains a numeric one.
+    /// Returns the IP address of the device, if the link contains a numeric address.
     pub fn host_address(&self) -> Option<Ipv4Addr> {
         let Source::Link(url) = &self.session.source else { return None };
         let host = url.target.rsplit_once(':').map_or(url.target.as_str(), |(host, _)| host);
@@ -120,7 +120,8 @@ impl Unit {
             AxisAction::Next => {
                 // Until now the entries served only for a preview. From now on positions are measured on this spindle
                 // everywhere.
-                let confirms = axis.step() == AxisStep::Scale && axis.end().is_none() && axis.may_go_on(&seen).is_ok();
+                let confirms =
+                    axis.step() == AxisStep::Scale && axis.end().is_none() && axis.check_can_continue(&seen).is_ok();
                 let pitch = axis.entries().pitch().ok().filter(|_| confirms);
                 axis.go_on(&DriveFacts { pitch: pitch.or(seen.pitch), ..seen }, &when);
                 if let Some(pitch) = pitch {
@@ -153,7 +154,7 @@ impl Unit {
     }
 
     fn begin_axis(&mut self, drive: DriveNumber, services: &mut Services) {
-        if let Err(why) = self.may_set_up() {
+        if let Err(why) = self.check_can_set_up() {
             return self.report_drive_message(drive, Severity::Warning, vec![why], services);
         }
         self.axes.insert(drive, Axis::new(drive, Some(self.ruler(drive))));
@@ -170,7 +171,7 @@ impl Unit {
         report(axis, &self.seen(axis.drive()), &device, language)
     }
 
-    /// Executes the request of a button. Every persistent change goes through a plan and its review.
+    /// Executes the request of a button. Every persistent change is planned and then reviewed by the user.
     fn carry_out(
         &mut self,
         drive: DriveNumber,
@@ -236,7 +237,7 @@ impl Unit {
         }
     }
 
-    /// Updates all set-ups; called after each update of the drives.
+    /// Updates all set-ups. Called after each update of the drives.
     pub(super) fn update_axes(&mut self) {
         if self.axes.is_empty() {
             return;
@@ -265,7 +266,7 @@ impl Unit {
         }
     }
 
-    /// Notes that all parameters were read, which shows whether the saved values have survived.
+    /// Records that all parameters were read, which shows whether the saved values have survived.
     pub(super) fn handle_axes_survey(&mut self) {
         let switched = std::mem::take(&mut self.switched);
         let seen: Vec<(DriveNumber, DriveFacts)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();

@@ -22,26 +22,26 @@ use crate::app::{SteppedEdits, SteppedParts};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, ParameterNumber, ParameterRow, Travel};
 
-/// The values that the edits are compared with.
+/// Source of the values with which edits are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum BaseSource {
-    /// Device: a value that was not read is not known.
+    /// The device. A value that was not read is unknown.
     #[default]
     Device,
-    /// Profile: a missing value is not in the profile.
+    /// A profile. A missing value is not in the profile.
     Profile,
 }
 
-/// The base, the edited values, and the steps of undo and redo.
+/// The base values, the edited values, and the undo and redo history.
 #[derive(Clone, Debug, Default)]
 pub struct Staged {
     base_source: BaseSource,
-    /// The values of the device or the profile; both or none.
+    /// Values of the device or the profile, and the edited values; either both are present or neither is.
     base: Option<Image>,
     wanted: Option<Image>,
     earlier: Option<Image>,
     history: History<Image>,
-    /// Earlier edits of parameters that were not read yet.
+    /// Earlier edits of parameters that have not been read yet.
     waiting: Vec<SavedEdit>,
     /// Families of the drives, if their variants are known.
     families: Families,
@@ -49,39 +49,39 @@ pub struct Staged {
 
 pub(super) type Families = BTreeMap<DriveNumber, Family>;
 
-/// Stored edit: the parameter's own number, and the edited value.
+/// A stored edit, with the parameter's own number and the edited value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SavedEdit(pub u16, pub Option<i64>);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
     pub number: ParameterNumber,
-    /// Present value; `None`: not in the profile.
+    /// Present value, or `None` if it is not in the profile.
     pub from: Option<i64>,
-    /// Edited value; `None`: to be removed from the profile.
+    /// Edited value, or `None` if the parameter is to be removed from the profile.
     pub to: Option<i64>,
 }
 
-/// Returns whether a parameter can be edited as a value: stored ones, and the steps of the drive's own keys, which are
-/// not stored. Setting the position (198) is a change of its own.
+/// Returns whether a parameter can be edited as a value: stored parameters, and the steps of the keys on the drive,
+/// which are not stored. Setting the position (198) is a separate change.
 pub fn is_editable(row: &ParameterRow) -> bool {
     let is_of_keys = matches!(row.number, 170..=182);
     row.access == Access::ReadWrite && row.number != 198 && (Image::holds(row) || is_of_keys)
 }
 
 impl Staged {
-    /// Creates the edits of a profile, which can also gain values that it does not have.
+    /// Creates the edits of a profile, to which missing values can be added.
     pub fn of_profile(image: Image) -> Self {
         Staged { base_source: BaseSource::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
     }
 
-    /// Takes the families of the drives, whose travel limits their positions from now on.
+    /// Sets the families of the drives, whose travel limits the positions from now on.
     pub(super) fn set_families(&mut self, families: Families) {
         self.families = families;
     }
 
-    /// Takes the new content of the profile. If it equals the edited values, it was saved, and the undo steps stay;
-    /// otherwise others have written it, and only the values edited here keep their edits.
+    /// Adopts the new content of the profile. If it equals the edited values, the profile was saved and the undo
+    /// history is kept; otherwise another program wrote it, and only the values edited here keep their edits.
     pub fn saved(&mut self, image: Image) {
         if self.wanted.as_ref() == Some(&image) {
             self.base = Some(image);
@@ -94,7 +94,7 @@ impl Staged {
         self.take_draft(edits);
     }
 
-    /// Takes a full reading of the device. Edits and their undo steps stay.
+    /// Adopts a full reading of the device. Edits and their undo history are kept.
     pub fn refresh(&mut self, now: Image) {
         match (&self.base, &mut self.wanted) {
             (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| rebase(own, before, &now)),
@@ -105,7 +105,7 @@ impl Staged {
         self.take_draft(waiting);
     }
 
-    /// Takes a reading of some parameters; the others stay. Does nothing before a full reading.
+    /// Adopts a reading of some parameters and keeps the others. Has no effect before a full reading.
     pub fn refresh_some(&mut self, read: &Image) {
         if let Some(base) = &self.base {
             self.refresh(base.with(read));
@@ -116,33 +116,33 @@ impl Staged {
         matches!(self.base_source, BaseSource::Device)
     }
 
-    /// Discards everything, for another device.
+    /// Discards all values and edits, for another device.
     pub fn clear(&mut self) {
         *self = Staged { base_source: self.base_source, ..Staged::default() };
     }
 
-    /// Returns the values of the device or the profile; `None` if nothing was read.
+    /// Returns the values of the device or the profile, or `None` if nothing was read.
     pub fn base(&self) -> Option<&Image> {
         self.base.as_ref()
     }
 
-    /// Returns the edited values; `None` if nothing was read.
+    /// Returns the edited values, or `None` if nothing was read.
     pub fn wanted(&self) -> Option<&Image> {
         self.wanted.as_ref()
     }
 
-    /// Returns the edited value of a parameter; `None` if it is not known.
+    /// Returns the edited value of a parameter, or `None` if the value is unknown.
     pub fn value(&self, number: ParameterNumber) -> Option<i64> {
         self.wanted.as_ref()?.get(number)
     }
 
-    /// Returns the value of the previous reading, if it differed.
+    /// Returns the value in the previous reading, if it was different.
     pub fn changed_from(&self, number: ParameterNumber) -> Option<i64> {
         let was = self.earlier.as_ref()?.get(number)?;
         (self.base.as_ref()?.get(number)? != was).then_some(was)
     }
 
-    /// Returns how a parameter differs; `None` if it does not.
+    /// Returns how the edited value of a parameter differs, or `None` if it does not.
     pub fn differs(&self, number: ParameterNumber) -> Option<Differs> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.get(number), wanted.get(number));
@@ -155,25 +155,25 @@ impl Staged {
         numbers.into_iter().filter_map(|number| self.differs(number)).collect()
     }
 
-    /// Returns the edited values that differ from the device, for a plan.
+    /// Returns the edited values that differ from the device, as the basis of a plan.
     pub fn edited(&self) -> Image {
         let wanted = |differs: Differs| Some((differs.number, differs.to?));
         Image { values: self.differences().into_iter().filter_map(wanted).collect() }
     }
 
-    /// Makes an edit, as one step that can be undone. Returns whether anything changed.
+    /// Makes an edit as a single undo step. Returns whether anything changed.
     ///
     /// # Errors
-    /// Why it is not possible; nothing is changed then.
+    /// Explains why the edit is not possible; nothing is changed in that case.
     pub fn edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
         let after = self.tried(edit)?;
         Ok(self.step(after))
     }
 
-    /// Returns the values after an edit without making it: for a preview.
+    /// Returns the values that an edit would produce, for a preview, without making the edit.
     ///
     /// # Errors
-    /// Why it is not possible.
+    /// Explains why the edit is not possible.
     pub fn tried(&self, edit: &Edit) -> Result<Image, EditError> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref()).ok_or(EditError::NothingRead)?;
         edit::edited((base, wanted), edit, self.base_source, &self.families)
@@ -183,13 +183,14 @@ impl Staged {
         self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
     }
 
-    /// Returns the edits for a draft on disk, including those that wait for their parameter.
+    /// Returns the edits for a draft on disk, including those of parameters that have not been read yet.
     pub fn saved_edits(&self) -> Vec<SavedEdit> {
         let edited = self.differences().into_iter().map(|own| SavedEdit(own.number.get(), own.to));
         edited.chain(self.waiting.iter().copied()).collect()
     }
 
-    /// Takes edits from a draft, as one step. Those whose parameter was not read wait for it; invalid ones are dropped.
+    /// Adopts the edits of a draft as a single undo step. Edits of parameters that were not read are deferred; invalid
+    /// edits are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);
@@ -242,7 +243,7 @@ fn travel(number: ParameterNumber, image: &Image, families: &Families) -> Travel
     Travel { family: families.get(&drive).copied(), scale: image.scale(drive) }
 }
 
-/// Moves the edits made against `before` to the values of `now`.
+/// Moves the edits made relative to `before` to the values of `now`.
 fn rebase(own: &mut Image, before: &Image, now: &Image) {
     let mut rebased = now.clone();
     for (number, value) in &own.values {

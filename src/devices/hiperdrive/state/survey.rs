@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
 impl Unit {
-    /// Adopts a reading of the device; edits are kept, unless they belong to another device.
+    /// Adopts a reading of the device. Edits are kept unless they belong to another device.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
             self.replaced_by(&survey.identity.serial_number, services);
@@ -63,8 +63,8 @@ impl Unit {
         }
     }
 
-    /// Reads everything again if the limits that the worker reads under control differ from the table of parameters; also
-    /// when control is taken.
+    /// Reads everything again if the limits that the worker reads under control differ from the table of parameters;
+    /// also when control is taken.
     pub(super) fn notice_limits(&mut self) {
         if self.moves.take_control_taken() {
             (self.is_stale, self.marks) = (true, SettingsReadState::Unread);
@@ -90,7 +90,7 @@ impl Unit {
             .is_some_and(|(own, shown)| own != shown)
     }
 
-    /// Explains why the known parameters of a drive do not suffice to move it, or returns `None` if they do.
+    /// Explains why the known parameters of a drive are not sufficient to move it, or returns `None` if they are.
     pub(super) fn unread_reason(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(words::lock(Lock::Unread))
@@ -103,23 +103,23 @@ impl Unit {
         }
     }
 
-    /// Checks whether the displayed limits of a drive can be confirmed, which requires that they equal those of the
-    /// drive, as far as known.
+    /// Checks whether the displayed limits of a drive can be confirmed. They must equal the limits of the drive, as far
+    /// as these are known.
     ///
     /// # Errors
-    /// Explains why they cannot.
-    pub fn may_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
+    /// Explains why the limits cannot be confirmed.
+    pub fn check_can_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
         self.limits_to_confirm_now(drive).map(|_| ())
     }
 
-    /// Returns the displayed limits, which would be confirmed.
+    /// Returns the displayed limits of a drive, as they would be confirmed.
     fn limits_to_confirm_now(&self, drive: DriveNumber) -> Result<LimitsSeen, Text> {
         self.unread_reason(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::seen);
         seen.ok_or_else(|| words::lock(Lock::Unread))
     }
 
-    /// Confirms the displayed limits; returns whether this took effect, and reports if it did not.
+    /// Confirms the displayed limits. Returns whether this took effect, and reports a message if it did not.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
         // As shown, before another update: later changes were not seen.
         let shown = self.limits_to_confirm_now(drive);
@@ -141,14 +141,14 @@ impl Unit {
         self.notice_fault(reading.drive, before);
     }
 
-    /// Requests the cause if a drive has failed since.
+    /// Requests the cause of a fault if the drive has failed since the state `before`.
     pub(super) fn notice_fault(&mut self, drive: DriveNumber, before: Option<State>) {
         if self.state(drive) == Some(State::Fault) && before.is_some_and(|before| before != State::Fault) {
             self.looks_at_errors = true;
         }
     }
 
-    /// Returns whether the device differs from the one read before.
+    /// Returns whether the device is different from the one read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         self.identity().is_some_and(|known| {
             (&known.category, &known.serial_number) != (&identity.category, &identity.serial_number)
@@ -180,7 +180,7 @@ fn image(survey: &Survey) -> Image {
     Image { values: survey.values.iter().filter_map(editable).collect() }
 }
 
-/// Returns the name by which the log and the jobs call a device.
+/// Returns the name of a device in the log and in jobs.
 fn title(identity: &Identity) -> String {
     format!("{} · {}", identity.category, identity.serial_number)
 }

@@ -71,7 +71,7 @@ mod tests {
     const HEAD: &str = "6F 00 14 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 \
                         00 00 00 00 00 00 02 00 00 00 00 00 B2 00 04 00";
 
-    /// Issue 22.11: explicit messages (reference 7) damaged by hand, and refusals, have a meaning and a mark.
+    /// Issue 22.11: refusals and deliberately damaged explicit messages (reference 7) are explained and marked.
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let cases = [

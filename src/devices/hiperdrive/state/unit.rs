@@ -50,19 +50,19 @@ pub struct Unit {
     pub(super) drive: DriveNumber,
     pub(super) pitches: BTreeMap<DriveNumber, Length>,
     pub(super) axes: BTreeMap<DriveNumber, Axis>,
-    /// Whether the supply of the virtual device was switched since it was read.
+    /// Whether the supply of the virtual device has been switched since the device was read.
     pub(super) switched: bool,
     pub(super) unsaved: Unsaved,
     /// Values exchanged with the settings, or `None` before the first exchange.
     pub(super) exchanged: Option<ExchangedValues>,
-    /// Limits marked by another window since control was taken.
+    /// Limit marks set by another window since control was taken.
     pub(super) marks: SettingsReadState,
-    /// Last reading of each drive without control.
+    /// Last reading of each drive while it was not under control.
     pub(super) readings: BTreeMap<DriveNumber, DriveReading>,
-    /// Whether limits and scaling may have changed since they were read, because control was taken.
+    /// Whether limits and scaling may have changed since they were read, as is the case after control is taken.
     pub(super) is_stale: bool,
     pub(super) watched: DriveNumber,
-    /// Polling has been started automatically since the link was opened.
+    /// Whether polling has been started automatically since the link was opened.
     pub(super) has_polled: bool,
     /// Whether errors must be read again as soon as the line is free.
     pub(super) looks_at_errors: bool,
@@ -108,7 +108,7 @@ impl Unit {
         document.body.get::<HiperdriveProfile>()
     }
 
-    /// Returns the edited profile, if the session is one.
+    /// Returns the edited profile if the session is that of a profile.
     pub(crate) fn wanted_profile(&self) -> Option<HiperdriveProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
         Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })
@@ -122,7 +122,7 @@ impl Unit {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Returns the serial number, or `None` if nothing was read.
+    /// Returns the serial number of the device, or `None` if nothing was read.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
@@ -168,12 +168,12 @@ impl Unit {
         self.identity()?.drive(drive)
     }
 
-    /// Returns a parameter as last read.
+    /// Returns the value of a parameter as last read.
     pub fn value(&self, number: ParameterNumber) -> Option<&Value> {
         self.survey.as_ref()?.values.get(&number)
     }
 
-    /// Returns a numeric parameter of a drive as last read, given its number for drive 1.
+    /// Returns the value of a numeric parameter of a drive as last read, given the parameter number for drive 1.
     pub fn number(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         match self.value(ParameterNumber::of_drive(number, drive)?)? {
             Value::Number(value) => Some(*value),
@@ -185,7 +185,7 @@ impl Unit {
         self.status.as_ref()?.drives.iter().find(|own| own.number == drive)
     }
 
-    /// Returns the last data of a drive, from the cyclic connection or from polling.
+    /// Returns the last data received from a drive over the cyclic connection or by polling.
     pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
         // Values read at the start are void once the connection is lost.
@@ -193,8 +193,8 @@ impl Unit {
         self.moves.actual(drive).or_else(read).or_else(surveyed)
     }
 
-    /// Returns the time of the last report of a drive on the session's clock, or `None` if it was only part of a
-    /// complete reading.
+    /// Returns the time of the last report of a drive on the session's clock, or `None` if the report was only part of
+    /// a complete reading.
     pub(super) fn actual_at(&self, drive: DriveNumber) -> Option<Moment> {
         match self.moves.drive(drive) {
             Some(own) => own.received_at,
@@ -214,12 +214,12 @@ impl Unit {
         self.actual(drive).map(|own| own.status.state())
     }
 
-    /// Returns whether a drive is known to move, or is about to.
+    /// Returns whether a drive is known to be moving or about to move.
     pub fn is_moving(&self) -> bool {
         self.moves.is_moving() || self.drives().into_iter().any(|drive| self.state_now(drive) == Some(State::Moving))
     }
 
-    /// Returns the polled state of a drive, or `None` if it is not polled now.
+    /// Returns the polled state of a drive, or `None` if the drive is not being polled.
     pub fn state_now(&self, drive: DriveNumber) -> Option<State> {
         let is_polled = self.session.is_polling() && !self.moves.is_open() && drive == self.watched;
         // Data from before the end of polling are outdated.
@@ -231,12 +231,12 @@ impl Unit {
         Ruler { scale: self.scale(drive).unwrap_or(PositionScale::FACTORY), pitch: self.pitch(drive) }
     }
 
-    pub fn wanted_ruler(&self, drive: DriveNumber) -> Ruler {
+    pub fn requested_ruler(&self, drive: DriveNumber) -> Ruler {
         let scale = self.staged.wanted().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
         Ruler { scale, pitch: self.pitch(drive) }
     }
 
-    /// Returns the pitch of the spindle behind a drive, if entered by the user.
+    /// Returns the pitch of the spindle that a drive turns, if entered by the user.
     pub fn pitch(&self, drive: DriveNumber) -> Option<Length> {
         self.pitches.get(&drive).copied()
     }
@@ -249,7 +249,7 @@ impl Unit {
         scale.unwrap_or(SpeedScale::FACTORY)
     }
 
-    /// Returns the limits of a drive as last read by the worker, or `None` for a profile and before anything was read.
+    /// Returns the limits of a drive as last read by the worker, or `None` for a profile or before anything was read.
     pub fn drive_limits(&self, drive: DriveNumber) -> Option<&DriveLimits> {
         self.moves.limits(drive)
     }
@@ -271,7 +271,7 @@ impl Unit {
 
     /// Returns the limits that the user must check before the drive moves, if any.
     pub fn limits_to_confirm(&self, drive: DriveNumber) -> Option<(i32, i32)> {
-        self.limits(drive).filter(|_| self.moves.unconfirmed().contains(&drive))
+        self.limits(drive).filter(|_| self.moves.unconfirmed_drives().contains(&drive))
     }
 
     pub fn marks(&self) -> Vec<Mark> {

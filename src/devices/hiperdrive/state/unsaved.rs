@@ -10,15 +10,15 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Unsaved {
-    /// The saved values of parameters written since, by number.
+    /// Saved values, by number, of the parameters written since the last save.
     before: BTreeMap<u16, i64>,
-    /// Number of times this program has set the position of a drive.
+    /// Number of times this program has set the position of each drive.
     set: BTreeMap<DriveNumber, u32>,
     sets: Vec<DriveNumber>,
 }
 
 impl Unsaved {
-    /// Records that a plan is about to be executed, so that its parameters may differ from the saved ones.
+    /// Records that execution of a plan is starting, so that its parameters may differ from the saved values.
     pub(super) fn begin(&mut self, plan: &HiperdrivePlan) {
         let changes_all = |op: &Op| matches!(op, Op::Service(Service::Factory | Service::Recall));
         let base = plan.base.image();
@@ -44,14 +44,14 @@ impl Unsaved {
         }
     }
 
-    /// Records that a plan ended early; `begun` tells whether some of it was written, or may have been.
+    /// Records that a plan ended early; `begun` tells whether part of it was or may have been written.
     pub(super) fn ended(&mut self, begun: bool) {
         for drive in std::mem::take(&mut self.sets) {
             *self.set.entry(drive).or_default() += u32::from(begun);
         }
     }
 
-    /// Compares with a complete reading: values equal to the saved ones are no longer a difference.
+    /// Compares with a complete reading. Values equal to the saved values no longer count as differences.
     pub(super) fn read(&mut self, now: &BTreeMap<ParameterNumber, Value>) {
         let is_as_saved = |number: u16, before: i64| {
             ParameterNumber::new(number).is_some_and(|number| now.get(&number) == Some(&Value::Number(before)))
@@ -59,7 +59,7 @@ impl Unsaved {
         self.before.retain(|number, before| !is_as_saved(*number, *before));
     }
 
-    /// Returns the saved values by number, to be remembered.
+    /// Returns the saved values by number, for storage.
     pub(super) const fn saved(&self) -> &BTreeMap<u16, i64> {
         &self.before
     }
@@ -70,7 +70,7 @@ impl Unsaved {
         }
     }
 
-    /// Returns the saved values of a drive, by the numbers of drive 1.
+    /// Returns the saved values of a drive, by their numbers for drive 1.
     fn of_drive(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
         let own = |(number, before): (&u16, &i64)| {
             let number = ParameterNumber::new(*number).filter(|number| number.drive() == Some(drive))?;
@@ -81,7 +81,7 @@ impl Unsaved {
 }
 
 impl Unit {
-    /// Returns the saved values of a drive that have been overwritten since, by the numbers of drive 1.
+    /// Returns the saved values of a drive that have been overwritten since, by their numbers for drive 1.
     pub(super) fn unsaved_of(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
         self.unsaved.of_drive(drive)
     }
@@ -108,8 +108,8 @@ mod tests {
         image.values.iter().map(|(number, value)| (*number, Value::Number(*value))).collect()
     }
 
-    /// Issue 21.6 (h): the saved values are known from those written since, also by an earlier run of the program, until
-    /// the next save.
+    /// Issue 21.6 (h): the saved values are known from those written since, also by an earlier run of the program,
+    /// until the next save.
     #[test]
     fn saved_values_are_remembered_until_the_next_save() {
         let three = DriveNumber::new(3).unwrap();

@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as hiperdrive;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// Formats a value; words of bits and codes in hexadecimal.
+/// Formats a value, using hexadecimal for bit words and codes.
 pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     match value {
         Value::Text(text) => text.clone(),
@@ -22,7 +22,7 @@ pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     }
 }
 
-/// Returns the unit of a numeric parameter, if it has one. A string has none, even if it contains a number.
+/// Returns the unit of a numeric parameter, if any. A string has no unit, even if it contains a number.
 pub fn unit(row: &ParameterRow) -> Option<Text> {
     match row.unit {
         _ if row.kind == Kind::Text => None,
@@ -35,14 +35,14 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
     }
 }
 
-/// Interprets a string as a number with its unit, or returns `None` for other strings.
+/// Formats a string as a number with its unit, or returns `None` if the string is not a number.
 pub fn nominal(number: ParameterNumber, text: &str) -> Option<Text> {
     let unit = number.row().map(|row| row.unit).filter(|unit| !unit.is_empty())?;
     let (value, decimals) = protocol::nominal(text)?;
     Some(TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", plain(unit)))
 }
 
-/// Describes a number, or returns `None` if it is self-explanatory.
+/// Describes the meaning of a number, or returns `None` if the number is self-explanatory.
 pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
     let tenths = |id: &'static str, name: &'static str| TEXTS.text(id).with_number(name, value as f64 / 10.0, 1);
     let word = || u16::try_from(value).ok();

@@ -48,7 +48,7 @@ impl WithMemory for Unit {
         HiperdriveJob::Prepare(change)
     }
 
-    /// Stops all motion and returns the job that writes. No limit of write cycles is known for these devices.
+    /// Stops all motion and returns the job that writes the plan. No limit of write cycles is known for these devices.
     fn commit(&mut self, agreed: ApprovedPlanOf<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
         self.unsaved.begin(&agreed.prepared.plan);

@@ -25,12 +25,12 @@ use crate::ui::{Theme, icons};
 
 #[derive(Default)]
 pub(super) struct AxisUiState {
-    /// The drawn step, and since when, on the window's clock.
+    /// The step drawn, with the time since when, on the window's clock.
     since: Option<(AxisStep, f64)>,
 }
 
 impl AxisUiState {
-    /// Returns how long a step has been drawn; zero if it is new.
+    /// Returns how long a step has been drawn, or zero for a new step.
     fn age(&mut self, step: AxisStep, now: f64) -> Duration {
         let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
         self.since = Some((step, since));
@@ -42,7 +42,7 @@ pub(crate) struct AxisPicture<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
     seen: &'a DriveFacts,
-    /// How long the step has been shown.
+    /// How long the current step has been shown.
     looked_at: Duration,
 }
 
@@ -61,14 +61,14 @@ impl AxisPicture<'_> {
 
 const NUMBERS: f32 = 15.0;
 const PRIMARY: f32 = 112.0;
-/// Width below which the list of steps is above the step rather than next to it.
+/// Width below which the list of steps is placed above the step rather than beside it.
 const BESIDE: f32 = 640.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUiState, actions: &mut Vec<Action>) {
     let Some(axis) = unit.axis() else {
-        intro(ui, theme, unit, actions);
+        intro_ui(ui, theme, unit, actions);
         theme.gap(ui);
-        notes(ui, theme);
+        notes_ui(ui, theme);
         return;
     };
     let seen = unit.seen(unit.drive());
@@ -84,10 +84,10 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
         if goes_on {
             step_ui(ui, theme, &shown, actions);
         } else {
-            card(ui, theme, TEXTS.text("hd_axis.title"), |ui| list(ui, theme, &shown));
+            card(ui, theme, TEXTS.text("hd_axis.title"), |ui| list_ui(ui, theme, &shown));
         }
         theme.gap(ui);
-        notes(ui, theme);
+        notes_ui(ui, theme);
         return;
     }
     split(
@@ -95,29 +95,29 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
         theme,
         (0.36, BESIDE),
         actions,
-        |ui, _| card(ui, theme, TEXTS.text("hd_axis.title"), |ui| list(ui, theme, &shown)),
+        |ui, _| card(ui, theme, TEXTS.text("hd_axis.title"), |ui| list_ui(ui, theme, &shown)),
         |ui, actions| {
             if goes_on {
                 step_ui(ui, theme, &shown, actions);
                 theme.gap(ui);
             }
-            notes(ui, theme);
+            notes_ui(ui, theme);
         },
     );
 }
 
-fn intro(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn intro_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("hd_axis.title"), |ui| {
         paragraph(ui, say(theme, "hd_axis.words"));
         ui.add_space(theme.space.between);
         // Before the list: in a low window it is visible without scrolling.
-        let allowed = unit.may_set_up();
+        let allowed = unit.check_can_set_up();
         ui.horizontal(|ui| {
             if primary(ui, theme, allowed.is_ok(), icons::PLAY, &say(theme, "hd_axis.begin")).clicked() {
                 actions.push(Action::device(unit.session.id, Hiperdrive::Axis(Run::Begin)));
             }
             if let Err(why) = &allowed {
-                warning(ui, theme, why);
+                warning_ui(ui, theme, why);
             }
         });
         ui.add_space(theme.space.between);
@@ -134,7 +134,7 @@ fn intro(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
+fn list_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     let line = |step: AxisStep| {
         let reached = shown.axis.reached(step);
         let state = match reached {
@@ -181,7 +181,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
     card_with(ui, theme, words::title(step), aside, |ui| {
         paragraph(ui, with_nonbreaking_spaces(theme.words(&words::step_instructions(step, seen))));
         ui.add_space(theme.space.between);
-        live(ui, theme, shown);
+        live_ui(ui, theme, shown);
         ui.add_space(theme.space.between);
         let mut entries = axis.entries().shown(theme.language);
         content::content_ui(ui, theme, shown, &mut entries, actions);
@@ -195,7 +195,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
     });
 }
 
-/// Draws changing messages: a fault, void results, missing conditions, and findings.
+/// Draws the messages that change: a fault, invalidated results, missing conditions, and findings.
 fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let (axis, seen) = (shown.axis, shown.seen);
     let fallen = axis.invalidated_text().map(words::invalidated_text);
@@ -205,11 +205,11 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entri
     if let Some(why) = &fallen {
         line(ui, theme, Severity::Error, why);
     }
-    if let Some(why) = words::unexplained(axis, seen) {
-        warning(ui, theme, &why);
+    if let Some(why) = words::unexplained_change_text(axis, seen) {
+        warning_ui(ui, theme, &why);
     }
-    if let (Err(why), None) = (axis.may_go_on(seen), &fallen) {
-        warning(ui, theme, &why);
+    if let (Err(why), None) = (axis.check_can_continue(seen), &fallen) {
+        warning_ui(ui, theme, &why);
     }
     content::messages_ui(ui, theme, shown, entries);
     // The limits to be checked are shown large above.
@@ -218,11 +218,11 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entri
         row(ui, theme, &say(theme, "hd_axis.now"), with_nonbreaking_spaces(theme.words(&found)));
     }
     if let (AxisStep::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
-        warning(ui, theme, &differences);
+        warning_ui(ui, theme, &differences);
     }
 }
 
-fn live(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
+fn live_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     theme.sunken().show(ui, |ui| {
         crate::ui::controls::fill(ui);
         let position = shown.seen.position.map_or_else(
@@ -244,14 +244,14 @@ fn live(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     });
 }
 
-/// Draws the buttons Back, Cancel and Next. Until a step can be left, it can only be cancelled, which stops the motion.
+/// Draws the buttons Back, Cancel and Next. Until a step is complete, only Cancel is enabled, which stops the motion.
 fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let settled = Axis::may_leave(shown.looked_at).is_ok();
     let step = axis.step();
-    let allowed = axis.may_go_on(seen);
+    let allowed = axis.check_can_continue(seen);
     ui.horizontal_wrapped(|ui| {
-        if enabled_button(ui, settled && axis.may_go_back(seen), icons::ARROW_U_UP_LEFT, &say(theme, "hd_axis.back"))
+        if enabled_button(ui, settled && axis.can_go_back(seen), icons::ARROW_U_UP_LEFT, &say(theme, "hd_axis.back"))
             .clicked()
         {
             shown.push(actions, Run::Back);
@@ -260,7 +260,7 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut
             shown.push(actions, Run::Cancel);
         }
         let word = say(theme, if step == AxisStep::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
-        at_the_right(ui, |ui| {
+        at_the_right_ui(ui, |ui| {
             if primary(ui, theme, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
                 shown.push(actions, Run::Next);
             }
@@ -268,38 +268,39 @@ fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut
     });
 }
 
-fn skip(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn skip_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if step.may_be_skipped() {
         let id = if step == AxisStep::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
-        let allowed = Axis::may_leave(shown.looked_at).is_ok() && shown.axis.may_skip(shown.seen);
+        let allowed = Axis::may_leave(shown.looked_at).is_ok() && shown.axis.can_skip(shown.seen);
         if enabled_button(ui, allowed, "", &say(theme, id)).clicked() {
             shown.push(actions, Run::Skip);
         }
     }
 }
 
-/// Returns the string with every number and its unit kept on one line.
+/// Returns the string with non-breaking spaces between numbers and their units.
 fn with_nonbreaking_spaces(words: String) -> String {
     words.replace(" mm", "\u{a0}mm").replace(" %", "\u{a0}%")
 }
 
-/// Draws the content at the right end of a line as high as a button: next to other buttons if there is room, or else
-/// below them.
-fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+/// Draws content as high as a button at the right end of a line, beside other buttons if there is room and below them
+/// otherwise.
+fn at_the_right_ui(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let rest = ui.available_size_before_wrap().x;
     let width = if rest >= PRIMARY { rest } else { ui.available_width() };
     let size = egui::vec2(width.max(0.0), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
 }
 
-/// Draws the end of the run: possible next steps, what was written, and whether it is saved.
+/// Draws the end of the procedure: possible next steps, what was written, and whether it is saved.
 fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, end: End, actions: &mut Vec<Action>) {
     let axis = shown.axis;
     let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };
     card(ui, theme, TEXTS.text(title), |ui| {
         ui.horizontal_wrapped(|ui| {
-            if enabled_button(ui, shown.unit.may_set_up().is_ok(), icons::PLAY, &say(theme, "hd_axis.again")).clicked()
+            if enabled_button(ui, shown.unit.check_can_set_up().is_ok(), icons::PLAY, &say(theme, "hd_axis.again"))
+                .clicked()
             {
                 shown.push(actions, Run::Begin);
             }
@@ -311,7 +312,7 @@ fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, end: End, actions
             {
                 ui.ctx().copy_text(report);
             }
-            recall(ui, theme, shown, actions);
+            recall_ui(ui, theme, shown, actions);
         });
         ui.add_space(theme.space.inside);
         if end == End::Cancelled {
@@ -324,12 +325,12 @@ fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, end: End, actions
     });
 }
 
-fn recall(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn recall_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let word = say(theme, "hd_axis.recall");
     shown.button(ui, theme, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
 }
 
-fn notes(ui: &mut Ui, theme: &Theme) {
+fn notes_ui(ui: &mut Ui, theme: &Theme) {
     card(ui, theme, TEXTS.text("hd_axis.notes"), |ui| {
         for id in [
             "hd_axis.note_stop",
@@ -352,7 +353,7 @@ fn line(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
     });
 }
 
-fn warning(ui: &mut Ui, theme: &Theme, why: &Text) {
+fn warning_ui(ui: &mut Ui, theme: &Theme, why: &Text) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
         paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.warn));

@@ -11,13 +11,13 @@ use crate::ui::controls::{allowed_button, name, paragraph, two_lines};
 use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 use crate::ui::{Theme, icons};
 
-/// Size of STOP, wide enough for a flat hand.
+/// Size of the STOP button, wide enough for a flat hand.
 const STOP: egui::Vec2 = vec2(112.0, 44.0);
 
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     ui.horizontal_top(|ui| {
-        stop(ui, theme, (unit.moves.is_open(), studio.moves_by_hand()), actions);
+        stop_ui(ui, theme, (unit.moves.is_open(), studio.is_turned_by_hand()), actions);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = theme.space.inside;
             let is_hub = unit.drives().len() > 1;
@@ -32,22 +32,22 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, a
                     actions.push(Action::device(id, act));
                 }
                 if !is_hub {
-                    control(ui, theme, unit);
+                    control_ui(ui, theme, unit);
                 }
             });
             if is_hub {
                 let size = vec2(ui.available_width().max(0.0), ui.spacing().interact_size.y);
                 let place = egui::Layout::left_to_right(egui::Align::Center);
-                ui.allocate_ui_with_layout(size, place, |ui| control(ui, theme, unit));
+                ui.allocate_ui_with_layout(size, place, |ui| control_ui(ui, theme, unit));
             }
             paragraph(ui, theme.caption(format!("{}  {}", icons::WARNING, say(theme, "hd_bar.stop_is_not"))));
         });
     });
 }
 
-/// Draws whether this window has control of the drives, or why it lost control; an alarm comes first. In constant height:
-/// no button moves when control is lost.
-fn control(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+/// Draws whether this window has control of the drives or why it lost control, with alarms first. The height is
+/// constant, so that no button moves when control is lost.
+fn control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let palette = theme.palette;
     let (words, ink) = match (unit.loss_reason(), outside::badge(theme, unit)) {
         (Some(why), _) => (format!("{}  {}", icons::WARNING_CIRCLE, theme.words(&why)), palette.bad),
@@ -58,7 +58,7 @@ fn control(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     two_lines(ui, theme, words, ink.into());
 }
 
-fn stop(ui: &mut Ui, theme: &Theme, (open, moves): (bool, bool), actions: &mut Vec<Action>) {
+fn stop_ui(ui: &mut Ui, theme: &Theme, (open, moves): (bool, bool), actions: &mut Vec<Action>) {
     let palette = theme.palette;
     let word = theme.say("hd_bar.stop");
     let (ink, fill) = if open { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
@@ -75,7 +75,7 @@ fn stop(ui: &mut Ui, theme: &Theme, (open, moves): (bool, bool), actions: &mut V
     }
 }
 
-/// Draws the drives of a hub; nothing for an adapter, which has only one.
+/// Draws the drives of a hub. Draws nothing for an adapter, which has only one drive.
 fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drives = unit.drives();
     if drives.len() < 2 {
@@ -87,14 +87,14 @@ fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
         ui.spacing_mut().button_padding.x = 6.0;
         let moving = unit.moving_drives();
         for drive in drives {
-            if drive_button(ui, theme, unit, (drive, moving.contains(&drive))) {
+            if drive_button_ui(ui, theme, unit, (drive, moving.contains(&drive))) {
                 actions.push(Action::device(unit.session.id, Hiperdrive::SelectDrive(drive)));
             }
         }
     });
 }
 
-fn drive_button(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
+fn drive_button_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
     let palette = theme.palette;
     let state = if moves { Some(State::Moving) } else { unit.state_now(drive) };
     // All signs have the same width: no button moves when a drive changes its state.

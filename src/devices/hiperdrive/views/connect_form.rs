@@ -35,7 +35,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
         segments(ui, theme, &mut form.kind, ways);
         ui.add_space(theme.space.between);
         match form.kind {
-            HiperdriveLinkKind::Virtual => simulated(ui, theme, form),
+            HiperdriveLinkKind::Virtual => simulated_ui(ui, theme, form),
             HiperdriveLinkKind::Network => {
                 place(
                     ui,
@@ -44,7 +44,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
                     (&mut form.host, "192.168.1.10"),
                     (&mut form.tcp_port, "44818"),
                 );
-                interval(ui, theme, form);
+                interval_ui(ui, theme, form);
                 ui.add_space(theme.space.inside);
                 let finder = dialog.finder::<DiscoveryFinder>();
                 discovery(ui, theme, finder.and_then(|own| own.discovery.as_ref()), actions);
@@ -53,7 +53,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
         }
         if form.kind != HiperdriveLinkKind::Replay && expandable_ui(ui, theme, more) {
             if form.kind == HiperdriveLinkKind::Virtual {
-                interval(ui, theme, form);
+                interval_ui(ui, theme, form);
             }
             let word = say(theme, "connect.byte_order");
             entry(ui, theme, &word, |ui| {
@@ -66,7 +66,7 @@ impl TypedConnectForm for HiperdriveConnectForm {
     }
 }
 
-fn simulated(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
+fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
     let word = say(theme, "connect.hub");
     entry(ui, theme, &word, |ui| {
         let hubs = [
@@ -80,7 +80,7 @@ fn simulated(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
     typed(ui, theme, say, own, &mut form.typed);
 }
 
-fn interval(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
+fn interval_ui(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
     let (interval, _) = HiperdriveForm::of_the_link();
     typed(ui, theme, say, interval, &mut form.typed);
 }

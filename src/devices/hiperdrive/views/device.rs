@@ -26,25 +26,25 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
         theme,
         &mut *actions,
         |ui, actions| {
-            identity(ui, theme, unit, actions);
+            identity_ui(ui, theme, unit, actions);
             if !is_profile {
                 theme.gap(ui);
-                check(ui, theme, unit, actions);
+                check_ui(ui, theme, unit, actions);
             }
         },
         |ui, _| {
-            drives(ui, theme, unit);
+            drives_ui(ui, theme, unit);
             theme.gap(ui);
-            wiring(ui, theme);
+            wiring_ui(ui, theme);
         },
     );
     if !is_profile {
         theme.gap(ui);
-        services(ui, theme, unit, actions);
+        services_ui(ui, theme, unit, actions);
     }
 }
 
-fn identity(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn identity_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
         if unit.profile().is_none()
             && enabled_button(ui, unit.session.is_readable(), icons::ARROW_CLOCKWISE, &say(theme, "hd_device.read"))
@@ -72,7 +72,7 @@ fn identity(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
     });
 }
 
-fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+fn drives_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_drives.title"), |ui| {
         let Some(identity) = unit.identity() else {
             empty(ui, theme, &say(theme, "hd_device.nothing"), None);
@@ -101,7 +101,7 @@ fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     });
 }
 
-fn check(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn check_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         if enabled_button(ui, unit.session.is_ready(), icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {
             actions.push(Action::device(unit.session.id, Hiperdrive::Check));
@@ -112,7 +112,7 @@ fn check(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-fn services(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn services_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("hd_services.title"), |ui| {
         for (service, note) in SERVICES {
             if enabled_button(ui, unit.session.is_ready(), "", &theme.words(&explain::service(service))).clicked() {
@@ -128,7 +128,7 @@ fn services(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
 
 const WIRING: [&str; 4] = ["hd_wiring.bus", "hd_wiring.supply", "hd_wiring.drives", "hd_wiring.manual"];
 
-fn wiring(ui: &mut Ui, theme: &Theme) {
+fn wiring_ui(ui: &mut Ui, theme: &Theme) {
     folding_card(ui, theme, "wiring.title", |ui| {
         for note in WIRING {
             paragraph(ui, theme.label(say(theme, note)));
@@ -142,7 +142,8 @@ mod tests {
     use crate::devices::hiperdrive::state::TEXTS;
     use crate::ui::wiring::check_notes;
 
-    /// Issue 22.23: HIPERDRIVE manual, 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter).
+    /// Issue 22.23: the wiring card follows the HIPERDRIVE manual, 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and
+    /// 4.2 (bus adapter).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         check_notes(&TEXTS, &WIRING, &["4-pin, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);

@@ -17,7 +17,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
         ui,
         theme,
         actions,
-        |ui, actions| buffer(ui, theme, unit, actions),
+        |ui, actions| buffer_ui(ui, theme, unit, actions),
         |ui, _| {
             words(ui, theme, unit);
             theme.gap(ui);
@@ -26,8 +26,8 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
     );
 }
 
-/// Draws the eight errors, the newest first.
-fn buffer(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+/// Draws the eight stored errors, newest first.
+fn buffer_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     let drive = unit.drive();
     let read = |ui: &mut Ui| {
@@ -69,7 +69,7 @@ fn buffer(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-/// Draws parameters 116 to 118, temperatures, the supply.
+/// Draws parameters 116 to 118, the temperatures and the supply.
 fn words(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_health.title"), |ui| {
         let Some(status) = unit.drive_status(unit.drive()) else {

@@ -32,7 +32,7 @@ pub(super) fn words_card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: Driv
 const BARS: f32 = 96.0;
 const WORDS: f32 = 16.0;
 
-/// Draws the cyclic connection: number of packets, errors, and deviation of the intervals.
+/// Draws the statistics of the cyclic connection: number of packets, errors, and deviation of the intervals.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_link.title"), |ui| {
         let view = unit.moves.view();
@@ -63,7 +63,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     });
 }
 
-/// Draws a bar for each bucket on a logarithmic scale, so that one late packet in a million is visible.
+/// Draws a histogram with a logarithmic scale, on which one late packet in a million is visible.
 fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
     let buckets: Vec<Bucket> = histogram.buckets().collect();
     let size = vec2(ui.available_width().max(0.0), BARS + WORDS);

@@ -10,15 +10,15 @@ use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Percent};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
-use crate::ui::controls::{allowed_button, card, paragraph, problem_below};
+use crate::ui::controls::{allowed_button, card, folding_card, paragraph, problem_below};
 use crate::ui::widgets::{HoldButton, hold_button};
 
 const PAD: f32 = 56.0;
 
-/// Speeds that a button sets, in percent.
+/// Speeds of the preset buttons, in percent.
 const PRESETS: [u8; 4] = [1, 10, 50, 100];
 
-/// Draws the travel of the drive, and the jog controls.
+/// Draws the travel of the drive and the jog controls.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("hd_jog.title"), |ui| {
         travel_ui(ui, theme, unit, &view.target);
@@ -30,7 +30,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         let effort = effort_ui(ui, theme, unit, own, &presets, Motor::JogEffort, actions);
         let allowed = effort.and(unit.may_move(drive));
         pads_ui(ui, theme, unit, allowed.is_ok(), actions);
-        pads_note(ui, theme, unit, allowed.as_ref().err());
+        pads_note_ui(ui, theme, unit, allowed.as_ref().err());
     });
 }
 
@@ -42,7 +42,7 @@ pub(super) fn step_card_ui(
     view: &mut MotionUiState,
     actions: &mut Vec<Action>,
 ) {
-    card(ui, theme, TEXTS.text("hd_step.title"), |ui| {
+    folding_card(ui, theme, TEXTS.text("hd_step.title"), |ui| {
         length_ui(ui, theme, unit, "hd_step.by", &mut view.step, actions);
         ui.horizontal_wrapped(|ui| {
             for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
@@ -63,8 +63,8 @@ pub(super) fn step_card_ui(
     });
 }
 
-/// Draws what the buttons do, or why they are disabled, in constant height, so nothing below moves.
-fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<&Text>) {
+/// Draws what the buttons do or why they are disabled. The height is constant, so nothing below moves.
+fn pads_note_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<&Text>) {
     let drive = unit.drive();
     let outside = unit.outside(drive).filter(|own| {
         let ways = [Direction::Counterclockwise, Direction::Clockwise];

@@ -18,16 +18,16 @@ const RADIUS: f32 = 9.0;
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, LedsUiState(leds): &mut LedsUiState) {
     folding_card(ui, theme, TEXTS.text("hd_led.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "hd_led.words")));
-        device(ui, theme, leds);
+        device_ui(ui, theme, leds);
         ui.add_space(theme.space.between);
         for lamp in Led::ALL {
-            row(ui, theme, leds, lamp);
+            row_ui(ui, theme, leds, lamp);
         }
     });
 }
 
 /// Draws the selection of the device and the position of its switch S3.
-fn device(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
+fn device_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
     let (mut hub, mut s3) = (leds.hub, leds.s3);
     let word = say(theme, "hd_led.device");
     entry(ui, theme, &word, |ui| {
@@ -51,7 +51,7 @@ fn device(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
     }
 }
 
-fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
+fn row_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     ui.horizontal_top(|ui| {
         lamp_ui(ui, theme, leds, lamp);
         ui.vertical(|ui| {
@@ -68,13 +68,13 @@ fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     ui.add_space(theme.space.inside);
 }
 
-/// Draws an LED; a click shows its next possible state.
+/// Draws an LED. A click shows its next possible state.
 fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     let shown = theme.words(&leds.state_text(lamp));
     let response = ui.add(egui::Button::new("").min_size(BUTTON));
     let (rect, painter) = (response.rect, ui.painter());
     let middle = pos2(rect.left() + 24.0, rect.center().y);
-    paint(painter, theme, middle, look(theme, leds, lamp));
+    paint_paint(painter, theme, middle, look(theme, leds, lamp));
     let text = pos2(rect.left() + 48.0, rect.center().y);
     let about = match lamp {
         Led::Drives if leds.hub && leds.s3 != 0 => {
@@ -133,8 +133,8 @@ fn look(theme: &Theme, leds: &Leds, lamp: Led) -> LedStyle {
     }
 }
 
-/// Draws a disc of two halves; rays denote blinking.
-fn paint(painter: &Painter, theme: &Theme, middle: Pos2, look: LedStyle) {
+/// Draws a disc in two halves. Rays denote blinking.
+fn paint_paint(painter: &Painter, theme: &Theme, middle: Pos2, look: LedStyle) {
     let half = |from: f32, colour: Color32| {
         let points = (0..=16_u8).map(|step| {
             let angle = from + std::f32::consts::PI * f32::from(step) / 16.0;

@@ -77,7 +77,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     raw_row(ui, theme, actual.position.to_string());
 }
 
-/// Draws the menu of temperatures that are recorded with the position.
+/// Draws the menu that selects the temperatures to record with the position.
 pub(super) fn watch_menu(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let word = theme.say("live.watch");
     let watched = unit.watched_temperatures();

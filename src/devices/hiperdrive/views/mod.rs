@@ -105,7 +105,7 @@ impl TypedDeviceView for HiperdriveView {
         (page, view): (Page, &mut HiperdriveUiState),
         actions: &mut Vec<Action>,
     ) {
-        let around = page::sides(ui, theme);
+        let around = page::side_margin(ui, theme);
         let narrow = f32::from(around) < theme.space.around;
         let sides = |top, bottom| egui::Margin { left: around, right: around, top, bottom };
         let id = egui::Id::unique(unit.session.id);
@@ -174,7 +174,7 @@ impl TypedDeviceView for HiperdriveView {
     }
 }
 
-/// Returns a text of this catalogue, or a common one, in the window language.
+/// Returns a string from this catalogue or the common one, in the window language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -17,7 +17,7 @@ use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 
 use crate::ui::{Theme, icons};
 
-/// A percentage as typed, and the value in effect when it was last drawn.
+/// A percentage as typed, with the value in effect when it was last drawn.
 pub(super) type Draft = Option<(String, Percent)>;
 
 #[derive(Default)]
@@ -34,12 +34,12 @@ pub(super) struct MotionUiState {
 const NUMBER: f32 = 88.0;
 const PERCENT: f32 = 56.0;
 const MEASURE: f32 = 64.0;
-/// Width from which speed and torque stand in one row, and that of the note between them.
+/// Width from which speed and torque share one row, and width of the note between them.
 const ONE_ROW: f32 = 660.0;
 const NOTE: f32 = 112.0;
 const SAID: f32 = 32.0;
 const BESIDE: f32 = 560.0;
-/// Height of a window below which the pads come before the state diagram.
+/// Window height below which the jog buttons are placed above the state diagram.
 const LOW: f32 = 760.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
@@ -51,9 +51,9 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     // window counts, not the remaining height: nothing moves when a notice appears.
     let has_failed = matches!(unit.state(unit.drive()), Some(State::Fault | State::Locked));
     let low = ui.ctx().content_rect().height() < LOW && !has_failed;
-    locks(ui, theme, unit, actions);
+    locks_ui(ui, theme, unit, actions);
     if !low {
-        states(ui, theme, unit, actions);
+        states_ui(ui, theme, unit, actions);
         theme.gap(ui);
     }
     // A unique id: widgets that appear above do not take the keyboard focus from an entry.
@@ -62,7 +62,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         jog::card_ui(ui, theme, unit, view, actions);
         theme.gap(ui);
         if low {
-            states(ui, theme, unit, actions);
+            states_ui(ui, theme, unit, actions);
             theme.gap(ui);
         }
         two_columns(
@@ -71,7 +71,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
             (Ok(()), &mut *view, &mut *actions),
             |ui, (allowed, view, actions)| {
                 *allowed =
-                    card(ui, theme, TEXTS.text("hd_move.title"), |ui| to_position(ui, theme, unit, view, actions));
+                    card(ui, theme, TEXTS.text("hd_move.title"), |ui| to_position_ui(ui, theme, unit, view, actions));
             },
             |ui, (allowed, view, actions)| {
                 jog::step_card_ui(ui, theme, unit, allowed, view, actions);
@@ -88,7 +88,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     figures::words_card_ui(ui, theme, unit, unit.drive());
 }
 
-fn locks(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn locks_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     for lock in unit.moves.locks(drive) {
         theme.sunken().show(ui, |ui| {
@@ -106,8 +106,14 @@ fn locks(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
                 });
                 row(ui, theme, &say(theme, "hd_limits.lower"), theme.mono(low));
                 row(ui, theme, &say(theme, "hd_limits.upper"), theme.mono(high));
-                if allowed_button(ui, theme, &unit.may_confirm(drive), icons::CHECK, &say(theme, "hd_limits.confirm"))
-                    .clicked()
+                if allowed_button(
+                    ui,
+                    theme,
+                    &unit.check_can_confirm(drive),
+                    icons::CHECK,
+                    &say(theme, "hd_limits.confirm"),
+                )
+                .clicked()
                 {
                     let confirm = Hiperdrive::Drive(Motor::ConfirmLimits(drive));
                     actions.push(Action::device(unit.session.id, confirm));
@@ -118,9 +124,9 @@ fn locks(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     }
 }
 
-/// Draws the state diagram and the present activity of the drive, which is next to the heading, or below in a narrow
-/// window. The height is constant, since nothing may move under the pointer that holds a drive's button.
-fn states(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+/// Draws the state diagram and the current activity of the drive, shown beside the heading or, in a narrow window,
+/// below it. The height is constant, since nothing may move under a pointer that holds a drive's button.
+fn states_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let beside = ui.available_width() >= BESIDE;
     let mut acts = Vec::new();
     let aside = |ui: &mut Ui| {
@@ -150,7 +156,7 @@ fn states(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     actions.append(&mut acts);
 }
 
-/// Draws a fault with the way out of it, or the outcome of the last act.
+/// Draws a fault and how to clear it, or the outcome of the last act.
 fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
@@ -176,8 +182,8 @@ fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
     actions.push(Action::device(id, Hiperdrive::Drive(motor)));
 }
 
-/// Draws the move to a position; returns whether the drive may be moved with the entered effort.
-fn to_position(
+/// Draws the controls for a move to a position. Returns whether the drive may be moved with the entered effort.
+fn to_position_ui(
     ui: &mut Ui,
     theme: &Theme,
     unit: &Unit,
@@ -227,7 +233,7 @@ fn to_position(
     allowed
 }
 
-/// Draws the run at a speed, to the end of the range or, for experts, without an end.
+/// Draws the controls for a run at a speed, to the end of the range or, for experts, without end.
 fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     let mut expert = unit.moves.is_expert(unit.drive());
@@ -254,12 +260,12 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
     }
 }
 
-/// Draws speed and torque, in percent, with buttons for the `presets` of the speed: in one row where there is room. An entry
-/// takes effect at once, so that nothing starts with the old values; a running motion keeps its own, which is shown. A
-/// preset begins nothing.
+/// Draws speed and torque in percent, with buttons for the speed `presets`, in one row if there is room. An entry takes
+/// effect for the next motion at once; a running motion keeps its own values, which are shown, and a preset starts
+/// nothing.
 ///
 /// # Errors
-/// The entry is not a percentage: nothing may start with it.
+/// The entry is not a percentage, so no motion may start with it.
 pub(super) fn effort_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -322,7 +328,7 @@ pub(super) fn effort_ui(
     taken
 }
 
-/// Draws the entry of a percentage and its presets; `to` becomes the one entered or chosen.
+/// Draws the entry field of a percentage and its presets, and sets `to` to the value entered or chosen.
 ///
 /// # Errors
 /// The entry is not a percentage.
@@ -357,7 +363,8 @@ fn percent_ui(
     typed.map(|_| ())
 }
 
-/// Draws, beside a percentage: why it cannot be used, the one that a running motion was started with, or what it is `beside`.
+/// Draws the note next to a percentage: why it cannot be used, the value that a running motion started with, or
+/// `beside`.
 fn note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Percent>, beside: Option<Text>) {
     match (typed, sent, beside) {
         (Err(why), ..) => {

@@ -19,7 +19,7 @@ use crate::ui::{Theme, icons};
 /// Typed values that have not been written yet.
 #[derive(Default)]
 pub(super) struct NetworkUiState {
-    /// The settings of the device when typing began.
+    /// Settings of the device when typing began.
     of: Option<NetworkSettings>,
     form: Option<Form>,
 }
@@ -28,7 +28,7 @@ const ADDRESS: f32 = 148.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, actions: &mut Vec<Action>) {
     if unit.profile().is_some() {
-        switches(ui, theme, unit);
+        switches_ui(ui, theme, unit);
         return;
     }
     split(
@@ -36,12 +36,12 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Networ
         theme,
         (0.5, 640.0),
         (view, actions),
-        |ui, (view, actions)| settings(ui, theme, unit, view, actions),
-        |ui, _| switches(ui, theme, unit),
+        |ui, (view, actions)| settings_ui(ui, theme, unit, view, actions),
+        |ui, _| switches_ui(ui, theme, unit),
     );
 }
 
-fn settings(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, actions: &mut Vec<Action>) {
+fn settings_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     let mut asked = Vec::new();
     let read = |ui: &mut Ui| {
@@ -69,7 +69,7 @@ fn settings(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, 
         let wanted = form.settings(&now);
         change_preview_ui(ui, theme, unit, &now, &wanted);
         ui.add_space(theme.space.inside);
-        let allowed = match (&wanted, unit.may_plan()) {
+        let allowed = match (&wanted, unit.check_can_plan()) {
             (_, Err(why)) => Err(why),
             (Err(why), _) => Err(why.clone()),
             (Ok(own), Ok(())) if *own == now => Err(TEXTS.text("hd_net.no_change")),
@@ -143,13 +143,13 @@ fn change_preview_ui(
         Err(why) => problem(ui, theme, Some(why)),
         Ok(wanted) => {
             for (own, text) in network::consequences(unit.address_switch(), now, wanted, unit.host_address()) {
-                line(ui, theme, own, &text);
+                line_ui(ui, theme, own, &text);
             }
         }
     }
 }
 
-fn line(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
+fn line_ui(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
     let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(ink));
@@ -158,7 +158,7 @@ fn line(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
 }
 
 /// Draws the meaning of each switch position, with the present one highlighted.
-fn switches(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+fn switches_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     folding_card(ui, theme, TEXTS.text("hd_net.switches"), |ui| {
         let switch = unit.address_switch();
         if let Some(own) = switch {

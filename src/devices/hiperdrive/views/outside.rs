@@ -14,20 +14,20 @@ use crate::ui::{Theme, icons};
 
 #[derive(Default)]
 pub(super) struct Draft {
-    /// Position to be assigned to the present location.
+    /// Position value to assign to the current location of the drive.
     place: String,
     problem: Option<Text>,
 }
 
-/// Returns the one-line warning if a drive is outside its limits.
+/// Returns a one-line warning if a drive is outside its limits.
 pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
     unit.outside_words(unit.drive())?;
     let words = format!("{}  {}", icons::WARNING, say(theme, "hd_outside.short"));
     Some(RichText::new(words).font(theme.strong(theme.sizes.body)).color(theme.palette.bad))
 }
 
-/// Draws a card stating what is outside, what is blocked, and what can be done. Draws nothing if the drive is inside,
-/// or at the end of its range.
+/// Draws a card stating how the drive is outside its limits, what is blocked, and what can be done. Draws nothing if
+/// the drive is inside its limits or at the end of its range.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
     let (drive, id) = (unit.drive(), unit.session.id);
     let (Some(words), Some(outside)) = (unit.outside_words(drive), unit.outside(drive)) else {
@@ -66,7 +66,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft
             }
         });
         length_ui(ui, theme, unit, "hd_outside.place", &mut draft.place, actions);
-        if allowed_button(ui, theme, &unit.may_plan(), "", &say(theme, "hd_outside.set")).clicked() {
+        if allowed_button(ui, theme, &unit.check_can_plan(), "", &say(theme, "hd_outside.set")).clicked() {
             let change = forms::steps(unit, &draft.place, unit.measure)
                 .and_then(|position| unit.reference_here(drive, position));
             draft.problem =

@@ -23,22 +23,22 @@ pub(super) struct DriveParametersUiState {
     sought: String,
     shown: ParameterFilter,
     table: RegisterView,
-    /// Lines of the table when it was last drawn.
+    /// Rows of the table when it was last drawn.
     lines: Vec<Vec<ParameterNumber>>,
-    /// Whether columns of the table were hidden when it was last drawn; their content for the selected row is then
-    /// shown below.
+    /// Whether the table hid columns when it was last drawn. The hidden content of the selected row is then shown
+    /// below.
     hides_columns: bool,
     scales: BTreeMap<DriveNumber, scale::ScaleUiState>,
 }
 
-/// Filter of the parameters, or the scaling page for two of them.
+/// Filter of the parameter list, or the scaling page.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum ParameterFilter {
     All,
-    /// Writable parameters; a search by name or number covers all.
+    /// Shows writable parameters. A search by name or number covers all parameters.
     #[default]
     Written,
-    /// Parameters that are edited, or whose value has changed since the previous reading.
+    /// Shows parameters that are edited or whose value has changed since the previous reading.
     Changed,
     Scale,
 }
@@ -52,7 +52,7 @@ pub(super) fn page_ui(
     view: &mut DriveParametersUiState,
     actions: &mut Vec<Action>,
 ) {
-    head(ui, theme, view);
+    head_ui(ui, theme, view);
     if let Some(refusal) = &unit.refusal {
         paragraph(ui, RichText::new(theme.words(refusal)).color(theme.palette.bad));
     }
@@ -90,8 +90,8 @@ pub(super) fn page_ui(
     }
 }
 
-/// Draws the filter, and the reason why a typed value was refused.
-fn head(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
+/// Draws the filter, and the reason if a typed value was refused.
+fn head_ui(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
     ui.horizontal_wrapped(|ui| {
         let sought = say(theme, "hd_params.seek");
         if text_entry(ui, &mut view.sought, SOUGHT, &sought, &sought).changed() && view.shown == ParameterFilter::Scale
@@ -116,7 +116,7 @@ fn head(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
 }
 
 impl DriveParametersUiState {
-    /// Returns whether the scaling page is shown, for which the table must have closed its editor.
+    /// Returns whether the scaling page is shown. The table must have closed its editor before.
     fn shows_scale(&self) -> bool {
         self.shown == ParameterFilter::Scale && (self.table.typed().is_none() || self.table.is_refused())
     }
@@ -141,7 +141,7 @@ impl DriveParametersUiState {
         }
     }
 
-    /// Adjusts to changed rows: selection and typed value stay with their parameter.
+    /// Adjusts the view to changed rows, so that selection and typed value stay with their parameter.
     fn follow(&mut self, rows: &[Vec<Row>]) {
         let lines: Vec<Vec<_>> = rows.iter().map(|rows| rows.iter().map(|row| row.number).collect()).collect();
         if lines == self.lines {
@@ -190,7 +190,7 @@ fn table(
     actions.extend(edits.into_iter().map(act));
 }
 
-/// Returns the content of the columns that are hidden in a narrow window for a row.
+/// Returns the content of the columns of a row that a narrow window hides.
 fn hidden_columns(theme: &Theme, row: &Row) -> String {
     let named = |id: &'static str, words: String| (!words.is_empty()).then(|| format!("{} {words}", theme.say(id)));
     let range = row.range.as_ref().map(|range| theme.words(range)).unwrap_or_default();

@@ -16,12 +16,12 @@ use crate::ui::widgets::focus_ring;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StateMachine<'a> {
-    /// Present state of the drive, if known.
+    /// Current state of the drive, if known.
     pub(crate) present: Option<State>,
-    /// States that can be reached from the present one.
+    /// States that can be reached from the current state.
     pub(crate) reachable: &'a [State],
     pub(crate) names: &'a [String; 7],
-    /// Effects of going to a state, if any.
+    /// Effect of going to each state, if any.
     pub(crate) hints: &'a [Option<String>; 7],
 }
 
@@ -29,7 +29,7 @@ const BOX: f32 = 28.0;
 const GAP: f32 = 28.0;
 const BETWEEN: f32 = 16.0;
 const MOST: f32 = 128.0;
-/// Length and half width of an arrowhead.
+/// Length and half the width of an arrowhead.
 const HEAD: f32 = 6.0;
 
 const fn place(state: State) -> (f32, f32) {
@@ -70,7 +70,7 @@ pub(crate) fn state_machine(ui: &mut Ui, theme: &Theme, machine: &StateMachine<'
     let size = vec2(ui.available_width().max(240.0), 2.0 * BOX + BETWEEN);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let plan = Plan::new(rect);
-    arrows(ui.painter(), theme, &plan, machine.present);
+    paint_arrows(ui.painter(), theme, &plan, machine.present);
     let mut wanted = None;
     for ((state, name), hint) in State::ALL.into_iter().zip(machine.names).zip(machine.hints) {
         let place = plan.rect(state);
@@ -137,8 +137,9 @@ fn box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: BoxSty
     painter.galley(Align2::CENTER_CENTER.align_size_within_rect(words.size(), rect).min, words, look.ink);
 }
 
-/// Draws the arrows between the boxes: both directions in the row, three into the fault, two out of the lock.
-fn arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>) {
+/// Draws the arrows between the boxes: both directions within the row, three arrows into the fault, and two out of the
+/// lock.
+fn paint_arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>) {
     let faint = Color32::from(theme.palette.muted).gamma_multiply(0.7);
     // The arrows from the present state.
     let ink = |from: &[State]| {
@@ -149,8 +150,8 @@ fn arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>)
     for (left, right) in row.iter().zip(row.iter().skip(1)) {
         let (a, b) = (plan.rect(*left), plan.rect(*right));
         let (up, down) = (a.center().y - 6.0, a.center().y + 6.0);
-        line(painter, &[pos2(a.right() + 2.0, up), pos2(b.left() - 2.0, up)], ink(&[*left]));
-        line(painter, &[pos2(b.left() - 2.0, down), pos2(a.right() + 2.0, down)], ink(&[*right]));
+        paint_line(painter, &[pos2(a.right() + 2.0, up), pos2(b.left() - 2.0, up)], ink(&[*left]));
+        paint_line(painter, &[pos2(b.left() - 2.0, down), pos2(a.right() + 2.0, down)], ink(&[*right]));
     }
     let level = plan.rect(State::Enabled).bottom() + BETWEEN / 2.0;
     let fault = plan.rect(State::Fault);
@@ -158,23 +159,27 @@ fn arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>)
         let from_box = plan.rect(from);
         let start = pos2(from_box.center().x, from_box.bottom() + 2.0);
         let bends = [start, pos2(start.x, level), pos2(fault.center().x, level), fault.center_top() - vec2(0.0, 2.0)];
-        line(painter, &bends, ink(&[from]));
+        paint_line(painter, &bends, ink(&[from]));
     }
     let lock = plan.rect(State::Locked);
     let between = [pos2(fault.left() - 2.0, fault.center().y), pos2(lock.right() + 2.0, lock.center().y)];
-    line(painter, &between, ink(&[State::Fault]));
+    paint_line(painter, &between, ink(&[State::Fault]));
     let ready = plan.rect(State::Ready);
-    line(painter, &[lock.center_top() - vec2(0.0, 2.0), ready.center_bottom() + vec2(0.0, 2.0)], ink(&[State::Locked]));
+    paint_line(
+        painter,
+        &[lock.center_top() - vec2(0.0, 2.0), ready.center_bottom() + vec2(0.0, 2.0)],
+        ink(&[State::Locked]),
+    );
     let idle = plan.rect(State::NotReady);
     let side = [
         pos2(lock.left() - 2.0, lock.center().y),
         pos2(idle.center().x, lock.center().y),
         idle.center_bottom() + Vec2::new(0.0, 2.0),
     ];
-    line(painter, &side, ink(&[State::Locked]));
+    paint_line(painter, &side, ink(&[State::Locked]));
 }
 
-fn line(painter: &Painter, points: &[Pos2], stroke: Stroke) {
+fn paint_line(painter: &Painter, points: &[Pos2], stroke: Stroke) {
     for (from, to) in points.iter().zip(points.iter().skip(1)) {
         painter.line_segment([*from, *to], stroke);
     }

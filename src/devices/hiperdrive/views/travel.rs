@@ -28,7 +28,7 @@ const GAP: f32 = 6.0;
 const END: f32 = 8.0;
 /// Half the size of the target's diamond.
 const DIAMOND: f32 = 6.0;
-/// Share of the bar reserved beyond a position that is outside the limits.
+/// Fraction of the bar reserved for a position outside the limits.
 const BEYOND: f64 = 0.04;
 
 /// Mapping of steps to the pixels of the bar.
@@ -65,12 +65,12 @@ struct Shown {
     limits: Option<(i32, i32)>,
     position: Option<i32>,
     target: Option<i32>,
-    /// The way in which the drive is outside its limits, or `None` inside and at the end of its range.
+    /// How the drive is outside its limits, or `None` if it is inside or at the end of its range.
     outside: Option<Outside>,
     is_moving: bool,
 }
 
-/// Draws the travel of the shown drive; `typed` is the target entered for the next move.
+/// Draws the travel of the displayed drive; `typed` is the target entered for the next move.
 pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
     let drive = unit.drive();
     let typed = || forms::target(unit, typed, unit.measure).ok();
@@ -118,7 +118,7 @@ pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
     }
 }
 
-/// Describes the way back for a drive outside its limits.
+/// Describes how to return a drive that is outside its limits.
 fn return_instructions(outside: Outside) -> Text {
     TEXTS.text(match outside {
         Outside::At(Side::Above) => "hd_travel.back_down",
@@ -139,11 +139,11 @@ fn line_ui(
     let font = FontId::monospace(theme.sizes.body);
     let ink = position_ink(theme, shown);
     let Some(warning) = warning else {
-        let at = marker(painter, line.left_center() + vec2(3.0, 0.0), ink);
+        let at = paint_marker(painter, line.left_center() + vec2(3.0, 0.0), ink);
         painter.text(at, Align2::LEFT_CENTER, position, font.clone(), palette.text.into());
         let ink = if shown.target.is_some() { palette.text } else { palette.muted };
         let words = painter.text(line.right_center(), Align2::RIGHT_CENTER, target, font, ink.into());
-        diamond(painter, pos2(words.left() - DIAMOND - 6.0, line.center().y), target_ink(theme));
+        paint_diamond(painter, pos2(words.left() - DIAMOND - 6.0, line.center().y), target_ink(theme));
         return;
     };
     let words = format!("{}  {warning}", icons::WARNING);
@@ -174,10 +174,10 @@ fn bar_ui(painter: &Painter, theme: &Theme, bar: Rect, shown: &Shown) {
         }
         if let (Some(position), Some(Outside::At(side))) = (shown.position, shown.outside) {
             let limit = if side == Side::Above { range.right() } else { range.left() };
-            arrow(painter, pos2(scale.x(position), bar.center().y), limit, palette.bad.into());
+            paint_arrow(painter, pos2(scale.x(position), bar.center().y), limit, palette.bad.into());
         }
         if let Some(target) = shown.target {
-            diamond(painter, pos2(scale.x(target), bar.center().y), target_ink(theme));
+            paint_diamond(painter, pos2(scale.x(target), bar.center().y), target_ink(theme));
         }
         if let Some(position) = shown.position {
             let at = Rect::from_center_size(pos2(scale.x(position), bar.center().y), vec2(4.0, BAR + 8.0));
@@ -212,19 +212,19 @@ fn target_ink(theme: &Theme) -> Color32 {
     series(theme, 0)
 }
 
-/// Draws the position marker as a legend; returns where the label follows.
-fn marker(painter: &Painter, at: Pos2, ink: Color32) -> Pos2 {
+/// Draws the position marker of the legend and returns the position of its label.
+fn paint_marker(painter: &Painter, at: Pos2, ink: Color32) -> Pos2 {
     painter.rect_filled(Rect::from_center_size(at, vec2(4.0, BAR)), 2.0, ink);
     at + vec2(9.0, 0.0)
 }
 
-fn diamond(painter: &Painter, at: Pos2, ink: Color32) {
+fn paint_diamond(painter: &Painter, at: Pos2, ink: Color32) {
     let corners = [vec2(0.0, -DIAMOND), vec2(DIAMOND, 0.0), vec2(0.0, DIAMOND), vec2(-DIAMOND, 0.0)];
     painter.add(Shape::closed_line(corners.map(|corner| at + corner).to_vec(), Stroke::new(2.0, ink)));
 }
 
-/// Draws an arrow from a position back to a limit, where there is room.
-fn arrow(painter: &Painter, from: Pos2, limit: f32, ink: Color32) {
+/// Draws an arrow from a position back to a limit if there is room.
+fn paint_arrow(painter: &Painter, from: Pos2, limit: f32, ink: Color32) {
     const HEAD: f32 = 6.0;
     let way = limit - from.x;
     if way.abs() < 3.0 * HEAD {

@@ -93,7 +93,8 @@ fn size(text: &str) -> Result<FieldSize> {
     })
 }
 
-/// Parses `32 code=2 ce=1 we=1`, or a status byte such as `0xE9`. By default a field is writable and requires its code.
+/// Parses a field status such as `32 code=2 ce=1 we=1`, or a status byte such as `0xE9`. By default, a field is
+/// writable and requires its access code.
 fn new_status(words: &[&str]) -> Result<DataFieldStatus> {
     let [first, options @ ..] = words else { return Err(Failure::Usage("the size is missing".to_owned())) };
     let is_hex = first.starts_with("0x") || first.starts_with("0X");

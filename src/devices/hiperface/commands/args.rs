@@ -24,7 +24,7 @@ pub(super) struct DoOptions {
     pub(super) kit: bool,
 }
 
-/// The actions of HIPERFACE encoders.
+/// Actions of HIPERFACE encoders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum HiperfaceAction {
     /// restart the encoder and read its status

@@ -9,7 +9,7 @@ use crate::cli::{Failure, Result};
 use crate::devices::hiperface::procedures::AccessCodes;
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
 
-/// The option of every command.
+/// Access code option of every command.
 #[derive(Args)]
 pub(super) struct CodeOption {
     /// Access code N, if it is not 55h; repeatable. Also read from ENCODER_STUDIO_CODES="0=66,2=1A".
@@ -18,7 +18,7 @@ pub(super) struct CodeOption {
     pub(super) codes: Vec<String>,
 }
 
-/// An access code with its number.
+/// Access code with its number.
 #[derive(Clone, Copy)]
 struct Code {
     number: CodeNumber,
@@ -28,7 +28,7 @@ struct Code {
 impl FromStr for Code {
     type Err = String;
 
-    /// The message never repeats the text: it may be a code.
+    /// Parses an access code with its number. The error message never repeats the input, since it may be a code.
     fn from_str(text: &str) -> std::result::Result<Self, String> {
         let form = || "an access code has the form N=HEX with N from 0 to 3, such as 2=1A".to_owned();
         let (number, code) = text.split_once('=').ok_or_else(form)?;
@@ -45,7 +45,7 @@ pub(super) fn parse_code(text: &str) -> Option<AccessCode> {
     }
 }
 
-/// Codes of the environment, then those of the command line.
+/// Returns the access codes from the environment, followed by those from the command line.
 pub(super) fn given(option: &CodeOption) -> Result<AccessCodes> {
     let mut codes = Vec::new();
     if let Ok(text) = std::env::var("ENCODER_STUDIO_CODES") {

@@ -12,7 +12,7 @@ use crate::cli::output::{Lines, Output};
 use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected};
 use crate::cli::{Done, Failure, Result};
-use crate::devices::hiperface::commands::run::{Runner, codes_met};
+use crate::devices::hiperface::commands::run::{Runner, seen_codes};
 use crate::devices::hiperface::commands::table::Table;
 use crate::devices::hiperface::jobs::{
     Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value, may_have_other_master,
@@ -183,7 +183,7 @@ fn code_list(codes: &[StatusCode]) -> Vec<Json> {
     codes.iter().map(|code| json!({"code": code.byte(), "text": code.text()})).collect()
 }
 
-/// Lists codes one per line, or states that there are none.
+/// Lists status codes one per line, or states that there are none.
 pub(super) fn codes_text(codes: &[StatusCode]) -> String {
     if codes.is_empty() {
         return "no errors or warnings\n".to_owned();
@@ -206,7 +206,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
         output.print(table.header())?;
     }
     // A code that the encoder announced during identification applies to this position too.
-    let mut codes_before = codes_met(&runner);
+    let mut codes_before = seen_codes(&runner);
     let job = || HiperfaceJob::Position(identity.geometry);
     try_readings(&mut runner, position, job, |runner, came| {
         show(runner, output, came, table.as_ref(), &mut codes_before).map(|()| true)
@@ -233,7 +233,7 @@ fn show(
         Err(error) if error.means_no_position() => match table {
             Some(table) => {
                 output.remark(&no_position(&error));
-                output.print(&table.row_without_position(&codes_met(runner)))
+                output.print(&table.row_without_position(&seen_codes(runner)))
             }
             None => show_no_position(output, &error),
         },

@@ -97,7 +97,7 @@ fn name_locked(output: &Output, saved: &SavedProfile, what: &str) {
     }
 }
 
-/// Returns the answers of the command line about data fields whose bytes have no known meaning.
+/// Returns the decisions given on the command line about data fields whose bytes have no known meaning.
 fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     let mut answers = BTreeMap::new();
     for (given, copies) in [(&restore.copy, true), (&restore.leave, false)] {
@@ -113,8 +113,8 @@ fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     Ok(answers)
 }
 
-/// Reports data fields with bytes of unknown meaning, and stops if no decision is given for one. A dry run leaves such
-/// a field unchanged.
+/// Reports data fields with bytes of unknown meaning, and fails if there is no decision for one of them. A dry run
+/// leaves such a field unchanged.
 fn check_answers(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<()> {
     let words = |own: &UnknownField| words::unknown_field(own).terminal();
     let fields = &prepared.unknown_fields;

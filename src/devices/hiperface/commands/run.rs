@@ -17,7 +17,7 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Hiperface>;
 
 impl Runs for Hiperface {
-    /// Setting of the line, for `identify`.
+    /// Character format of the line, shown by `identify`.
     type Context = CharacterFormat;
     const HAS_ONE_MASTER: bool = true;
     const COMMANDS: &'static dyn DeviceCommands = &HiperfaceCommands;
@@ -33,7 +33,7 @@ impl Runs for Hiperface {
         session.station().format
     }
 
-    /// Prints every code that the encoder announced, one per line.
+    /// Prints every status code that the encoder announced, one per line.
     fn print_message(remark: &DeviceMessage) {
         if let DeviceMessage::CodesUnheard(count) = remark {
             say(&format!("{}\n", words::codes_unheard(*count).terminal()));
@@ -49,7 +49,7 @@ impl Runs for Hiperface {
     }
 }
 
-pub(super) fn codes_met(runner: &Runner) -> Vec<StatusCode> {
+pub(super) fn seen_codes(runner: &Runner) -> Vec<StatusCode> {
     runner.remarks.iter().flat_map(codes).copied().collect()
 }
 

@@ -4,13 +4,13 @@
 use crate::devices::hiperface::procedures::PositionReading;
 use crate::devices::hiperface::protocol::{Geometry, StatusCode};
 
-/// Format of positions: degrees for a shaft, millimetres for a linear encoder.
+/// Table of positions, in degrees for a rotary encoder and in millimetres for a linear encoder.
 pub(super) struct Table {
     linear: bool,
 }
 
 impl Table {
-    /// Returns the table for an encoder; for an unknown one, that of a shaft.
+    /// Returns the table for an encoder, or that of a rotary encoder if the geometry is unknown.
     pub(super) fn of(geometry: Option<Geometry>) -> Self {
         Table { linear: matches!(geometry, Some(Geometry::Linear { .. })) }
     }
@@ -22,7 +22,8 @@ impl Table {
         }
     }
 
-    /// Returns a row: unknown values are empty; codes are two hexadecimal digits each, separated by spaces.
+    /// Returns a row in which unknown values are empty and status codes are two hexadecimal digits each, separated by
+    /// spaces.
     pub(super) fn row(&self, reading: &PositionReading) -> String {
         let place = reading.position;
         let number = |number: Option<u64>| number.map_or_else(String::new, |number| number.to_string());

@@ -77,7 +77,7 @@ fn change_of(item: Item, value: &str) -> Result<Change> {
     }
 }
 
-/// Returns a settings byte without reserved values.
+/// Parses a settings byte, which must not contain reserved values.
 pub(super) fn settings(value: &str) -> Result<LineSettings> {
     let settings = LineSettings::from_byte(byte_within(Item::Settings, value, 0..=0xFF)?);
     if settings.is_valid() {
@@ -102,7 +102,7 @@ fn number(item: Item, value: &str) -> Result<i64> {
     parse_number(value).ok_or_else(|| Failure::Usage(format!("{item}: {value:?} is not a number")))
 }
 
-/// Asks for consent if required, and carries the plan out. An empty plan sends nothing.
+/// Asks for consent if required, and executes the plan. An empty plan sends nothing.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -119,7 +119,7 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// Describes the plan: each operation old → new, and the cost.
+/// Describes the plan, with old and new value of each operation, and the cost.
 pub(super) fn plan_text(prepared: &Prepared) -> String {
     let plan = &prepared.plan;
     let mut lines = change_lines(plan);
@@ -163,7 +163,7 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
         .collect()
 }
 
-/// Returns old and new value of an operation: status and settings as bytes, as accepted by `status:N` and `settings`,
+/// Returns the old and new values of an operation: status and settings as bytes accepted by `status:N` and `settings`,
 /// others as text.
 fn change_words(op: &Op) -> (String, String) {
     match op {

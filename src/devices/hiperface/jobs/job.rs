@@ -13,34 +13,34 @@ use crate::devices::hiperface::protocol::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
 
-/// Number of persistent writes at which an encoder has reached its limit: according to the manual, the counter, which
+/// Number of persistent writes at which an encoder has reached its limit. According to the manual, the counter, which
 /// is in the same EEPROM, can be incremented about a million times.
 pub const WEAR_LIMIT: u64 = 1_000_000;
 
 #[derive(Debug)]
 pub enum HiperfaceJob {
-    /// Read everything that is displayed after connecting.
+    /// Reads everything that is displayed after connecting.
     Survey,
     Identify,
     /// The whole error queue.
     Status,
-    /// Read the position once, interpreted with the geometry if already known.
+    /// Reads the position once and interprets it with the geometry, if already known.
     Position(Option<Geometry>),
-    /// Read the shaft at rest: position, and sine and cosine if the encoder provides them.
+    /// Reads the position of the shaft at rest, and sine and cosine if the encoder provides them.
     Rest,
     Read(Item),
     Save(SaveOptions),
-    /// Execute the start-up sequence with a verdict for each item, after a restart if requested.
+    /// Executes the start-up sequence, after a restart if requested, and gives a verdict for each item.
     Check {
         /// Send 53h first.
         restart: bool,
     },
-    /// Sends 53h and waits for the restart.
+    /// Sends command 53h and waits for the restart.
     Reset,
     Find(FindOptions),
-    /// 67h, and the settings of the host after it.
+    /// Sends command 67h and then changes the line settings of the host to match.
     ConfigureForNow(LineSettings),
-    /// Uses an access code from now on; nothing is sent.
+    /// Uses an access code from now on, without sending anything.
     UseCode {
         number: CodeNumber,
         /// Access code, which is never displayed.
@@ -56,7 +56,7 @@ pub enum Change {
         profile: Box<HiperfaceProfile>,
         options: RestoreOptions,
     },
-    /// Write bytes of data fields; a count must equal the number of bytes.
+    /// Writes bytes of data fields; a range's count must equal its number of bytes.
     Store(Vec<(FieldRange, Vec<u8>)>),
     CreateField {
         number: u8,
@@ -83,15 +83,15 @@ pub enum Change {
     },
     SetPosition {
         wanted: u32,
-        /// Whether to set exactly this value, even if that breaks the phase to the sine, rather than the nearest one
-        /// that preserves it.
+        /// Whether to set exactly this value, even if that breaks the phase relation to the sine, rather than the
+        /// nearest value that preserves it.
         exact: bool,
         /// Whether to align the code tracks as well (63h).
         synchronise: bool,
-        /// The user states that the encoder is a kit, if the type does not tell.
+        /// Whether the user states that the encoder is a kit, in case its type does not show this.
         kit: bool,
     },
-    /// Add steps to the position, modulo the measuring range, at standstill. This undoes setting a position, wherever
+    /// Adds steps to the position at standstill, modulo the measuring range. This undoes setting a position, wherever
     /// the shaft is now.
     ShiftPosition {
         steps: i64,
@@ -102,13 +102,13 @@ pub enum Change {
     IncrementCounter,
 }
 
-/// Kind of change, which determines how an interrupted one is completed.
+/// Kind of change, which determines how an interrupted change is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edited bytes; those not yet written remain edits.
+    /// Edited bytes; bytes not yet written remain edits.
     Bytes,
-    /// A single operation, which is either done or not.
+    /// A single operation, which is either done or not done.
     Single,
 }
 
@@ -131,23 +131,23 @@ pub struct Prepared {
     pub cycles_seen: Option<u64>,
     /// Number of items that already have the right value.
     pub unchanged: u64,
-    /// Items left unchanged because one side lacks them or cannot read them.
+    /// Items left unchanged because the profile or the encoder lacks them or they cannot be read.
     pub missing: Vec<FieldRange>,
-    /// Values of the mounting that differ and are left alone.
+    /// Differing values of the mounting that are left unchanged.
     pub mounting_left: Vec<FieldRange>,
     /// Written values that belong to the mounting of another device and must be set up again.
     pub mounting_written: Vec<FieldRange>,
-    /// Data fields with bytes of unknown meaning that differ from another encoder's.
+    /// Data fields whose bytes of unknown meaning differ from those of another encoder.
     pub unknown_fields: Vec<UnknownField>,
-    /// Data fields created by the write that this one undoes, and left in place because they have changed since, or are
-    /// not the last.
+    /// Data fields that the undone write created and that are left in place because they have changed since or are not
+    /// the last fields.
     pub created_left: Vec<u8>,
     pub other_type: Option<OtherType>,
-    /// Requested position, if the plan sets another one that preserves the phase.
+    /// Requested position, if the plan sets a different position to preserve the phase.
     pub wanted_position: Option<u32>,
 }
 
-/// Type of a profile and of the encoder of another type to which it is written.
+/// Types of a profile and of the encoder to which it is written, if they differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OtherType {
     pub profile: u8,
@@ -155,8 +155,8 @@ pub struct OtherType {
 }
 
 impl Prepared {
-    /// Returns the values that must be set up again afterwards. Any value of another mounting, and any byte of unknown
-    /// meaning, may be an offset between encoder and motor.
+    /// Returns the values that must be set up again afterwards. Any mounting value of another encoder, and any byte of
+    /// unknown meaning, may be an offset between encoder and motor.
     pub fn redo(&self) -> Vec<Redo> {
         let values = self.mounting_written.iter().copied().map(Redo::Value);
         let copies = self.unknown_fields.iter().any(UnknownField::is_copied);
@@ -191,12 +191,12 @@ pub struct SavedProfile {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     Codes(Vec<StatusCode>),
-    /// Number of status codes that may have been lost, since 50h removes them from the encoder, and its reply was lost
+    /// Number of status codes that may have been lost, since 50h removes them from the encoder and its reply was lost
     /// or damaged.
     CodesUnheard(u32),
     /// An encoder that replied during a search.
     Found(FoundEncoder),
-    /// Something was repeated, or arrived too late.
+    /// A request was repeated, or a reply arrived too late.
     Line(LineQuality),
 }
 
@@ -244,7 +244,7 @@ impl From<PlanError> for JobError {
 }
 
 impl JobError {
-    /// Returns whether the encoder is present but has no position to return at the moment.
+    /// Returns whether the encoder is present but currently has no position to report.
     pub fn means_no_position(&self) -> bool {
         matches!(self, JobError::Device(error) if error.means_no_position())
     }

@@ -40,7 +40,7 @@ pub struct Hiperface {
     /// Logbook key of the last identified encoder.
     identified: Option<DeviceKey>,
     status: StatusKeeper,
-    /// The counters of line errors already reported.
+    /// Line error counts that have already been reported.
     told_troubles: [u64; 4],
 }
 
@@ -60,8 +60,8 @@ impl Hiperface {
         self.identified = Some(device_key(identity, context.is_virtual));
     }
 
-    /// Stores status codes before they are displayed. An unknown encoder is identified first, since the codes go into
-    /// its logbook.
+    /// Stores status codes before they are displayed. An unknown encoder is identified first, since the codes are
+    /// stored in its logbook.
     fn keep_codes(&mut self, context: &mut SessionContext, codes: &[StatusCode]) {
         if codes.is_empty() {
             return;
@@ -76,7 +76,7 @@ impl Hiperface {
         status::record_codes(&context.store, &device, codes);
     }
 
-    /// Stores the codes of samples, in which a persistent code is repeated.
+    /// Stores the status codes of samples, in which a persistent code occurs repeatedly.
     fn record_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_read_codes();
         if !codes.is_empty() && self.status.record_new(&codes, context.clock.now()) {
@@ -164,7 +164,7 @@ impl Device for Hiperface {
         self.wire.check()
     }
 
-    /// Reports new errors of the line.
+    /// Reports new line errors.
     fn idle(&mut self, _desk: &mut SessionContext) -> Option<DeviceMessage> {
         if let Some(unheard) = self.unseen_codes_remark() {
             return Some(unheard);

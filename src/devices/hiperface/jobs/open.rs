@@ -18,8 +18,8 @@ pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Returns whether a drive may be a second master on the line. A drive reads the encoder at power-up and then uses sine
-/// and cosine, so a silent line proves nothing.
+/// Returns whether a drive may be a second master on the line. A drive reads the encoder at power-up and then uses only
+/// sine and cosine, so a silent line does not rule out a drive.
 pub fn may_have_other_master(url: &LinkUrl) -> bool {
     matches!(url.scheme, Scheme::Serial | Scheme::Tcp)
 }
@@ -27,7 +27,7 @@ pub fn may_have_other_master(url: &LinkUrl) -> bool {
 /// Opens a link to a HIPERFACE encoder.
 ///
 /// # Errors
-/// See [`OpenError`]; nothing has been sent.
+/// See [`OpenError`]; nothing has been sent in that case.
 pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError> {
     let (station, config) = read(url)?;
     let types = encoder_types(&store)?;
@@ -40,7 +40,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     Ok(Session::new(wire, clock, station, store, types, url.scheme == Scheme::Sim))
 }
 
-/// Parses the line settings and the virtual encoder, which is only relevant for a link to one.
+/// Parses the line settings and the configuration of the virtual encoder, which only matters for a link to one.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if matches!(url.scheme, Scheme::Bridge | Scheme::Modbus | Scheme::Enip) {
         return Err(wrong_target_error(url.scheme, "sim:, serial:, tcp:, replay:"));

@@ -9,15 +9,15 @@ use crate::devices::hiperface::protocol::{KIND, StatusCode};
 use crate::store::{DeviceKey, Logbook, Store};
 use crate::units::Moment;
 
-/// Time within which a code that live values report repeatedly is stored only once.
+/// Time within which a status code that live values report repeatedly is stored only once.
 const AGAIN: Duration = Duration::from_secs(60);
 
-/// Status codes recorded recently while the position is polled.
+/// Status codes recorded recently while polling the position.
 #[derive(Debug, Default)]
 pub(super) struct StatusKeeper(Vec<(StatusCode, Moment)>);
 
 impl StatusKeeper {
-    /// Returns whether any of these codes was not recorded within the last minute; all of them then count as recorded.
+    /// Returns whether any of these codes was not recorded within the last minute, and marks all of them as recorded.
     pub(super) fn record_new(&mut self, codes: &[StatusCode], now: Moment) -> bool {
         self.0.retain(|(_, kept)| now.since(*kept) < AGAIN);
         let mut is_new = false;
@@ -31,7 +31,7 @@ impl StatusKeeper {
     }
 }
 
-/// Records codes in the log and the logbook; in the log even if the logbook cannot be used.
+/// Records status codes in the log and the logbook; the log entry is made even if the logbook cannot be used.
 pub(super) fn record_codes(store: &Store, device: &DeviceKey, codes: &[StatusCode]) {
     let words = codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     tracing::info!("{} {}: status codes read: {words}", device.kind, device.serial_number);

@@ -6,7 +6,7 @@ use crate::devices::hiperface::protocol::{EncoderTypes, KIND, TypeTableError};
 use crate::profile::Cause;
 use crate::store::{FileError, FileProblem, Store, StoreError, read_text};
 
-/// The user's own table of encoder types is broken.
+/// The user's own table of encoder types is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}, {cause}", path.display())]
 pub struct BrokenTypeTable {
@@ -17,8 +17,8 @@ pub struct BrokenTypeTable {
 /// Returns the table of encoder types, in which user-defined rows precede the built-in ones.
 ///
 /// # Errors
-/// The user's file exists but cannot be read or parsed ([`BrokenTypeTable`]). [`EncoderTypes::built_in`] can be used
-/// instead.
+/// Returns [`BrokenTypeTable`] if the user's file exists but cannot be read or parsed. [`EncoderTypes::built_in`] can
+/// be used instead.
 pub fn encoder_types(store: &Store) -> Result<EncoderTypes, StoreError> {
     let built_in = EncoderTypes::built_in();
     let path = store.device_file(KIND);

@@ -13,19 +13,19 @@ pub type HiperfaceStepResult = crate::analysis::check::StepResult<CheckStep, Che
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
-    /// Restart (53h) with its waiting times.
+    /// Restart (53h), including the waiting times.
     Restart,
-    /// 50h until the queue is empty.
+    /// Status codes, read with 50h until the queue is empty.
     Status,
     /// 52h and 56h.
     Identity,
     /// 42h.
     Position,
-    /// 44h on the channels that the extended label limits.
+    /// Analogue channels (44h) for which the extended label contains a limit.
     Limits,
-    /// 4Ch and 4Ah on every data field.
+    /// Status and content (4Ch and 4Ah) of every data field.
     DataFields,
-    /// Repetitions, damaged and late replies, during this check and before in this session.
+    /// Repetitions and damaged or late replies, during this check and earlier in the session.
     Line,
 }
 
@@ -46,7 +46,7 @@ pub enum CheckFinding {
         number: u8,
         status: DataFieldStatus,
     },
-    /// A data field with an unknown access code, whose number is in its status.
+    /// Data field whose access code, with the number given in its status, is unknown.
     FieldLocked {
         number: u8,
         status: DataFieldStatus,
@@ -63,8 +63,8 @@ pub enum CheckFinding {
     Line(LineQuality),
 }
 
-/// Runs the check; with `restart` it begins with 53h, as after power-on. The check ends early only if the encoder no
-/// longer replies.
+/// Runs the check; if `restart` is set, it begins with 53h to match the state after power-on. The check ends early only
+/// if the encoder no longer replies.
 ///
 /// # Errors
 /// Errors of the exchange, or cancellation.
@@ -114,7 +114,7 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperf
     }
 }
 
-/// Returns the limits of the extended label whose channels reply.
+/// Checks the limits on the extended label whose channels reply.
 fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<HiperfaceStepResult>, Error> {
     let Some(label) = identity.extended() else { return Ok(None) };
     let mut findings = Vec::new();
@@ -162,7 +162,7 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperfac
     Ok(HiperfaceStepResult { step: CheckStep::DataFields, verdict, findings })
 }
 
-/// Checks the line. If something had to be repeated, the line works but its wiring needs attention.
+/// Checks the line. If a request had to be repeated, the line works but its wiring needs attention.
 fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     let quality = master.station().line.quality.clone();
     let verdict = if quality.is_troubled() { Verdict::Attention } else { Verdict::Good };

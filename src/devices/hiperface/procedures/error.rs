@@ -15,7 +15,7 @@ pub enum Error {
         address: u8,
         command: Command,
         tries: u32,
-        /// Whether the sent bytes came back: the adapter echoes, so the line itself works.
+        /// Whether the sent bytes were received as an echo of the adapter, which shows that the line itself works.
         echo_heard: bool,
     },
     #[error("damaged reply to {} (attempts: {tries}): {cause}", command.row().name)]
@@ -25,7 +25,7 @@ pub enum Error {
     NeverSilent,
     #[error("{} was refused: {}", command.row().name, list(codes))]
     Rejected { command: Command, codes: Vec<StatusCode> },
-    /// It is unknown whether a change was carried out, because the encoder can no longer be reached.
+    /// The encoder can no longer be reached, so it is unknown whether a change was carried out.
     #[error("whether {} was carried out is not known: {cause}", command.row().name)]
     Unclear {
         command: Command,
@@ -34,13 +34,13 @@ pub enum Error {
     },
     #[error("cancelled")]
     Cancelled,
-    /// The shaft is turning but must be at rest.
+    /// The shaft is turning, but it must be at rest.
     #[error("the shaft moves: {readings:?}")]
     Moving {
         /// Consecutive position readings.
         readings: Vec<u32>,
     },
-    /// 63h is for encoders without bearing.
+    /// Command 63h is only for encoders without a bearing.
     #[error("{encoder} is not a kit encoder")]
     NotAKit { encoder: String },
     #[error("address {address:02X}h belongs to another encoder")]
@@ -61,7 +61,7 @@ pub enum Error {
     CodeUnknown { field: u8, number: CodeNumber },
     #[error("{item} has changed since the plan was made")]
     Changed { item: PlanItem },
-    /// A value read back differs from the one written.
+    /// A value read back differs from the written value.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified { item: PlanItem, expected: String, got: ReadBack },
     #[error("the reply to {} is of another kind: {reply}", command.row().name)]
@@ -72,7 +72,7 @@ pub enum Error {
     /// No data field requires this access code, so it cannot be tested.
     #[error("no data field requires access code {number}, so it cannot be tested")]
     CodeGuardsNothing { number: CodeNumber },
-    /// The settings byte names a character format that the description reserves.
+    /// The settings byte contains a character format that the specification reserves.
     #[error("the interface settings 0x{:02X} have a reserved format", settings.byte())]
     ReservedFormat {
         /// Settings as read from the encoder, or as requested.
@@ -90,7 +90,7 @@ impl Error {
 pub enum ReadBack {
     #[error("{0}")]
     Value(String),
-    /// A data field does not behave according to the status that was written.
+    /// A data field does not behave according to the written status.
     #[error("another status")]
     AnotherStatus,
 }
@@ -99,10 +99,11 @@ pub enum ReadBack {
 pub enum Damage {
     #[error(transparent)]
     Reply(#[from] ReplyError),
-    /// The reply to a request with an access code is unreadable; its bytes are not shown, since they may be the echo.
+    /// The reply to a request with an access code is unreadable; its bytes are not shown, since they may be the echo of
+    /// the request.
     #[error("unreadable frame")]
     Unreadable,
-    /// More bytes than a reply has.
+    /// More bytes were received than a reply contains.
     #[error("extra bytes after the reply")]
     Trailing,
     #[error("the reply came too late")]
@@ -129,7 +130,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the device is out of reach, so that further attempts are useless.
+    /// Returns whether the device can no longer be reached, so that further attempts are pointless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } => true,
@@ -138,7 +139,7 @@ impl Error {
         }
     }
 
-    /// Returns whether the encoder is present but has no position to return at the moment.
+    /// Returns whether the encoder is present but currently has no position to report.
     pub fn means_no_position(&self) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.invalidates_position()))
     }

@@ -9,7 +9,7 @@ use crate::devices::hiperface::protocol::{
     AccessCode, Command, DataFieldStatus, MAX_TRANSFER, Reply, Request, StatusCode,
 };
 
-/// Minimum number of bytes in a transfer, below which a frame consists mostly of its header.
+/// Minimum number of bytes per transfer; a shorter frame would consist mostly of its header.
 const LEAST_TRANSFER: usize = 4;
 
 /// Reads the status byte of a field.
@@ -23,7 +23,7 @@ pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataField
     }
 }
 
-/// Reads a complete field. With a wrong access code the field is returned without bytes.
+/// Reads a complete field. If the access code is wrong, the field is returned without bytes.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal for another reason.
@@ -37,10 +37,10 @@ pub fn read_field(master: &mut Master<'_>, number: u8) -> Result<FieldImage, Err
     }
 }
 
-/// Reads all fields except the extended label; `progress` gets the number done and the total.
+/// Reads all fields except the extended label; `progress` receives the number of fields read and the total.
 ///
 /// # Errors
-/// As [`read_field`].
+/// See [`read_field`].
 pub fn read_all_fields(
     master: &mut Master<'_>,
     count: u8,
@@ -57,12 +57,12 @@ pub fn read_all_fields(
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnreadableField {
     pub number: u8,
-    /// Status of the field, if readable.
+    /// Status of the field, if it can be read.
     pub status: Option<DataFieldStatus>,
     pub why: Error,
 }
 
-/// Reads a field, or returns why it cannot be read, as long as the encoder replies to other requests.
+/// Reads a field, or returns the reason why it cannot be read while the encoder still replies to other requests.
 ///
 /// # Errors
 /// The encoder no longer replies, or cancellation.
@@ -76,7 +76,7 @@ pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<Fiel
     Ok(tolerated(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
 }
 
-/// Converts an error into a reason, as long as the encoder replies to another request.
+/// Converts an error into the reason for an unreadable value, as long as the encoder replies to another request.
 ///
 /// # Errors
 /// The encoder no longer replies, or cancellation.
@@ -95,9 +95,8 @@ pub(super) fn tolerated<T>(master: &mut Master<'_>, result: Result<T, Error>) ->
 
 /// Reads `count` bytes of a field from `address` on, in transfers of at most 128 bytes.
 ///
-/// A failed transfer is halved for the next attempt; after five consecutive failures the reading fails. If the line has
-/// damaged anything before, each transfer must yield the same bytes twice, because an XOR misses some pairs of flipped
-/// bits.
+/// A failed transfer is retried with half the size, up to five consecutive failures. If the line has damaged any data
+/// before, each transfer must yield the same bytes twice, because an XOR misses some pairs of flipped bits.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal.
@@ -161,8 +160,8 @@ pub fn read_range(
     Ok(bytes)
 }
 
-/// Reads one byte together with a neighbour: the reply to a transfer of one byte can equal its request, including the
-/// access code, so the echo of an adapter could be mistaken for it. A field has at least sixteen bytes.
+/// Reads one byte together with a neighbouring byte. The reply to a transfer of one byte can equal its request,
+/// including the access code, so the echo of an adapter could be mistaken for the reply.
 fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCode) -> Result<Vec<u8>, Error> {
     let start = address.saturating_sub(1);
     let pair = read_range(master, field, start, 2, code)?;

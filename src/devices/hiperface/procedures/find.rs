@@ -13,7 +13,7 @@ use super::{Error, Master};
 use crate::devices::hiperface::protocol::{Answer, BAUDS, BROADCAST, DeviceAddress, Reply, Request, Timing, TypeLabel};
 use crate::units::{Baud, CharacterFormat, Parity};
 
-/// How long to listen for a running machine.
+/// Duration of listening for a running machine before the search.
 pub const LISTEN: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub struct FindOptions {
     /// Whether the user states that exactly one encoder is connected, so that broadcast may be used if no address
     /// replies.
     pub one_encoder: bool,
-    /// Time to wait until the user has switched the encoder supply off and on, in order to use the default window.
+    /// Maximum wait for the user to switch the encoder supply off and on, in order to use the default window.
     pub power_cycle: Option<Duration>,
 }
 
@@ -56,7 +56,7 @@ pub enum SearchProgress<'a> {
         total: u64,
         attempt: &'a Attempt,
     },
-    /// An encoder that answered, once for each.
+    /// An encoder that replied, reported once per encoder.
     Found(&'a FoundEncoder),
 }
 
@@ -68,15 +68,15 @@ pub enum SearchFindings {
         bytes: usize,
     },
     Searched {
-        /// All encoders that replied, in this order; may be empty.
+        /// Encoders that replied, in this order; may be empty.
         found: Vec<FoundEncoder>,
-        /// All combinations were tried; false if the user cancelled before.
+        /// Whether all combinations were tried; false if the user cancelled the search earlier.
         complete: bool,
     },
 }
 
-/// Searches all baud rates, parities and addresses; through a link without a baud rate of its own, all addresses. The
-/// port settings are restored afterwards. Cancellation ends the search with the encoders found so far.
+/// Searches all baud rates, parities and addresses, or only all addresses if the link has no baud rate of its own. The
+/// port settings are restored afterwards; cancellation ends the search with the encoders found so far.
 ///
 /// # Errors
 /// Errors of the connection.
@@ -106,7 +106,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Returns the number of foreign bytes if they prevented the search.
+    /// Runs the search, and returns the number of foreign bytes if they prevented it.
     fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
         // Through a device server all formats would be the same, and the encoder would be found in each.
         let formats = if master.sets_format() { formats() } else { vec![master.station().format] };
@@ -161,7 +161,7 @@ fn formats() -> Vec<CharacterFormat> {
         .collect()
 }
 
-/// Sends a request every tenth of a second with factory settings until an encoder that has just been switched on replies.
+/// Sends a request with factory settings every tenth of a second, until an encoder that was just switched on replies.
 fn catch_default_window(
     master: &mut Master<'_>,
     patience: Duration,
@@ -179,8 +179,7 @@ fn catch_default_window(
     Ok(None)
 }
 
-/// Sends one request without repetition. After a damaged reply, which proves that a device is present, sends it once
-/// more.
+/// Sends one request without repetition, except once more after a damaged reply, which proves that a device is present.
 fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<FoundEncoder>, Error> {
     master.station().address = address;
     for _ in 0..2 {

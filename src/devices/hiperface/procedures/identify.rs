@@ -12,14 +12,14 @@ pub struct Identity {
     pub address: u8,
     /// Reply to 52h.
     pub label: TypeLabel,
-    /// Reply to 56h; empty strings if the encoder does not support the command.
+    /// Reply to 56h, with empty strings if the encoder does not support the command.
     pub serial: SerialLabel,
     /// Reply to 4Eh, or `None` if the encoder does not support the command.
     pub memory: Option<FreeMemory>,
     pub name: String,
     /// Periods and turns given by the user, by the extended label, or by the table of types.
     pub geometry: Option<Geometry>,
-    /// Whether the encoder has no bearing and its tracks are synchronised with 63h, if known.
+    /// Whether the encoder has no bearing and its code tracks are aligned with 63h, if known.
     pub kit: Option<bool>,
     /// Content of data field FFh, if the encoder has it.
     pub extended_label: Option<Vec<u8>>,
@@ -62,7 +62,7 @@ pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity
 /// Reads type label, serial number, memory and, for type code FFh, the extended label.
 ///
 /// # Errors
-/// Errors of the exchange, or a refusal except of 56h and 4Eh, which some types do not support.
+/// Errors of the exchange, or a refusal, except of 56h and 4Eh, which some types do not support.
 pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identity, Error> {
     let label = read_type_label(master)?;
     let serial = read_serial(master)?;
@@ -100,7 +100,7 @@ pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Erro
     }
 }
 
-/// Reads serial number and firmware; empty strings if the encoder does not support the command.
+/// Reads serial number and firmware, or returns empty strings if the encoder does not support the command.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal.
@@ -121,7 +121,7 @@ pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
     Ok(read_type_label(master)?.settings)
 }
 
-/// Reads the address of the encoder that replies at the session's address; after a broadcast, its own address.
+/// Reads the address of the encoder that replies at the session's address, which may be broadcast.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal.
@@ -129,7 +129,7 @@ pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
     master.request_timed(&Request::ReadTypeLabel).map(|timed| timed.sender)
 }
 
-/// Reads the complete data field FFh: 4Ch for its size, then 4Ah with code 0.
+/// Reads the complete data field FFh, using 4Ch for its size and then 4Ah with code 0.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal if the encoder has no extended label.
@@ -139,7 +139,7 @@ pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
     read_range(master, EXTENDED_LABEL_FIELD, 0, status.size().bytes(), code)
 }
 
-/// Reads the complete status queue; codes are kept in the order of the encoder.
+/// Reads the complete status queue, keeping the codes in the encoder's order.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -148,7 +148,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     Ok(master.station().take_codes())
 }
 
-/// Converts the refusal of an unsupported command to `None`.
+/// Converts the refusal of an unsupported command to `None`, and passes on any other result.
 fn have<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
     match result {
         Ok(value) => Ok(Some(value)),

@@ -24,7 +24,7 @@ pub struct Master<'a> {
 
 pub(super) struct Timed {
     pub(super) reply: Reply,
-    /// Falling edge of the start bit of the reply's address.
+    /// Time of the falling edge of the start bit of the reply's address.
     pub(super) at: Moment,
     pub(super) sender: u8,
 }
@@ -44,7 +44,7 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// Runs `work`, which returns the encoder to a safe state; cancellation is ignored meanwhile.
+    /// Runs `work`, which returns the encoder to a safe state, while ignoring cancellation.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.shield(true);
         let result = work(self);
@@ -52,7 +52,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Waits; ends early when cancelled.
+    /// Waits for `duration`, or until cancelled.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -60,7 +60,7 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(duration)?)
     }
 
-    /// Listens without sending; returns the bytes received.
+    /// Listens without sending, and returns the bytes received.
     ///
     /// # Errors
     /// Errors of the connection, or [`Error::Cancelled`].
@@ -78,12 +78,12 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns whether baud rate and parity can be set on this side; otherwise they are set behind the link.
+    /// Returns whether baud rate and parity can be set on this side; otherwise they are set at the far end of the link.
     pub fn sets_format(&self) -> bool {
         self.line.ctx.wire.sets_format()
     }
 
-    /// Sends a request that changes nothing in the encoder, and repeats it when the line fails.
+    /// Sends a request that changes nothing in the encoder, and repeats it after line errors.
     ///
     /// # Errors
     /// Every attempt failed, the encoder refused, or the user cancelled.
@@ -91,7 +91,7 @@ impl<'a> Master<'a> {
         self.request_timed(request).map(|timed| timed.reply)
     }
 
-    /// Runs `work`, which reads values to be stored; every reply must be received twice.
+    /// Runs `work`, which reads values to be stored, and requires every reply to be received twice.
     pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -99,7 +99,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Sends a request like [`ask`](Self::ask); if the line has damaged anything before, the same reply must be
+    /// Sends a request like [`ask`](Self::ask). If the line has damaged any data before, the same reply must be
     /// received twice.
     ///
     /// # Errors
@@ -131,12 +131,12 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sends a request that changes the encoder. If it is unclear whether it was carried out, `is_done` reads back; the
-    /// request is repeated only if it was not. Returns how often it may have been carried out.
+    /// Sends a request that changes the encoder, and returns how often it may have been executed. If it is unclear
+    /// whether the request was executed, `is_done` reads back, and the request is repeated only if it was not.
     ///
     /// # Errors
     /// The encoder refused, `is_done` could not determine the result ([`Error::Unclear`]), or the request was not
-    /// carried out in five attempts.
+    /// executed in five attempts.
     pub(super) fn send_until_done(
         &mut self,
         request: &Request,
@@ -179,7 +179,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Prepares the line for the next attempt, or returns an error if none is left.
+    /// Prepares the line for the next attempt, or returns an error if no attempt is left.
     pub(super) fn may_try_again(
         &mut self,
         request: &Request,
@@ -209,7 +209,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads the codes that a reply announces, and distinguishes a refusal from a reply.
+    /// Reads the status codes that a reply announces, and distinguishes a refusal from a reply.
     pub(super) fn settle(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<Timed, Error> {
         self.station.line.recovered();
         let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;
@@ -222,9 +222,9 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Settles like [`settle`](Self::settle), for requests that change the encoder. Codes announced by a reply are left
-    /// to the next exchange, which announces them again. This way no cancellation comes between a change and its
-    /// counting, and after 55h and 67h the encoder no longer replies with the old settings.
+    /// Completes a request that changes the encoder, like [`settle`](Self::settle), but leaves announced status codes
+    /// to the next exchange, which announces them again. This prevents a cancellation between a change and its
+    /// counting, and is necessary after 55h and 67h, when the encoder no longer replies with the old settings.
     pub(super) fn acknowledge(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<(), Error> {
         if matches!(answered.answer, Answer::Reply { .. }) {
             self.station.line.recovered();

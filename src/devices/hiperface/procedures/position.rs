@@ -11,7 +11,8 @@ use crate::units::Moment;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionReading {
-    /// Time at which the encoder sampled the position: falling edge of the start bit of the reply's address.
+    /// Time at which the encoder sampled the position, marked by the falling edge of the start bit of the reply's
+    /// address.
     pub at: Moment,
     pub raw: u32,
     /// Position, or `None` if periods and turns are unknown.
@@ -41,20 +42,19 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     Position(PositionReading),
-    /// The encoder is present but has no position to return at the moment.
+    /// The encoder is present but currently has no position to report.
     NoPosition {
         at: Moment,
         codes: Vec<StatusCode>,
     },
-    /// A value watched in addition to the position.
+    /// Value watched in addition to the position.
     Watched(WatchedReading),
 }
 
-/// A value that can be watched while the position is polled. All other values of an encoder change only when they are
-/// written.
+/// Value that can be watched while the position is polled. All other values of an encoder change only when written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Watch {
-    /// Analogue channel (44h): 48h is the temperature in °C; others depend on the data sheet, and 00h and 01h are
+    /// Analogue channel (44h). 48h is the temperature in °C; others depend on the data sheet, and 00h and 01h are
     /// usually the sine and cosine signals in counts of 10 bits for 5 V.
     Analogue(u8),
     /// The counter (46h), 0…FFFFFFh.
@@ -62,14 +62,14 @@ pub enum Watch {
 }
 
 impl Watch {
-    /// Temperature in °C, of every encoder that provides it.
+    /// Temperature in °C, available from every encoder that provides this channel.
     pub const TEMPERATURE: Watch = Watch::Analogue(0x48);
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
-    /// Time at which the encoder sampled an analogue value: falling edge of the start bit of the reply's address. For a
-    /// counter and a refusal, the time of parsing the reply.
+    /// Time at which the encoder sampled an analogue value, marked by the falling edge of the start bit of the reply's
+    /// address. For a counter or a refusal, the time of parsing the reply.
     pub at: Moment,
     pub watch: Watch,
     pub value: Result<i64, Error>,
@@ -88,7 +88,7 @@ impl WatchedReading {
     }
 }
 
-/// Reads a watched value once; a refusal is a valid result.
+/// Reads a watched value once; a refusal counts as a valid result.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -107,7 +107,7 @@ pub fn read_watched(master: &mut Master<'_>, what: Watch) -> Result<WatchedReadi
     Ok(WatchedReading { at, watch: what, value, codes })
 }
 
-/// Reads the position once, like [`read_position`]; no position at the moment is a valid result.
+/// Reads the position once, like [`read_position`], except that a temporary lack of a position is a valid result.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal for another reason.
@@ -130,7 +130,7 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
     }
 }
 
-/// Reads an analogue channel (44h): usually signed 10 bits for 5 V, otherwise as stated in the data sheet.
+/// Reads an analogue channel (44h), usually as signed 10 bits for 5 V, otherwise as stated in the data sheet.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal because the channel does not exist.
@@ -138,7 +138,7 @@ pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error>
     request_analogue(master, channel).map(|(_, value)| value)
 }
 
-/// Returns the value of an analogue channel, and when the encoder sampled it.
+/// Returns the value of an analogue channel and the time at which the encoder sampled it.
 fn request_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
     let timed = master.request_timed(&Request::ReadAnalogue { channel })?;
     match timed.reply {
@@ -176,8 +176,8 @@ pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
     }
 }
 
-/// Reads the position three times, a tenth of a second apart, and returns the last one if the shaft is at rest: the
-/// readings differ by at most one step.
+/// Reads the position three times, a tenth of a second apart, and returns the last reading if the shaft is at rest,
+/// that is, if the readings differ by at most one step.
 ///
 /// # Errors
 /// [`Error::Moving`], or errors of reading.
@@ -197,12 +197,12 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
     }
 }
 
-/// Returns the number of distinct positions, or that of the complete word if the geometry is unknown.
+/// Returns the number of distinct positions, or that of the full position word if the geometry is unknown.
 pub(super) fn range_of(geometry: Option<Geometry>) -> u64 {
     geometry.and_then(Geometry::range).unwrap_or(1 << 32)
 }
 
-/// Returns the number of steps between two positions along the shorter way, since a shaft at rest may jitter across
+/// Returns the number of steps between two positions in the shorter direction, since a shaft at rest may jitter across
 /// zero.
 pub(super) fn distance(a: u32, b: u32, range: u64) -> u64 {
     let straight = u64::from(a.abs_diff(b));

@@ -8,10 +8,10 @@ use super::{Error, Master};
 use crate::devices::hiperface::protocol::{LineSettings, Request, StatusCode, Timing};
 use crate::units::CharacterFormat;
 
-/// Wait after the restart: the encoder listens with factory settings from 100 to 900 ms after it, and this is early in
-/// that window.
+/// Wait after the restart until early in the window from 100 to 900 ms in which the encoder listens with factory
+/// settings.
 const INTO_DEFAULT_WINDOW: Duration = Duration::from_millis(200);
-/// Reserve over the figure's times for the stored settings, as clocks differ.
+/// Reserve added to the manual's times for the stored settings, since clocks differ.
 const RESERVE: Duration = Duration::from_millis(100);
 
 /// Restarts the encoder, waits until it listens with its stored settings, and reads its complete status queue, which
@@ -37,7 +37,7 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     })
 }
 
-/// Changes the interface of the encoder and the port until the next restart. The reply still arrives with the old
+/// Changes the interface settings of the encoder and the port until the next restart. The reply still uses the old
 /// settings.
 ///
 /// # Errors

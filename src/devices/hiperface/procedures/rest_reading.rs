@@ -13,7 +13,7 @@ pub struct Rest {
     pub signals: Option<Signals>,
 }
 
-/// Sine and cosine, each relative to its reference wire.
+/// Sine and cosine signals, each relative to its reference wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signals {
     pub sine_v: f64,
@@ -21,27 +21,28 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// Analogue channels of sine and cosine, for types that have them.
+    /// Analogue channels of sine and cosine, for encoder types that provide these.
     pub const CHANNELS: (u8, u8) = (0x00, 0x01);
-    /// Ten bits for 5 V.
+    /// Volts per analogue count, with ten bits for 5 V.
     const VOLTS_PER_COUNT: f64 = 5.0 / 1023.0;
-    /// The reference of both, 2.5 V.
+    /// Reference level of sine and cosine (2.5 V), in counts.
     const MEAN: f64 = 511.5;
 
-    /// Converts mean counts of ten bits for 5 V.
+    /// Converts mean counts of ten bits for 5 V to signals.
     fn from_counts(sine: f64, cosine: f64) -> Self {
         let volts = |counts: f64| (counts - Self::MEAN) * Self::VOLTS_PER_COUNT;
         Signals { sine_v: volts(sine), cosine_v: volts(cosine) }
     }
 
-    /// Returns the resolution of one count as a fraction of a period, at this amplitude.
+    /// Returns the resolution of one count as a fraction of a period, at the amplitude of these signals.
     pub fn resolution_periods(&self) -> f64 {
         let amplitude = self.sine_v.hypot(self.cosine_v).max(Self::VOLTS_PER_COUNT);
         Self::VOLTS_PER_COUNT / amplitude / std::f64::consts::TAU
     }
 }
 
-/// Reads the shaft at rest: position, sine and cosine as means of four readings, and the position again.
+/// Reads the shaft at rest: first the position, then sine and cosine as means of four readings, then the position
+/// again.
 ///
 /// # Errors
 /// [`Error::Moving`], errors of the exchange, or no position.
@@ -76,7 +77,9 @@ fn read_signals(master: &mut Master<'_>) -> Result<Option<Signals>, Error> {
 mod tests {
     use super::*;
 
-    /// 2.5 V are 511.5 counts, half a volt more is 613.8 of them; 1/1023 of 5 V is 4.888 mV, of 0.5 V 0.00978 rad.
+    /// A level of 2.5 V equals 511.5 counts, and half a volt more equals 613.8 counts. 1/1023 of 5 V is 4.888 mV, which
+    /// is
+    /// 0.00978 rad of 0.5 V.
     #[test]
     fn counts_convert_to_volts_around_the_mean() {
         let signals = Signals::from_counts(613.8, 511.5);

@@ -7,12 +7,12 @@ use crate::profile::Unknown;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
-    /// If set, a field with an unknown access code is an error.
+    /// Whether a field with an unknown access code is an error.
     pub complete: bool,
 }
 
-/// Reads the complete encoder, everything except the position twice, since data stored for years must not depend on a
-/// single XOR.
+/// Reads the complete encoder, and everything except the position twice, since data stored for years must not depend on
+/// a single XOR.
 ///
 /// # Errors
 /// Errors of the exchange; with [`complete`](SaveOptions::complete) also a field that cannot be read.

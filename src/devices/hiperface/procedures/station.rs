@@ -14,17 +14,17 @@ use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 
 parameters! {
-    /// Parameters of the line and the encoder in a link. The default is the factory setting.
+    /// Line and encoder parameters of a link. The default is the factory setting.
     pub struct LinkParameters: UrlError {
         pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => Bauds;
         pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::WORDS;
-        /// Address of requests: 40h…5Fh or broadcast.
+        /// Address used in requests: 40h…5Fh or broadcast.
         pub address: u8 = DeviceAddress::FACTORY.byte(),
             "address" => Checked(Expected::AddressOrOnlyOne, read_address);
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
-        /// If set, the encoder's time-out is 44 bits, else 11.
+        /// Whether the encoder's time-out is 44 bits rather than 11 bits.
         pub long_timeout: bool = true, "timeout" => Checked(Expected::TimeoutBits, read_timeout);
-        /// Additional delay allowed for a reply beyond the worst case of the protocol, or `None` for the default of the
+        /// Additional time allowed for a reply beyond the worst case of the protocol, or `None` for the default of the
         /// link.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
         pub periods: Option<u32> = None, "periods" => Maybe(Checked(Expected::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
@@ -32,7 +32,7 @@ parameters! {
     }
 }
 
-/// The four access codes; 55h for those not given by the user.
+/// The four access codes, each 55h unless given by the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Codes([AccessCode; 4]);
 
@@ -54,8 +54,7 @@ impl Codes {
     }
 }
 
-/// Access codes given at the start, with their numbers; each session begins with them. If a number occurs twice, its
-/// last code counts.
+/// Access codes, with their numbers, with which each session begins. If a number occurs twice, its last code counts.
 #[derive(Clone, Debug, Default)]
 pub struct AccessCodes(Vec<(CodeNumber, AccessCode)>);
 
@@ -75,24 +74,25 @@ impl FromIterator<(CodeNumber, AccessCode)> for AccessCodes {
 
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// Address of requests: 40h…5Fh or broadcast.
+    /// Address used in requests: 40h…5Fh or broadcast.
     pub address: u8,
     pub format: CharacterFormat,
-    /// If set, the encoder's time-out is 44 bits, else 11.
+    /// Whether the encoder's time-out is 44 bits rather than 11 bits.
     pub long_timeout: bool,
     pub line: LineState,
     pub codes: Codes,
     /// Periods and turns given by the user for an encoder type that is not in the table.
     pub geometry: Option<Geometry>,
-    /// Announced status codes in the order of reading; displaying removes them.
+    /// Announced status codes in the order of reading, removed once they are displayed.
     pub codes_met: Vec<StatusCode>,
-    /// Status codes for the logbook: 50h removes them from the encoder, so there is no other copy.
+    /// Status codes for the logbook. There is no other copy, since 50h removes them from the encoder.
     codes_read: Vec<StatusCode>,
     /// Number of missing or damaged replies to 50h, each of which may have contained a status code.
     pub(super) codes_unheard: u32,
-    /// Whether values to be stored are being read, each of which must be read twice, even on a line that seems good.
+    /// Whether values to be stored are being read, each of which must be read twice even on a line that appears to be
+    /// good.
     pub(super) thorough: bool,
-    /// Maximum number of bytes to read at once, halved if the line damages long replies, and doubled if it does not.
+    /// Maximum number of bytes read at once, halved if the line damages long replies, and doubled otherwise.
     pub(super) chunk: usize,
 }
 
@@ -113,11 +113,11 @@ impl Station {
         }
     }
 
-    /// Creates the station from the parameters of its link; the defaults are the factory setting, and `margin`.
+    /// Creates the station from the parameters of its link; the defaults are the factory settings and `margin`.
     /// Parameters that do not concern the line are ignored.
     ///
     /// # Errors
-    /// A value is invalid; the error lists the allowed ones.
+    /// A value is invalid; the error lists the allowed values.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));
@@ -128,7 +128,7 @@ impl Station {
         Ok(station)
     }
 
-    /// Returns the timing of the line with its present settings.
+    /// Returns the timing of the line with its current settings.
     pub fn timing(&self) -> Timing {
         Timing::new(self.format, self.long_timeout)
     }
@@ -144,13 +144,13 @@ impl Station {
         self.codes_met.extend(codes);
     }
 
-    /// Takes the codes to be written to the logbook, before any of them is displayed.
+    /// Takes the codes to be written to the logbook, which must happen before any of them is displayed.
     pub fn take_read_codes(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_read)
     }
 
-    /// Takes the number of status codes that may have been lost since the last call, in missing or damaged replies to
-    /// 50h.
+    /// Takes the number of status codes that may have been lost in missing or damaged replies to 50h since the last
+    /// call.
     pub fn take_unheard_code_count(&mut self) -> u32 {
         std::mem::take(&mut self.codes_unheard)
     }
@@ -199,14 +199,14 @@ fn read_timeout(text: &str) -> Option<bool> {
     }
 }
 
-/// Maximum number of periods: 32 steps per period in a word of 32 bits.
+/// Maximum number of periods, with 32 steps per period in a 32-bit word.
 pub const MOST_PERIODS: u32 = 1 << 27;
 
 fn read_periods(text: &str) -> Option<u32> {
     number(text).filter(|periods| (1..=MOST_PERIODS).contains(periods))
 }
 
-/// Returns the geometry given by `periods=` and `turns=`; one turn if only the periods are given.
+/// Returns the geometry given by `periods=` and `turns=`, with one turn if only the periods are given.
 fn geometry(link: &LinkParameters) -> Result<Option<Geometry>, Refused> {
     let turns = link.turns.unwrap_or(1);
     match link.periods {

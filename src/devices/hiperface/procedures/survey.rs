@@ -11,20 +11,20 @@ use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub identity: Identity,
-    /// The error queue, in the encoder's order, with the codes announced meanwhile.
+    /// Status queue in the encoder's order, with the codes announced meanwhile.
     pub codes: Vec<StatusCode>,
-    /// All data fields; without bytes if the access code is unknown or the reason is in `unreadable`.
+    /// All data fields. A field has no bytes if its access code is unknown or another reason is in `unreadable`.
     pub fields: Vec<FieldImage>,
     /// Data fields that could not be read for a reason other than their access code.
     pub unreadable: Vec<UnreadableField>,
-    /// Quality of the line until then.
+    /// Quality of the line up to the end of the survey.
     pub line: LineQuality,
     pub counter: Option<u32>,
-    /// Position, unless the encoder refuses it for a reason other than having none at the moment.
+    /// Position, or `None` if the encoder refused it for a reason other than temporarily having none.
     pub position: Option<Sample>,
 }
 
-/// Reads the status queue first, then everything else. A feature that a type does not support is not an error.
+/// Reads the status queue first, then everything else. A feature that an encoder type does not support is not an error.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal of something that every type supports.
@@ -45,15 +45,15 @@ pub fn survey(
     Ok(survey)
 }
 
-/// How to treat a data field that cannot be read.
+/// Treatment of data fields that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
     AsFarAsPossible,
-    /// An unreadable field ends the reading, since data stored for years must be complete.
+    /// An unreadable field aborts the reading, since data stored for years must be complete.
     Whole,
 }
 
-/// Reads everything except the error queue.
+/// Reads everything except the status queue.
 pub(super) fn read_survey(
     master: &mut Master<'_>,
     types: &EncoderTypes,
@@ -76,7 +76,7 @@ pub(super) fn read_survey(
     Ok(Survey { identity, codes: Vec::new(), fields, unreadable, line, counter, position })
 }
 
-/// Reads all fields as far as possible; for an unreadable one, its status is included if known.
+/// Reads all fields as far as possible; an unreadable field is reported with its status, if known.
 fn read_readable_fields(
     master: &mut Master<'_>,
     count: u8,

@@ -18,12 +18,12 @@ use crate::profile::Write;
 
 type Confirmed<'p> = crate::profile::Confirmed<'p, Base, Op>;
 
-/// A write that ended early.
+/// Write that ended early.
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EndState {
-    /// Fields that should be write protected and are not, because the encoder could no longer be reached.
+    /// Fields that should be write-protected but are not, because the encoder could no longer be reached.
     pub unlocked: Vec<u8>,
 }
 
@@ -34,7 +34,7 @@ pub struct EncoderWrite<'w, 'm> {
 }
 
 impl<'w, 'm> EncoderWrite<'w, 'm> {
-    /// Creates the writer for an encoder with the identity for which the plan was made.
+    /// Creates the writer for an encoder with the identity on which the plan is based.
     pub fn new(master: Master<'m>, identity: &'w Identity) -> Self {
         EncoderWrite { master, identity, left: EndState::default() }
     }
@@ -47,8 +47,8 @@ impl Write for EncoderWrite<'_, '_> {
     type Written = Written;
     type EndState = EndState;
 
-    /// Checks that this is the encoder of the plan, by its memory as well, since two new encoders have the same
-    /// identity.
+    /// Checks that this is the encoder for which the plan was made. The check includes the memory, since two new
+    /// encoders have the same identity.
     fn confirm(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let label = read_type_label(master)?;
@@ -84,7 +84,7 @@ impl Write for EncoderWrite<'_, '_> {
         Ok(())
     }
 
-    /// Locks again what was unlocked, as far as the encoder can be reached.
+    /// Protects fields again that were made writable, as far as the encoder can be reached.
     fn lead_back(
         &mut self,
         confirmed: &Confirmed<'_>,
@@ -154,7 +154,7 @@ fn restore_lock(
     Ok(())
 }
 
-/// Carries out one operation on an encoder with this number of positions; returns how often it was sent.
+/// Executes one operation on an encoder with `range` positions, and returns how often the operation was sent.
 fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u64) -> Result<u32, Error> {
     let code0 = master.station().codes.get(CodeNumber::ZERO);
     match op {
@@ -213,7 +213,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
     }
 }
 
-/// The counter has 24 bits.
+/// Returns the counter value after an increment, with 24 bits.
 fn next_count(counter: u32) -> u32 {
     counter.wrapping_add(1) & 0x00FF_FFFF
 }
@@ -243,7 +243,7 @@ fn has_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Re
     }
 }
 
-/// Returns whether an access code opens a field that it protects. Without such a field it cannot be tested.
+/// Returns whether an access code opens a field that it protects. The code cannot be tested if there is no such field.
 fn opens(
     master: &mut Master<'_>,
     base: &Base,
@@ -348,7 +348,7 @@ pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
     }
 }
 
-/// Reads all fields protected by an access code, which reveal whether it was changed.
+/// Reads all fields protected by an access code, which reveal whether the code was changed.
 ///
 /// # Errors
 /// Errors of the exchange.

@@ -5,7 +5,7 @@
 use super::HiperfaceProfile;
 use crate::analysis::commutation::ElectricalAngle;
 
-/// The stored commutation data of a motor.
+/// Commutation data of a motor as stored in the encoder.
 ///
 /// | bytes | content |
 /// |---|---|
@@ -18,17 +18,17 @@ use crate::analysis::commutation::ElectricalAngle;
 /// | 14…15 | CRC of bytes 0…13: polynomial 1021h, initial value FFFFh, big-endian |
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CommutationRecord {
-    /// Offset: electrical angle = pole pairs × shaft − offset.
+    /// Electrical offset, such that electrical angle = pole pairs × shaft − offset.
     pub offset: ElectricalAngle,
     /// Number of pole pairs of the motor.
     pub pole_pairs: u8,
-    /// Whether the position falls while the electrical angle rises.
+    /// Whether the position decreases as the electrical angle increases.
     pub reversed: bool,
     /// Whether a second vector has confirmed the pole pairs and the phase order.
     pub confirmed: bool,
 }
 
-/// The bytes start like a record, but are not a valid one.
+/// Error for bytes that begin like a commutation record but are not a valid one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Damaged;
 
@@ -36,7 +36,7 @@ impl CommutationRecord {
     /// Length in bytes.
     pub const BYTES: usize = HiperfaceProfile::COMMUTATION_BYTES;
 
-    /// Returns the bytes to store.
+    /// Returns the record as bytes.
     pub fn emit(&self) -> [u8; Self::BYTES] {
         let [o3, o2, o1, o0] = self.offset.bits().to_be_bytes();
         let flags = u8::from(self.confirmed);
@@ -48,7 +48,7 @@ impl CommutationRecord {
         bytes
     }
 
-    /// Parses the record at the beginning of `bytes`, or returns `None` if there is none.
+    /// Parses the record at the beginning of `bytes`, or returns `None` if there is no record.
     pub fn parse(bytes: &[u8]) -> Option<Result<Self, Damaged>> {
         if !bytes.starts_with(HiperfaceProfile::COMMUTATION_MAGIC) {
             return None;
@@ -65,7 +65,7 @@ impl CommutationRecord {
     }
 }
 
-/// Returns CRC-16 with polynomial 1021h from FFFFh, bit by bit.
+/// Returns the CRC-16 with polynomial 1021h and initial value FFFFh, calculated bit by bit.
 fn crc(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |crc, byte| {
         let start = crc ^ u16::from(*byte) << 8;
@@ -77,7 +77,8 @@ fn crc(bytes: &[u8]) -> u16 {
 mod tests {
     use super::*;
 
-    /// The offset of section 5 for four pole pairs; the CRC by Python's `binascii.crc_hqx(body, 0xFFFF)`.
+    /// Record with the offset of section 5 for four pole pairs; the CRC was calculated with Python's
+    /// `binascii.crc_hqx(body, 0xFFFF)`.
     const RECORD: [u8; 16] =
         [0x43, 0x4F, 0x31, 0x01, 0x53, 0x05, 0x1E, 0xB8, 0x04, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF2, 0x6A];
 

@@ -3,8 +3,8 @@
 use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, Scalar};
 use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize, FreeMemory};
 
-/// Plans to write exactly these bytes. Adjoining or overlapping edits become one operation; the last edit of a byte
-/// takes precedence. Operations without a change are left out. `fields` contains each edited field once.
+/// Plans to write exactly these bytes. Adjacent or overlapping edits become one operation, the last edit of a byte
+/// takes precedence, and operations without a change are omitted. `fields` contains each edited field once.
 ///
 /// # Errors
 /// A field is missing, protected or unreadable, or the bytes do not fit into the field or into their range.
@@ -25,7 +25,7 @@ pub fn plan_store(
     Ok(plan(field_count, fields, ops))
 }
 
-/// Returns the operations for one field by ascending address. A field has at most 128 bytes, as has a transfer.
+/// Returns the operations for one field by ascending address. Fields and transfers are both limited to 128 bytes.
 fn stores<'e>(
     field: &FieldImage,
     edits: impl Iterator<Item = &'e (FieldRange, Vec<u8>)>,
@@ -67,10 +67,10 @@ fn stores<'e>(
     Ok(ops)
 }
 
-/// Plans to create the next field.
+/// Plans to create the next data field.
 ///
 /// # Errors
-/// Another number is next, or the memory is too small.
+/// `number` is not the next field number, or the memory is too small.
 pub fn plan_create(memory: FreeMemory, number: u8, status: DataFieldStatus) -> Result<HiperfacePlan, PlanError> {
     if number != memory.fields {
         return Err(PlanError::NotNext { field: number, next: memory.fields });
@@ -81,7 +81,7 @@ pub fn plan_create(memory: FreeMemory, number: u8, status: DataFieldStatus) -> R
     Ok(plan(memory.fields, Vec::new(), vec![Op::Define { field: number, from: None, to: status }]))
 }
 
-/// Plans to change protection, access code or, for the last field, the size of a field.
+/// Plans to change the protection, the access code or, for the last field, the size of a data field.
 ///
 /// # Errors
 /// The size of a field other than the last would change, or the memory is too small.
@@ -99,10 +99,10 @@ pub fn plan_redefine(memory: FreeMemory, field: &FieldImage, to: DataFieldStatus
     Ok(plan(memory.fields, vec![field.clone()], ops))
 }
 
-/// Plans to delete the last field.
+/// Plans to delete the last data field.
 ///
 /// # Errors
-/// The field is not the last.
+/// The field is not the last one.
 pub fn plan_delete(memory: FreeMemory, field: &FieldImage) -> Result<HiperfacePlan, PlanError> {
     check_last(memory, field.number)?;
     let op = Op::Define { field: field.number, from: Some(field.status), to: field.status.deleted() };

@@ -1,6 +1,6 @@
 //! Reasons why a HIPERFACE profile is refused.
 
-/// The reason why an entry of a profile is refused.
+/// Reason why a profile entry is rejected.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// The data field occurs twice.
@@ -9,10 +9,10 @@ pub enum EntryError {
     /// The status byte denotes a missing field.
     #[error("{0:02X}h is not the status of an existing field")]
     Status(u8),
-    /// A field that could not be read has bytes.
+    /// A field that could not be read has content.
     #[error("a locked field has no bytes")]
     Locked,
-    /// A readable field has no bytes.
+    /// A readable field has no content.
     #[error("missing; a field without bytes has locked: true")]
     NotLocked,
     /// The number of bytes differs from the size of the field.
@@ -20,10 +20,10 @@ pub enum EntryError {
     Size {
         /// Number of bytes in the profile.
         got: usize,
-        /// Number of bytes of the field.
+        /// Size of the field in bytes.
         expected: usize,
     },
-    /// The marked item is not part of a field.
+    /// The item marked as a mounting value is not part of a data field.
     #[error("{0:?} is not of the form field:N@ADDR+COUNT")]
     Marked(String),
 }

@@ -5,10 +5,10 @@ use std::str::FromStr;
 
 use crate::devices::hiperface::protocol::CodeNumber;
 
-/// An item that can be read.
+/// Readable item of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Item {
-    /// A data field, or a part of one.
+    /// A data field or a part of one.
     Field(FieldRange),
     /// Status byte of a data field.
     Status(u8),
@@ -22,18 +22,18 @@ pub enum Item {
     Settings,
 }
 
-/// A data field, or a part of one.
+/// A data field or a part of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FieldRange {
-    /// Field number, FFh for the extended label.
+    /// Field number; FFh is the extended label.
     pub field: u8,
     /// Index of the first byte.
     pub start: usize,
-    /// Number of bytes, or `None` up to the end of the field.
+    /// Number of bytes, or `None` for all bytes up to the end of the field.
     pub count: Option<usize>,
 }
 
-/// An item that a plan confirms, changes and reads back.
+/// Item that a plan confirms, changes and reads back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanItem {
     /// A readable item.
@@ -92,17 +92,17 @@ impl fmt::Display for Item {
 }
 
 impl FieldRange {
-    /// Creates the range of a whole field.
+    /// Creates a range that covers a whole field.
     pub fn of(field: u8) -> Self {
         FieldRange { field, start: 0, count: None }
     }
 
-    /// Creates the range of a part of a field.
+    /// Creates a range that covers part of a field.
     pub fn new(field: u8, start: usize, count: usize) -> Self {
         FieldRange { field, start, count: Some(count) }
     }
 
-    /// Returns whether the range includes a byte of the given field.
+    /// Returns whether the range includes byte `address` of the given field.
     pub fn contains(&self, field: u8, address: usize) -> bool {
         self.field == field
             && address >= self.start

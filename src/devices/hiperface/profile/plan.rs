@@ -5,10 +5,10 @@ use super::{FieldImage, FieldRange, Item};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, LineSettings};
 use crate::profile::{Operation, Plan};
 
-/// A planned write to a HIPERFACE encoder.
+/// Planned write to a HIPERFACE encoder.
 pub type HiperfacePlan = Plan<Base, Op>;
 
-/// The values on which a plan is based.
+/// Values on which a plan is based.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Number of data fields.
@@ -19,7 +19,7 @@ pub struct Base {
     pub scalars: Vec<Scalar>,
 }
 
-/// A single value of an encoder.
+/// A single value stored in an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Scalar {
     /// Position in steps, with the shaft at rest.
@@ -35,11 +35,11 @@ pub enum Scalar {
 /// A single persistent write.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// 4Dh: creates a field (no status before), changes it, or deletes it (E = 0 after).
+    /// Creates a field (no previous status), changes it, or deletes it (new status with E = 0), using command 4Dh.
     Define {
         /// Field number.
         field: u8,
-        /// Present status, or `None` if the field does not exist yet.
+        /// Current status, or `None` if the field does not exist yet.
         from: Option<DataFieldStatus>,
         /// New status.
         to: DataFieldStatus,
@@ -50,14 +50,14 @@ pub enum Op {
         field: u8,
         /// Index of the first byte.
         address: u8,
-        /// Status of the field at that time, which contains the number of the access code.
+        /// Status of the field at the time of the write, which includes the number of the access code.
         status: DataFieldStatus,
-        /// Old bytes, or `None` if unknown or if the field has yet to be created.
+        /// Previous bytes, or `None` if they are unknown or the field has yet to be created.
         old: Option<Vec<u8>>,
         /// New bytes, 1…128.
         new: Vec<u8>,
     },
-    /// 4Fh: changes an access code.
+    /// Changes an access code with command 4Fh.
     ChangeCode {
         /// Number of the access code.
         number: CodeNumber,
@@ -66,9 +66,9 @@ pub enum Op {
         /// New code.
         new: AccessCode,
     },
-    /// 43h, or 63h with `synchronise`: sets the position.
+    /// Sets the position with command 43h, or 63h if `synchronise` is set.
     SetPosition {
-        /// Position at the present shaft angle.
+        /// Position before the change, at the present shaft angle.
         from: u32,
         /// New position.
         to: u32,
@@ -86,7 +86,7 @@ pub enum Op {
     Configure {
         /// Stored settings.
         from: LineSettings,
-        /// New settings, which apply after the next restart.
+        /// New settings, which take effect after the next restart.
         to: LineSettings,
     },
     /// 49h: clears the counter.
@@ -108,7 +108,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the name of the changed item, as accepted by `read` if the item is readable.
+    /// Returns the name of the changed item, which `read` accepts if the item is readable.
     pub fn item(&self) -> PlanItem {
         PlanItem::Item(match self {
             Op::Define { field, .. } => Item::Status(*field),
@@ -123,7 +123,7 @@ impl Op {
         })
     }
 
-    /// Returns the number of changes, counted as in a comparison: the bytes of a field, or one.
+    /// Returns the number of changes as counted in a comparison: the number of bytes for a data field, otherwise one.
     pub fn weight(&self) -> u64 {
         match self {
             Op::Store { new, .. } => new.len() as u64,
@@ -131,14 +131,14 @@ impl Op {
         }
     }
 
-    /// Returns whether the operation makes a protected field writable. The operation that protects the field again must
-    /// then be carried out whatever happens in between.
+    /// Returns whether the operation makes a protected field writable. In that case, the operation that protects the
+    /// field again must be carried out even if an operation in between fails.
     pub fn is_unlock(&self) -> bool {
         matches!(self, Op::Define { from, to, .. }
             if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))
     }
 
-    /// Returns whether the operation protects the given field.
+    /// Returns whether the operation write-protects the given field.
     pub fn locks(&self, number: u8) -> bool {
         matches!(self, Op::Define { field, to, .. } if *field == number && to.exists() && !to.is_writable())
     }

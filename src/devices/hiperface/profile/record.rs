@@ -7,22 +7,22 @@ use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Unknown, Writer};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-/// A profile of a HIPERFACE encoder.
+/// Profile of a HIPERFACE encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HiperfaceProfile {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// Address and interface settings: recorded, but neither compared nor restored.
+    /// Address and interface settings, which are recorded but neither compared nor restored.
     pub interface: Interface,
-    /// Values that change on their own: recorded, but neither compared nor restored.
+    /// Values that change by themselves; they are recorded but neither compared nor restored.
     pub recorded: Recorded,
-    /// Values that belong to the mounting and are never written to another encoder without asking.
+    /// Mounting values, which are never written to another encoder without asking.
     pub mounting: Vec<MountingMark>,
     /// Data fields in ascending order.
     pub fields: Vec<FieldImage>,
-    /// In a backup: the fields that the write created, with their content. Restoring the backup deletes them again.
+    /// In a backup, the fields that the write created, with their content. Restoring the backup deletes these fields.
     pub created: Vec<FieldImage>,
-    /// Unknown entries by field number.
+    /// Unknown profile entries by field number.
     pub unknown_in_fields: Vec<(u8, Unknown)>,
 }
 
@@ -45,7 +45,7 @@ pub struct ProfileIdentity {
     pub options: u8,
     /// Content of data field FFh.
     pub extended_label: Option<Vec<u8>>,
-    /// Unknown entries, preserved when the profile is saved.
+    /// Unknown profile entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
@@ -56,22 +56,22 @@ pub struct Interface {
     pub address: u8,
     /// Stored interface settings.
     pub settings: LineSettings,
-    /// Unknown entries, preserved when the profile is saved.
+    /// Unknown profile entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// Values that change on their own.
+/// Values that change by themselves.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recorded {
     /// Position in steps.
     pub position: Option<u32>,
     /// Counter.
     pub counter: Option<u32>,
-    /// Unknown entries, preserved when the profile is saved.
+    /// Unknown profile entries, preserved when the profile is saved.
     pub unknown: Unknown,
 }
 
-/// A mark on a part of a data field that holds a value of the mounting.
+/// Mark on a part of a data field that holds a mounting value.
 pub type MountingMark = crate::profile::MountingMark<FieldRange>;
 
 /// A data field.
@@ -81,7 +81,7 @@ pub struct FieldImage {
     pub number: u8,
     /// Status byte.
     pub status: DataFieldStatus,
-    /// Content, as long as the status states; `None` if the access code is unknown.
+    /// Field content with the length given in the status, or `None` if the access code is unknown.
     pub bytes: Option<Vec<u8>>,
 }
 
@@ -91,7 +91,7 @@ impl HiperfaceProfile {
     /// Length of a commutation offset stored by this program, in bytes.
     pub const COMMUTATION_BYTES: usize = 16;
 
-    /// Marks all unmarked items that are recognised as values of the mounting.
+    /// Marks all unmarked items that are recognised as mounting values.
     pub fn mark_mounting(&mut self) {
         for field in &self.fields {
             let Some(bytes) = &field.bytes else { continue };
@@ -111,7 +111,7 @@ impl HiperfaceProfile {
         }
     }
 
-    /// Returns whether a byte of a data field belongs to the mounting.
+    /// Returns whether a byte of a data field is a mounting value.
     pub fn is_mounting(&self, field: u8, address: usize) -> bool {
         self.mounting.iter().any(|mark| mark.item.contains(field, address))
     }

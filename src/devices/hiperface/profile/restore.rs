@@ -31,45 +31,45 @@ pub struct RestoreOptions {
     pub allow_other_type: bool,
     /// Whether mounting values may be written to another encoder.
     pub with_mounting: bool,
-    /// Whether a field that has another size and is not the last may be deleted and created again, together with all
-    /// fields after it.
+    /// Whether a field that has a different size and is not the last may be deleted and created again, together with
+    /// all fields after it.
     pub recreate: bool,
-    /// Decisions about data fields with bytes of unknown meaning that would be written to another encoder: copied or
-    /// left out. Without a decision a field is left out.
+    /// Decisions on whether to copy or leave out data fields with bytes of unknown meaning that would be written to
+    /// another encoder. A field without a decision is left out.
     pub copy: BTreeMap<u8, bool>,
 }
 
-/// Present state of the memory of an encoder.
+/// Current memory state of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeviceState {
     /// Serial number; empty if the encoder has none.
     pub serial_number: String,
     /// Type code.
     pub encoder_type: u8,
-    /// Free memory and number of fields.
+    /// Free memory and number of data fields.
     pub memory: FreeMemory,
-    /// All fields in ascending order.
+    /// All data fields in ascending order.
     pub fields: Vec<FieldImage>,
 }
 
 /// Result of planning a restore.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Restore {
-    /// The part common to all kinds of device.
+    /// Part of the result that is common to all kinds of device.
     pub common: crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange>,
-    /// Data fields with bytes of unknown meaning that differ from those of another encoder.
+    /// Data fields whose bytes of unknown meaning differ from those of another encoder.
     pub unknown_fields: Vec<UnknownField>,
-    /// Data fields that the write created and that the restore leaves in place because they have changed since, or are
-    /// not the last.
+    /// Data fields created by the write that remain in place because they have changed since or are not the last
+    /// fields.
     pub created_left: Vec<u8>,
 }
 
-/// A value that must be set up again after restoring the profile of another encoder.
+/// Value that must be set up again after restoring the profile of another encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Redo {
     /// Offset between encoder and motor.
     Commutation,
-    /// A value of the mounting.
+    /// A mounting value.
     Value(FieldRange),
 }
 
@@ -82,7 +82,7 @@ impl fmt::Display for Redo {
     }
 }
 
-/// Plans a restore.
+/// Plans to restore a profile to an encoder.
 ///
 /// # Errors
 /// See [`PlanError`]; nothing has been written.

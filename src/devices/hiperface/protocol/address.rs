@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-/// The broadcast address, to which every encoder on the line responds with its own address. Allowed only if one encoder
-/// is connected, unless the command has no reply.
+/// Broadcast address, to which every encoder on the line responds with its own address. Allowed only if one encoder is
+/// connected, unless the command has no reply.
 pub const BROADCAST: u8 = 0xFF;
 
-/// The address byte of one encoder: device number 0…31 plus 40h, so 40h…5Fh.
+/// Address byte of an encoder, 40h…5Fh: device number 0…31 plus 40h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DeviceAddress(u8);
 
@@ -20,12 +20,12 @@ impl DeviceAddress {
     /// Highest address, 5Fh.
     pub const LAST: DeviceAddress = DeviceAddress(0x5F);
 
-    /// Creates an address from a byte 40h…5Fh, or returns `None` for any other.
+    /// Creates an address from a byte 40h…5Fh, or returns `None` for any other byte.
     pub const fn new(byte: u8) -> Option<Self> {
         if byte & 0xE0 == 0x40 { Some(DeviceAddress(byte)) } else { None }
     }
 
-    /// Returns all 32 addresses, 40h first.
+    /// Returns all 32 addresses in ascending order, starting with 40h.
     pub fn all() -> impl Iterator<Item = DeviceAddress> {
         (Self::FIRST.0..=Self::LAST.0).map(DeviceAddress)
     }

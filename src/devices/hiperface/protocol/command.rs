@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// A command byte without the error bit.
+/// Command byte without the error bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 #[expect(missing_docs, reason = "the name in the table below is the documentation")]
@@ -29,7 +29,7 @@ pub enum Command {
     ConfigureLineTemporarily = 0x67,
 }
 
-/// A row of the manual's command table.
+/// Row of the manual's command table.
 #[derive(Clone, Copy, Debug)]
 pub struct CommandRow {
     /// The command.
@@ -38,10 +38,9 @@ pub struct CommandRow {
     pub name: &'static str,
     /// Whether access code 0 is required.
     pub code0: bool,
-    /// Maximum processing time, excluding the transfer and the time-out of the protocol; zero if the command has no
-    /// reply.
+    /// Maximum processing time, excluding the transfer and the protocol time-out, or zero if the command has no reply.
     pub max_time: Duration,
-    /// Number of bytes between command and checksum of the request; for 4Bh the minimum.
+    /// Number of bytes between command and checksum of the request; the minimum for 4Bh.
     pub request_payload: usize,
     /// Whether the command changes persistent content of the encoder.
     pub persistent: bool,
@@ -58,7 +57,7 @@ const fn row(
     CommandRow { command, name, code0, max_time: Duration::from_millis(max_ms), request_payload, persistent }
 }
 
-/// All commands in the order and with the columns of the manual (times from "maximale Antwortzeit").
+/// All commands, in the order and with the columns of the manual; times are the "maximale Antwortzeit".
 #[rustfmt::skip]
 pub const COMMANDS: [CommandRow; 20] = [
     //                                      name                                code0  ms  payload persistent
@@ -85,7 +84,7 @@ pub const COMMANDS: [CommandRow; 20] = [
 ];
 
 impl Command {
-    /// Returns the command with this code, ignoring the error bit.
+    /// Returns the command for this byte, ignoring the error bit.
     pub fn from_byte(byte: u8) -> Option<Self> {
         COMMANDS.iter().map(|row| row.command).find(|command| command.byte() == byte & 0x7F)
     }
@@ -95,7 +94,7 @@ impl Command {
         self as u8
     }
 
-    /// Returns the row of the command in the manual's table.
+    /// Returns the row for the command in the manual's table.
     pub fn row(self) -> &'static CommandRow {
         // The table lists every variant (tested); its first line is a fallback that is never used.
         let [first, ..] = &COMMANDS;
@@ -107,7 +106,8 @@ impl Command {
 mod tests {
     use super::*;
 
-    /// Manual, page 18, typed from the table: command byte, Code 0 mark, maximum time in ms (None for "---").
+    /// Command table transcribed from page 18 of the manual: command byte, Code 0 mark, and maximum time in ms (None
+    /// for "---").
     const MANUAL: [(u8, bool, Option<u64>); 20] = [
         (0x42, false, Some(10)),
         (0x43, true, Some(40)),

@@ -8,15 +8,15 @@ pub const EXTENDED_LABEL_FIELD: u8 = 0xFF;
 /// Maximum number of data bytes in a 4Ah or 4Bh command.
 pub const MAX_TRANSFER: usize = 128;
 
-/// Number of one of the four access codes of the encoder, 0…3.
+/// Number of one of the encoder's four access codes, 0…3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CodeNumber(u8);
 
 impl CodeNumber {
-    /// Access code 0, which also protects the settings of the encoder itself.
+    /// Access code 0, which also protects the encoder's own settings.
     pub const ZERO: CodeNumber = CodeNumber(0);
 
-    /// Creates a number 0…3, or returns `None` above.
+    /// Creates an access code number 0…3, or returns `None` for a greater number.
     pub const fn new(number: u8) -> Option<Self> {
         if number < 4 { Some(CodeNumber(number)) } else { None }
     }
@@ -38,12 +38,12 @@ impl fmt::Display for CodeNumber {
     }
 }
 
-/// An access code. It is never disclosed in a log, a trace, an error or the output of a test.
+/// Access code, which is never disclosed in a log, a trace, an error or test output.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct AccessCode(u8);
 
 impl AccessCode {
-    /// 55h, the factory value of all four codes.
+    /// Factory value of all four access codes, 55h.
     pub const FACTORY: AccessCode = AccessCode(0x55);
 
     /// Creates an access code; every byte is valid.
@@ -51,7 +51,7 @@ impl AccessCode {
         AccessCode(byte)
     }
 
-    /// Returns the byte for the line.
+    /// Returns the byte to be sent.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -68,10 +68,10 @@ impl fmt::Debug for AccessCode {
 pub struct FieldSize(u8);
 
 impl FieldSize {
-    /// Size in bytes of a block, the unit in which memory is allocated.
+    /// Size in bytes of a block, the unit of memory allocation.
     pub const BLOCK: usize = 16;
 
-    /// Creates a size from a number of bytes, or returns `None` unless it is a multiple of 16 from 16 to 128.
+    /// Creates a size from a number of bytes, or returns `None` unless the number is a multiple of 16 from 16 to 128.
     pub fn from_bytes(bytes: usize) -> Option<Self> {
         if !bytes.is_multiple_of(Self::BLOCK) {
             return None;
@@ -100,7 +100,7 @@ impl FieldSize {
     }
 }
 
-/// The data field status byte of commands 4Ch and 4Dh.
+/// Data field status byte of commands 4Ch and 4Dh.
 ///
 /// | bit | 7 | 6 | 5..4 | 3 | 2..0 |
 /// |---|---|---|---|---|---|
@@ -113,7 +113,7 @@ impl DataFieldStatus {
     const WRITE_ENABLE: u8 = 0x40;
     const CODE_REQUIRED: u8 = 0x08;
 
-    /// Creates a status from its byte; every value is valid.
+    /// Creates a status from its byte; every byte is valid.
     pub const fn from_byte(byte: u8) -> Self {
         DataFieldStatus(byte)
     }
@@ -124,7 +124,7 @@ impl DataFieldStatus {
         DataFieldStatus(Self::EXISTS | Self::WRITE_ENABLE | code.0 << 4 | required | (size.0 - 1))
     }
 
-    /// Returns the byte on the line.
+    /// Returns the status byte as transmitted.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -149,7 +149,7 @@ impl DataFieldStatus {
         self.0 & Self::CODE_REQUIRED != 0
     }
 
-    /// Returns the field size, (SIZE + 1) · 16 bytes.
+    /// Returns the field size, which is (SIZE + 1) · 16 bytes.
     pub const fn size(self) -> FieldSize {
         FieldSize((self.0 & 7) + 1)
     }
@@ -160,7 +160,7 @@ impl DataFieldStatus {
         DataFieldStatus(if writable { self.0 | Self::WRITE_ENABLE } else { self.0 & !Self::WRITE_ENABLE })
     }
 
-    /// Returns a copy of the status with another access code, required or not.
+    /// Returns a copy of the status with another access code, which may be required or not.
     #[must_use]
     pub const fn with_code(self, code: CodeNumber, required: bool) -> Self {
         let rest = self.0 & !(Self::CODE_REQUIRED | 0x30);
@@ -173,7 +173,7 @@ impl DataFieldStatus {
         DataFieldStatus(self.0 & !7 | (size.0 - 1))
     }
 
-    /// Returns the status that deletes the field (E is 0).
+    /// Returns a copy of the status that deletes the field (E is 0).
     #[must_use]
     pub const fn deleted(self) -> Self {
         DataFieldStatus(self.0 & !Self::EXISTS)
@@ -197,7 +197,7 @@ impl fmt::Display for DataFieldStatus {
     }
 }
 
-/// Free memory of the encoder, in reply to 4Eh.
+/// Free memory of the encoder, as reported in the reply to 4Eh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FreeMemory {
     /// Number of free blocks of 16 bytes.

@@ -5,7 +5,7 @@ use super::{
     Request, RequestError, StatusCode,
 };
 
-/// A fact about a frame.
+/// One item in the description of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FrameFact {
     /// Address and command of the frame.
@@ -19,15 +19,15 @@ pub enum FrameFact {
     Request(Arguments),
     /// The frame is neither a request nor a reply that can be recognised without its request.
     NoRequest(RequestError),
-    /// The encoder has refused the request with this code.
+    /// The encoder refused the request with this status code.
     Refused(StatusCode),
-    /// A code from the status queue of the encoder.
+    /// A status code from the encoder's status queue.
     Code(StatusCode),
-    /// The frame is a reply; each status code in it is a separate fact.
+    /// The frame is a reply; each status code in it is reported separately.
     Reply(Reply),
 }
 
-/// Arguments of a request, without its access codes.
+/// Arguments of a request, excluding access codes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Arguments {
     /// The command has no arguments.
@@ -71,8 +71,8 @@ pub enum Arguments {
     Settings(LineSettings),
 }
 
-/// Describes a captured frame, starting with its heading. `request` is the preceding request, if the frame may be its
-/// reply.
+/// Describes a captured frame, starting with its heading. `request` is the preceding request, if the frame may be the
+/// reply to it.
 ///
 /// # Errors
 /// The bytes are not a frame.
@@ -93,7 +93,7 @@ pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameFact
     Ok(facts)
 }
 
-/// Recognises a reply without its request, if its length distinguishes it from a request.
+/// Interprets a frame as a reply without knowing its request, if the length distinguishes it from a request.
 fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<Answer> {
     let code = AccessCode::FACTORY;
     let candidate = match (Command::from_byte(frame.command)?, frame.payload) {

@@ -7,16 +7,16 @@ use serde::Deserialize;
 
 use super::Geometry;
 
-/// A row of the encoder type table.
+/// Row of the encoder type table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EncoderType {
     /// Type code.
     pub code: u8,
-    /// Family name on the data sheet.
+    /// Family name from the data sheet.
     pub name: String,
-    /// Periods and turns, or `None` if the extended label or the user must supply them.
+    /// Periods and turns, or `None` if they must come from the extended label or the user.
     pub geometry: Option<Geometry>,
-    /// Whether the encoder has no bearing and its code tracks are aligned with 63h after mounting.
+    /// Whether the encoder is a kit without a bearing, whose code tracks are aligned with 63h after mounting.
     pub kit: bool,
 }
 
@@ -24,15 +24,15 @@ pub struct EncoderType {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EncoderTypes(Vec<EncoderType>);
 
-/// The reason why a table is invalid.
+/// Reason why an encoder type table is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TypeTableError {
     /// The table is not valid RON.
     #[error("line {line}, column {column}: {problem}")]
     Syntax {
-        /// Line number, starting at 1.
+        /// Line number, counted from 1.
         line: usize,
-        /// Column number, starting at 1.
+        /// Column number, counted from 1.
         column: usize,
         /// Message of the parser.
         problem: String,
@@ -49,7 +49,7 @@ pub enum TypeTableError {
     },
 }
 
-/// A number that describes an encoder type, by its name in the file.
+/// Number that describes an encoder type, named as in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ShapeEntry {
     /// Periods per turn.
@@ -88,10 +88,10 @@ enum Shape {
 }
 
 impl EncoderTypes {
-    /// The table shipped with the program.
+    /// Table shipped with the program.
     pub const BUILT_IN: &'static str = include_str!("../../../../assets/devices/hiperface/encoder_types.ron");
 
-    /// Parses a table.
+    /// Parses an encoder type table.
     ///
     /// # Errors
     /// Returns line and column if the table is not valid RON or has unknown keys, and both limits if a number is out of
@@ -126,7 +126,7 @@ impl EncoderTypes {
 }
 
 impl Row {
-    /// 2²⁷, since the position word has 32 bits, five of them within a period.
+    /// Upper limit of 2²⁷, since five of the 32 bits of the position word are within a period.
     const MOST: u32 = 1 << 27;
 
     fn check(self) -> Result<EncoderType, TypeTableError> {

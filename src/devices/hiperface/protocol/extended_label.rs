@@ -3,24 +3,25 @@
 use super::type_label::text;
 use super::{Geometry, checksum};
 
-/// The extended label of an encoder with type code FFh.
+/// Extended label of an encoder with type code FFh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExtendedLabel {
-    /// Whether the stored checksum is the XOR of all other bytes. The algorithm is not public (`U`): a mismatch causes
-    /// a warning, never a refusal.
+    /// Whether the stored checksum is the XOR of all other bytes. The algorithm is not public (`U`), so a mismatch
+    /// causes a warning and never a refusal.
     pub checksum_fits: bool,
-    /// Byte 01h: bit 0 linear, bit 1 bipolar counting; displayed raw, because another public source inverts bit 1.
+    /// Byte 01h: bit 0 means linear, bit 1 bipolar counting. The byte is displayed raw, because another public source
+    /// inverts bit 1.
     pub flags: u8,
     /// Periods and turns, or period length and range; `None` if a number is zero or too large.
     pub geometry: Option<Geometry>,
     /// Designation of 18 characters, padded with blanks.
     pub designation: String,
-    /// The valid limits in the order of their numbers.
+    /// Valid limits, ordered by number.
     pub parameters: Vec<LabelParameter>,
 }
 
-/// A limit. The data sheet of the encoder defines the meaning of each number (`U`); the first word of a quantity that
-/// 44h can read is its analogue channel.
+/// Limit value on the extended label. The encoder's data sheet defines the meaning of each number (`U`); the first word
+/// of a quantity that 44h can read is its analogue channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LabelParameter {
     /// Number of the limit: 0…14 in the first set, 15…29 in the second, 30…44 in the third.
@@ -29,22 +30,22 @@ pub struct LabelParameter {
     pub value: i16,
 }
 
-/// A part of the label.
+/// Part of the extended label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelPart {
     /// Checksum, 00h.
     Checksum,
     /// Flags, 01h.
     Flags,
-    /// 02h…05h: periods per revolution, or period length in nanometres.
+    /// Periods per revolution, or period length in nanometres, in bytes 02h…05h.
     Resolution(u32),
-    /// 06h…09h: number of revolutions, or coded range in periods.
+    /// Number of revolutions, or coded range in periods, in bytes 06h…09h.
     Range(u32),
     /// Designation, 0Ah…1Bh.
     Designation,
-    /// Selector of a set: bits 0 to 14 mark valid limits, bit 15 another set.
+    /// Selector word of a set: bits 0 to 14 mark valid limits, and bit 15 indicates another set.
     Selector(u16),
-    /// A limit, unused if its selector omits it.
+    /// A limit, which is unused if its selector omits it.
     Limit {
         /// Number of the limit.
         number: u8,
@@ -55,7 +56,7 @@ pub enum LabelPart {
     },
 }
 
-/// The reason why a data field does not contain an extended label.
+/// Reason why a data field does not contain an extended label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LabelError {
     /// The content is too short for the description in bytes 00h…1Bh.
@@ -67,11 +68,11 @@ pub enum LabelError {
 }
 
 impl ExtendedLabel {
-    /// Length of the description without limits, bytes 00h…1Bh.
+    /// Length in bytes of the description in bytes 00h…1Bh, without limits.
     pub const MIN_BYTES: usize = 0x1C;
-    /// Bit 0 of the flags: linear encoder.
+    /// Bit 0 of the flags, set for a linear encoder.
     pub const LINEAR: u8 = 0x01;
-    /// Bit 1 of the flags: bipolar counting.
+    /// Bit 1 of the flags, set for bipolar counting.
     pub const BIPOLAR: u8 = 0x02;
     /// Length of a set in bytes: a selector word and fifteen limit words.
     const SET_BYTES: usize = 32;
@@ -95,9 +96,9 @@ impl ExtendedLabel {
         })
     }
 
-    /// Returns the limits of quantities that 44h can read: the analogue channel and the value that its reading should
-    /// not exceed. Every two consecutive parameters are assumed to form such a pair; since the data sheet defines the
-    /// actual ones (`U`), a pair is only used for a remark if its channel replies.
+    /// Returns the limits of quantities that 44h can read, as analogue channel and maximum reading. Every two
+    /// consecutive parameters are assumed to form such a pair; since only the data sheet defines the actual pairs
+    /// (`U`), a pair is used only for a remark if its channel replies.
     pub fn limits(&self) -> Vec<(u8, i16)> {
         let mut limits = Vec::new();
         let mut rest = self.parameters.as_slice();
@@ -112,7 +113,7 @@ impl ExtendedLabel {
         limits
     }
 
-    /// Returns the parts of the label: address, length in bytes, and meaning.
+    /// Returns the parts of the label, each with its address, length in bytes, and meaning.
     ///
     /// # Errors
     /// [`LabelError::Short`] if the description is incomplete.
@@ -185,7 +186,7 @@ impl ExtendedLabel {
 mod tests {
     use super::*;
 
-    /// Returns the synthetic label of the reference, 64 bytes, XOR checksum.
+    /// Returns the 64-byte synthetic label of the reference, with an XOR checksum.
     fn label() -> Vec<u8> {
         let mut bytes = crate::bits::parse_hex(
             "53 00 00 00 00 10 00 00 10 00 53 45 4C 33 37 2D 48 46 42 30 2D 4B 30 32 20 20 20 20 00 03 00 48 00 73",

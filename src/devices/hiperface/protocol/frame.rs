@@ -5,7 +5,7 @@ pub fn checksum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
-/// A frame with a valid checksum. The command defines the meaning of the payload.
+/// Frame with a valid checksum. The command defines the meaning of the payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     /// Address byte as received: 40h…5Fh, or FFh in a broadcast.
@@ -16,16 +16,16 @@ pub struct Frame<'a> {
     pub payload: &'a [u8],
 }
 
-/// The reason why bytes are not a frame.
+/// Reason why bytes are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// Fewer than three bytes, the minimum length of a frame.
+    /// The frame has fewer than the minimum of three bytes.
     #[error("{got} bytes are too few for a frame")]
     Short {
         /// Received length in bytes.
         got: usize,
     },
-    /// The last byte is not the XOR of all others.
+    /// The last byte is not the XOR of all other bytes.
     #[error("checksum {got:02X} where {expected:02X} was expected")]
     Checksum {
         /// Checksum calculated over the received bytes.
@@ -39,7 +39,7 @@ impl<'a> Frame<'a> {
     /// Error bit in the command byte of a reply.
     pub const ERROR_BIT: u8 = 0x80;
 
-    /// Parses a frame that fills the slice; on the line, silence marks its end.
+    /// Parses a frame that fills the slice; on the line, silence marks the end of a frame.
     ///
     /// # Errors
     /// [`FrameError::Short`] below three bytes, [`FrameError::Checksum`] if the checksum does not match.
@@ -69,7 +69,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Manual, "Beispiel zur Datenfelddefinition": every frame of the example, and whether its printed checksum is right.
+    /// Frames of the manual's example, "Beispiel zur Datenfelddefinition", each with whether its printed checksum is
+    /// right.
     const MANUAL_EXAMPLE: [(&[u8], bool); 11] = [
         (&[0x40, 0x4E, 0x0E], true),
         (&[0x40, 0x4E, 0x08, 0x00, 0x06], true),

@@ -5,7 +5,7 @@ use std::fmt;
 
 use crate::units::{Baud, CharacterFormat, Parity};
 
-/// Baud rates by their three-bit code; 111 is reserved.
+/// Baud rates by three-bit code; 111 is reserved.
 pub const BAUDS: [Baud; 7] = [baud(600), baud(1200), baud(2400), baud(4800), baud(9600), baud(19200), baud(38400)];
 
 const fn baud(bits_per_second: u32) -> Baud {
@@ -15,7 +15,7 @@ const fn baud(bits_per_second: u32) -> Baud {
     }
 }
 
-/// The RS485 settings byte.
+/// RS485 settings byte.
 ///
 /// | bit | 7 | 6 | 5..4 | 3 | 2..0 |
 /// |---|---|---|---|---|---|
@@ -24,13 +24,13 @@ const fn baud(bits_per_second: u32) -> Baud {
 pub struct LineSettings(u8);
 
 impl LineSettings {
-    /// E4h: standard, 44/baud, even, 9600.
+    /// Factory settings E4h: standard, 44/baud, even, 9600.
     pub const FACTORY: LineSettings = LineSettings(0xE4);
 
     const STANDARD: u8 = 0x80;
     const LONG_TIMEOUT: u8 = 0x40;
 
-    /// Creates settings from their byte; reserved values are preserved.
+    /// Creates settings from the byte; reserved values are preserved.
     pub const fn from_byte(byte: u8) -> Self {
         LineSettings(byte)
     }
@@ -40,7 +40,7 @@ impl LineSettings {
         self.0
     }
 
-    /// Returns a copy with another character format, or `None` for a baud rate that the byte cannot express.
+    /// Returns a copy with another character format, or `None` if the byte cannot express the baud rate.
     pub fn with_format(self, format: CharacterFormat) -> Option<Self> {
         let speed = u8::try_from(BAUDS.iter().position(|baud| *baud == format.baud)?).ok()?;
         let parity = match format.parity {
@@ -57,7 +57,7 @@ impl LineSettings {
         LineSettings(if long { self.0 | Self::LONG_TIMEOUT } else { self.0 & !Self::LONG_TIMEOUT })
     }
 
-    /// Returns a copy for a bus with several encoders or for a single one.
+    /// Returns a copy for a bus with several encoders, or for a single encoder.
     #[must_use]
     pub const fn with_bus(self, bus: bool) -> Self {
         LineSettings(if bus { self.0 & !Self::STANDARD } else { self.0 | Self::STANDARD })
@@ -88,7 +88,7 @@ impl LineSettings {
         self.0 & Self::LONG_TIMEOUT != 0
     }
 
-    /// Returns whether bit 7 is 0: the encoder is configured for a bus.
+    /// Returns whether the encoder is configured for a bus (bit 7 is 0).
     pub const fn is_bus(self) -> bool {
         self.0 & Self::STANDARD == 0
     }

@@ -27,7 +27,7 @@ mod type_label;
 #[cfg(test)]
 mod vectors;
 
-/// The word for this kind of device: on the command line, in profiles, and in stored data.
+/// Name of this kind of device on the command line, in profiles and in stored data.
 pub const KIND: &str = "hiperface";
 
 pub use address::{BROADCAST, DeviceAddress};

@@ -5,14 +5,14 @@ use std::fmt;
 /// Number of position steps per signal period, always 32.
 pub const STEPS_PER_PERIOD: u32 = 32;
 
-/// Geometry of an encoder, which gives steps their meaning.
+/// Geometry of an encoder, which relates steps to an angle or a distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Geometry {
     /// A rotary encoder.
     Rotary {
         /// Signal periods per revolution, at least 1.
         periods: u32,
-        /// Number of revolutions that the encoder distinguishes; 1 for a singleturn encoder.
+        /// Number of revolutions that the encoder distinguishes, 1 for a singleturn encoder.
         turns: u32,
     },
     /// A linear encoder.
@@ -33,7 +33,7 @@ impl Geometry {
         }
     }
 
-    /// Returns the number of distinct positions, which start at 0, or `None` if unknown.
+    /// Returns the number of distinct positions, which are counted from 0, or `None` if unknown.
     pub fn range(self) -> Option<u64> {
         match self {
             Geometry::Rotary { turns, .. } => Some(self.steps_per_turn()?.saturating_mul(u64::from(turns.max(1)))),
@@ -70,7 +70,7 @@ impl fmt::Display for Geometry {
     }
 }
 
-/// A position word together with its geometry.
+/// Position word with the geometry of its encoder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
     /// Position word as received.
@@ -87,7 +87,7 @@ enum Location {
 }
 
 impl Position {
-    /// Returns the whole revolutions, or `None` for a linear encoder.
+    /// Returns the number of whole revolutions, or `None` for a linear encoder.
     pub fn turns(self) -> Option<u64> {
         match self.place {
             Location::Rotary { turns, .. } => Some(turns),
@@ -95,7 +95,7 @@ impl Position {
         }
     }
 
-    /// Returns the steps within the revolution, or `None` for a linear encoder.
+    /// Returns the number of steps within the revolution, or `None` for a linear encoder.
     pub fn steps(self) -> Option<u64> {
         match self.place {
             Location::Rotary { steps, .. } => Some(steps),
@@ -103,7 +103,7 @@ impl Position {
         }
     }
 
-    /// Returns the angle in degrees, from 0 up to 360, or `None` for a linear encoder.
+    /// Returns the angle in degrees, from 0 to just below 360, or `None` for a linear encoder.
     pub fn degrees(self) -> Option<f64> {
         match self.place {
             Location::Rotary { degrees, .. } => Some(degrees),
@@ -129,9 +129,9 @@ impl fmt::Display for Position {
     }
 }
 
-/// Returns the value nearest to `wanted` whose five lowest bits equal those of `now`, so that setting it preserves the
-/// phase between the absolute value and the sine signal (manual, "Position setzen": the five lowest bits equal the five
-/// highest of the arctangent). The value lies within `range`; of two equally near values the lower one is returned.
+/// Returns the value in `range` nearest to `wanted` whose five lowest bits equal those of `now`, or the lower of two
+/// equally near values. Setting this value preserves the phase between absolute value and sine signal (manual,
+/// "Position setzen": the five lowest bits equal the five highest of the arctangent).
 pub fn nearest_in_phase(now: u32, wanted: u32, range: Option<u64>) -> u32 {
     let phase = u64::from(now % STEPS_PER_PERIOD);
     let wanted = u64::from(wanted);

@@ -14,32 +14,32 @@ use super::{
 pub enum Reply {
     /// The command was executed and returns no data.
     Done,
-    /// 42h: position in steps (1/32 period).
+    /// Position in steps (1/32 period), in reply to 42h.
     Position(u32),
-    /// 44h: signed analogue value, usually 10 bits for 5 V or the quantity stated in the data sheet.
+    /// Signed analogue value, in reply to 44h: usually 10 bits for 5 V, or the quantity stated in the data sheet.
     Analogue(i16),
     /// 46h: counter value, 0…FFFFFFh.
     Counter(u32),
     /// 4Ah: the requested bytes.
     Data(Vec<u8>),
-    /// 4Ch: status byte of the field.
+    /// Status byte of a data field, in reply to 4Ch.
     FieldStatus(DataFieldStatus),
     /// 4Eh: free memory.
     FreeMemory(FreeMemory),
-    /// 50h: a status code; some encoders send up to four.
+    /// Status codes, in reply to 50h: usually one, but some encoders send up to four.
     Status(Vec<StatusCode>),
     /// 52h: type label.
     TypeLabel(TypeLabel),
-    /// 56h: serial number and firmware.
+    /// Serial number and firmware, in reply to 56h.
     Serial(SerialLabel),
 }
 
-/// A reply that matches its request.
+/// Reply that matches its request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
     /// The command was executed.
     Reply {
-        /// Whether codes are waiting in the status queue (error bit); read them with 50h.
+        /// Whether codes are waiting in the status queue (error bit), which 50h reads.
         pending: bool,
         /// Reply data.
         reply: Reply,
@@ -53,7 +53,7 @@ pub enum Answer {
     },
 }
 
-/// The reason why bytes are not the reply to a request.
+/// Reason why bytes are not the reply to a request.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
     /// The bytes are not a frame.
@@ -93,13 +93,13 @@ pub enum ReplyError {
 pub struct ReplyLength {
     /// Minimum length.
     pub min: usize,
-    /// Maximum length; no more bytes follow.
+    /// Maximum length, after which no more bytes follow.
     pub max: usize,
 }
 
 impl Request {
-    /// Returns the possible lengths of the reply, as far as the request and the bytes `received` so far determine them.
-    /// `None` for a request without a reply.
+    /// Returns the possible lengths of the reply, as far as the request and the bytes `received` so far determine them,
+    /// or `None` for a request without a reply.
     pub fn reply_length(&self, received: &[u8]) -> Option<ReplyLength> {
         let rejected = received.get(1).is_some_and(|command| command & 0x7F == Command::ReadStatus.byte());
         let payload = |min, max| Some(ReplyLength { min: min + 3, max: max + 3 });
@@ -126,7 +126,7 @@ impl Request {
     /// Parses the reply to this request, which was sent to `address` (40h…5Fh or broadcast).
     ///
     /// # Errors
-    /// The frame is damaged, or its sender, command, length or arguments do not match the request. No value of such a
+    /// The frame is damaged, or its sender, command, length or arguments do not match the request. No value from such a
     /// reply may be displayed.
     pub fn parse_reply(&self, address: u8, bytes: &[u8]) -> Result<Answer, ReplyError> {
         let frame = Frame::parse(bytes)?;

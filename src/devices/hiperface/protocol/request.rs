@@ -8,44 +8,44 @@ use super::{
 };
 use crate::bits::MaskedBytes;
 
-/// A request without the address of the encoder.
+/// Request without the address of the encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// 42h: reads the absolute position.
+    /// Reads the absolute position (42h).
     ReadPosition,
-    /// 43h: sets the position of the shaft. Allowed at standstill only.
+    /// Sets the position of the shaft (43h), which is allowed at standstill only.
     SetPosition {
         /// New position in steps (1/32 period).
         position: u32,
         /// Access code 0.
         code0: AccessCode,
     },
-    /// 44h: reads an analogue value.
+    /// Reads an analogue value (44h).
     ReadAnalogue {
-        /// Channel number stated in the data sheet.
+        /// Channel number as given in the data sheet.
         channel: u8,
     },
-    /// 46h: reads the 24-bit counter.
+    /// Reads the 24-bit counter (46h).
     ReadCounter,
-    /// 47h: increments the counter. Wears the EEPROM, which endures about a million writes.
+    /// Increments the counter (47h). This wears the EEPROM, which endures about a million writes.
     IncrementCounter,
     /// 49h: clears the counter.
     ClearCounter {
         /// Access code 0.
         code0: AccessCode,
     },
-    /// 4Ah: reads bytes of a data field.
+    /// Reads bytes of a data field (4Ah).
     ReadData {
-        /// Data field number, FFh for the extended label.
+        /// Data field number; FFh is the extended label.
         field: u8,
         /// Index of the first byte within the field.
         address: u8,
         /// Number of bytes, 1…128.
         count: u8,
-        /// Access code of the field; ignored by the encoder if CE is 0.
+        /// Access code of the field, which the encoder ignores if CE is 0.
         code: AccessCode,
     },
-    /// 4Bh: writes bytes of a data field.
+    /// Writes bytes of a data field (4Bh).
     StoreData {
         /// Data field number.
         field: u8,
@@ -56,12 +56,12 @@ pub enum Request {
         /// Bytes to write, 1…128.
         data: Vec<u8>,
     },
-    /// 4Ch: reads the status byte of a data field.
+    /// Reads the status byte of a data field (4Ch).
     FieldStatus {
         /// Data field number.
         field: u8,
     },
-    /// 4Dh: creates, changes or deletes a data field.
+    /// Creates, changes or deletes a data field (4Dh).
     DefineField {
         /// Data field number.
         field: u8,
@@ -70,9 +70,9 @@ pub enum Request {
         /// Access code of the field.
         code: AccessCode,
     },
-    /// 4Eh: reads the free memory and the number of fields.
+    /// Reads the free memory and the number of data fields (4Eh).
     FreeMemory,
-    /// 4Fh: changes an access code.
+    /// Changes an access code (4Fh).
     ChangeCode {
         /// Number of the access code.
         number: CodeNumber,
@@ -81,11 +81,11 @@ pub enum Request {
         /// New code.
         new: AccessCode,
     },
-    /// 50h: reads and removes the oldest code of the status queue.
+    /// Reads and removes the oldest code in the status queue (50h).
     ReadStatus,
-    /// 52h: reads the type label.
+    /// Reads the type label (52h).
     ReadTypeLabel,
-    /// 53h: restarts the encoder. There is no reply.
+    /// Restarts the encoder (53h). There is no reply.
     Reset,
     /// 55h: changes the address.
     SetAddress {
@@ -94,30 +94,30 @@ pub enum Request {
         /// Access code 0.
         code0: AccessCode,
     },
-    /// 56h: reads serial number and firmware.
+    /// Reads serial number and firmware (56h).
     ReadSerial,
-    /// 57h: stores interface settings, effective after the next reset.
+    /// Stores interface settings that take effect after the next reset (57h).
     ConfigureLine {
         /// New settings.
         settings: LineSettings,
         /// Access code 0.
         code0: AccessCode,
     },
-    /// 63h: sets the position and aligns the code tracks of a kit encoder. Allowed at standstill only.
+    /// Sets the position and aligns the code tracks of a kit encoder (63h), which is allowed at standstill only.
     Synchronise {
         /// New position in steps (1/32 period).
         position: u32,
         /// Access code 0.
         code0: AccessCode,
     },
-    /// 67h: changes interface settings immediately, until the next reset.
+    /// Changes interface settings immediately, until the next reset (67h).
     ConfigureLineTemporarily {
         /// New settings.
         settings: LineSettings,
     },
 }
 
-/// The reason why an encoder rejects a request.
+/// Reason why an encoder rejects a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
     /// The command is unknown.
@@ -137,7 +137,7 @@ pub enum RequestError {
 }
 
 impl RequestError {
-    /// Returns the status code with which an encoder replies.
+    /// Returns the status code that an encoder sends in reply.
     pub fn status(self) -> StatusCode {
         match self {
             RequestError::Command(_) => StatusCode::UNKNOWN_COMMAND,
@@ -189,8 +189,8 @@ impl Request {
     /// Parses a request.
     ///
     /// # Errors
-    /// Errors are found in the order in which an encoder checks (`U`): the command, the number of arguments, their
-    /// ranges.
+    /// Errors are found in the order in which an encoder checks (`U`): the command, the number of arguments, and the
+    /// ranges of the arguments.
     pub fn parse(frame: &Frame<'_>) -> Result<Self, RequestError> {
         let command = Command::from_byte(frame.command)
             .filter(|_| frame.command & Frame::ERROR_BIT == 0)
@@ -206,7 +206,7 @@ impl Request {
             .and_then(Self::checked)
     }
 
-    /// Returns the arguments as transmitted, and the indices of access codes among them.
+    /// Returns the arguments as transmitted, and the indices of the access codes in this data.
     fn payload(&self) -> (Vec<u8>, Vec<usize>) {
         match self {
             Request::ReadPosition
@@ -293,7 +293,7 @@ impl Request {
         }))
     }
 
-    /// Checks the ranges that only depend on the frame; those that depend on the encoder are checked by the encoder.
+    /// Checks the ranges that depend only on the frame; the encoder checks all others.
     fn checked(request: Result<Self, RequestError>) -> Result<Self, RequestError> {
         match request? {
             Request::ReadData { count, .. } if count == 0 || usize::from(count) > MAX_TRANSFER => {
@@ -309,7 +309,7 @@ impl Request {
     }
 }
 
-/// The bytes of a request, and which of them reveal an access code.
+/// Bytes of a request, with information about which of them reveal an access code.
 #[derive(Clone, PartialEq, Eq)]
 pub struct SecretFrame {
     bytes: Vec<u8>,
@@ -317,7 +317,7 @@ pub struct SecretFrame {
 }
 
 impl SecretFrame {
-    /// Returns the bytes to send.
+    /// Returns the bytes to be sent.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }

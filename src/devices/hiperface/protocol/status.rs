@@ -3,14 +3,14 @@
 
 use std::fmt;
 
-/// A code from the status queue of the encoder.
+/// Code from the status queue of the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct StatusCode(u8);
 
-/// The class of a status code.
+/// Class of a status code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StatusClass {
-    /// An error found during start-up.
+    /// Error found during start-up.
     Initialisation,
     /// A frame was not understood, or the encoder was restarted.
     Protocol,
@@ -20,7 +20,7 @@ pub enum StatusClass {
     Position,
     /// Monitoring of temperature, transmitter or signals.
     Monitoring,
-    /// A code that is not in the list.
+    /// Code that is not in the list of known codes.
     Unknown,
 }
 
@@ -60,34 +60,35 @@ const CODES: [(u8, StatusClass, &str); 27] = [
 impl StatusCode {
     /// 00h: no error.
     pub const OK: StatusCode = StatusCode(0x00);
-    /// 08h: the counter has overflowed from FFFFFFh to 0.
+    /// Counter overflow from FFFFFFh to 0 (08h).
     pub const COUNTER_OVERFLOW: StatusCode = StatusCode(0x08);
-    /// 09h: a character had a parity error.
+    /// Parity error of a character (09h).
     pub const PARITY: StatusCode = StatusCode(0x09);
-    /// 0Ah: a frame had a wrong checksum.
+    /// Wrong checksum of a frame (0Ah).
     pub const CHECKSUM: StatusCode = StatusCode(0x0A);
     /// 0Bh: unknown command.
     pub const UNKNOWN_COMMAND: StatusCode = StatusCode(0x0B);
-    /// 0Ch: wrong length of a request.
+    /// Wrong length of a request (0Ch).
     pub const LENGTH: StatusCode = StatusCode(0x0C);
-    /// 0Dh: an argument is out of range.
+    /// Argument out of range (0Dh).
     pub const ARGUMENT: StatusCode = StatusCode(0x0D);
-    /// 0Eh: the data field is write-protected (WE is 0).
+    /// Write-protected data field, in which WE is 0 (0Eh).
     pub const WRITE_PROTECTED: StatusCode = StatusCode(0x0E);
-    /// 0Fh: wrong access code for the data field.
+    /// Wrong access code for the data field (0Fh).
     pub const WRONG_CODE: StatusCode = StatusCode(0x0F);
-    /// 10h: only the last field can change its size, and only within the memory.
+    /// Rejected change of a field's size (10h): only the last field can change its size, and only within the free
+    /// memory.
     pub const SIZE_FIXED: StatusCode = StatusCode(0x10);
-    /// 11h: access beyond the end of the data field.
+    /// Access beyond the end of the data field (11h).
     pub const OUT_OF_FIELD: StatusCode = StatusCode(0x11);
-    /// 12h: the data field does not exist.
+    /// Missing data field (12h).
     pub const NO_SUCH_FIELD: StatusCode = StatusCode(0x12);
-    /// 1Eh: the temperature of the encoder is out of range.
+    /// Temperature of the encoder out of range (1Eh).
     pub const TEMPERATURE: StatusCode = StatusCode(0x1E);
-    /// 1Fh: the shaft turns too fast.
+    /// Excessive speed of the shaft (1Fh).
     pub const TOO_FAST: StatusCode = StatusCode(0x1F);
 
-    /// Creates a status code from its byte; every value is valid.
+    /// Creates a status code from its byte; every byte is valid.
     pub const fn new(byte: u8) -> Self {
         StatusCode(byte)
     }
@@ -107,13 +108,14 @@ impl StatusCode {
         self.entry().map_or("unknown status code", |(_, text)| text)
     }
 
-    /// Returns whether the code is a warning: 08h, 1Ch, 1Dh and 1Eh are; all others except 00h are errors.
+    /// Returns whether the code is a warning. Only 08h, 1Ch, 1Dh and 1Eh are warnings; all others except 00h are
+    /// errors.
     pub fn is_warning(self) -> bool {
         matches!(self.0, 0x08 | 0x1C..=0x1E)
     }
 
-    /// Returns whether a position read at the same time is unreliable: true for 01h…06h and 1Fh…23h. Codes 09h…12h
-    /// concern a frame or a data field and never invalidate a position.
+    /// Returns whether the code makes a position read at the same time unreliable, as 01h…06h and 1Fh…23h do. Codes
+    /// 09h…12h concern a frame or a data field and never invalidate a position.
     pub fn invalidates_position(self) -> bool {
         matches!(self.0, 0x01..=0x06 | 0x1F..=0x23)
     }

@@ -5,19 +5,19 @@ use std::time::Duration;
 use super::{LineSettings, Request};
 use crate::units::CharacterFormat;
 
-/// Timing of a line with given settings.
+/// Timing of a line with certain settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// Duration of one character of 11 bits.
+    /// Duration of one 11-bit character.
     pub character: Duration,
-    /// Silence that ends a frame: 44 bits, or 11 if so configured. The dead time before the next request is longer.
+    /// Silence that ends a frame: 44 bits, or 11 bits if configured. The dead time before the next request is longer.
     pub timeout: Duration,
 }
 
 impl Timing {
     /// Maximum time after power-on or reset during which the encoder does not receive.
     pub const INITIALISATION: Duration = Duration::from_millis(100);
-    /// Time after power-on during which the encoder uses the factory settings; it then applies the stored ones.
+    /// Time after power-on until which the encoder uses the factory settings before it applies the stored settings.
     pub const DEFAULT_WINDOW_END: Duration = Duration::from_millis(900);
     /// Maximum time during which the encoder does not receive while it applies the stored settings.
     pub const SWITCH: Duration = Duration::from_millis(200);
@@ -28,13 +28,14 @@ impl Timing {
         Timing { character: format.character_time(), timeout: format.baud.time_of_bits(bits) }
     }
 
-    /// Creates the timing for a settings byte, or returns `None` if it is reserved.
+    /// Creates the timing for a settings byte, or returns `None` if the byte contains reserved values.
     pub fn of_settings(settings: LineSettings) -> Option<Self> {
         Some(Self::new(settings.format()?, settings.long_timeout()))
     }
 
-    /// Returns the time from the first bit of a request to the latest possible last bit of its reply: transfer,
-    /// time-out, processing and transfer. Without a reply: transfer and time-out.
+    /// Returns the time from the first bit of a request to the latest possible last bit of its reply, which includes
+    /// transfer, time-out, processing and transfer. For a request without a reply, it includes transfer and time-out
+    /// only.
     pub fn worst_case(&self, request: &Request) -> Duration {
         let sent = request.emit(0).bytes().len();
         let reply = request.reply_length(&[]).map_or(0, |length| length.max);
@@ -53,8 +54,8 @@ mod tests {
     use super::*;
     use crate::units::{Baud, Parity};
 
-    /// Worst cases at 9600 8E1 with the default time-out in 0.1 ms, computed from 11 and 44 bits and the manual's
-    /// maximum times with a calculator.
+    /// Worst cases in 0.1 ms at 9600 8E1 with the default time-out were calculated by hand from 11 and 44 bits and the
+    /// manual's maximum times.
     #[test]
     fn worst_case_durations_at_9600_baud() {
         let timing = Timing::of_settings(LineSettings::FACTORY).unwrap();

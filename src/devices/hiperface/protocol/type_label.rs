@@ -2,16 +2,16 @@
 
 use super::LineSettings;
 
-/// Type label, in reply to 52h.
+/// Type label, as sent in reply to 52h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TypeLabel {
-    /// Stored interface settings, effective after the next reset.
+    /// Stored interface settings, which take effect after the next reset.
     pub settings: LineSettings,
     /// Type code; FFh refers to the extended label in field FFh.
     pub encoder_type: u8,
     /// Size of the EEPROM in units of 16 bytes.
     pub eeprom_units: u8,
-    /// Hardware and software options and HIPERFACE version; the layout is not public, so the byte is kept raw.
+    /// Hardware and software options and HIPERFACE version. The layout is not public, so the byte is kept raw.
     pub options: u8,
 }
 
@@ -19,31 +19,31 @@ impl TypeLabel {
     /// Type code of encoders that are described by their extended label.
     pub const EXTENDED: u8 = 0xFF;
 
-    /// Returns the EEPROM size in bytes, a part of which the encoder itself uses.
+    /// Returns the EEPROM size in bytes, including the part used by the encoder itself.
     pub fn eeprom_bytes(self) -> usize {
         usize::from(self.eeprom_units) * 16
     }
 }
 
-/// Serial number and firmware, in reply to 56h: nine characters of serial number, up to twenty of firmware version,
-/// eight of date.
+/// Serial number and firmware, as sent in reply to 56h: nine characters for the serial number, up to twenty for the
+/// firmware version, and eight for the date.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SerialLabel {
     /// Serial number as sent by the encoder, without leading and trailing blanks and NUL characters.
     pub serial_number: String,
-    /// Firmware version, trimmed in the same way.
+    /// Firmware version, without leading and trailing blanks and NUL characters.
     pub firmware_version: String,
     /// Firmware date in the format `DD.MM.YY`.
     pub firmware_date: String,
 }
 
 impl SerialLabel {
-    /// Minimum payload length: serial number and date without a version.
+    /// Minimum payload length, for serial number and date without a version.
     pub const MIN_PAYLOAD: usize = 9 + 8;
-    /// Maximum payload length: a version of 20 characters.
+    /// Maximum payload length, with a version of 20 characters.
     pub const MAX_PAYLOAD: usize = 9 + 20 + 8;
 
-    /// Parses the payload: the first nine bytes, the last eight, and those in between. `None` unless it has
+    /// Parses the payload: the first nine bytes, the last eight, and those in between. Returns `None` unless there are
     /// [17](Self::MIN_PAYLOAD)…[37](Self::MAX_PAYLOAD) bytes. Bytes that are not printable ASCII are shown as `\xNN`.
     pub fn parse(payload: &[u8]) -> Option<Self> {
         if payload.len() > Self::MAX_PAYLOAD {
@@ -55,7 +55,7 @@ impl SerialLabel {
     }
 }
 
-/// Decodes a fixed-width string: padding (blanks, NUL) is removed, unprintable bytes are made visible.
+/// Decodes a fixed-width string: padding (blanks, NUL) is removed, and unprintable bytes are escaped.
 pub(super) fn text(bytes: &[u8]) -> String {
     let start = bytes.iter().position(|b| !matches!(b, 0 | b' ')).unwrap_or(bytes.len());
     let end = bytes.iter().rposition(|b| !matches!(b, 0 | b' ')).map_or(start, |last| last + 1);

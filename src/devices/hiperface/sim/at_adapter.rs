@@ -13,7 +13,7 @@ parameters! {
     }
 }
 
-/// An encoder with factory settings on the serial line of the adapter, if its settings request one.
+/// Virtual encoder with factory settings on the adapter's serial line, if the adapter's settings request one.
 #[derive(Clone, Copy, Debug)]
 pub struct AtAdapter;
 

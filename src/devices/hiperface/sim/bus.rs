@@ -13,15 +13,15 @@ use crate::sim::Faults;
 use crate::sim::line::{Character, Queue, VirtualLine, Wires};
 use crate::units::{CharacterFormat, Moment, Parity};
 
-/// A line with one or several encoders, as seen from the host. Created from a [`Config`].
+/// Line with one or several encoders, as seen from the host. Created from a [`Config`].
 #[derive(Clone)]
 pub struct Bus {
     encoders: Vec<Encoder>,
     echo: bool,
     wires: Wires,
-    /// Characters on their way to the encoders, by start time.
+    /// Characters in transit to the encoders, by start time.
     to_encoders: Queue<CharacterInTransit>,
-    /// Characters on their way to the host, by end time.
+    /// Characters in transit to the host, by end time.
     to_host: Queue<CharacterInTransit>,
     talks: Vec<LineOccupation>,
 }
@@ -39,7 +39,7 @@ struct CharacterInTransit {
     format: CharacterFormat,
 }
 
-/// A device drives the line from `start` to `end`.
+/// Time from `start` to `end` during which a device drives the line.
 #[derive(Clone, Copy, Debug)]
 struct LineOccupation {
     talker: Talker,
@@ -47,7 +47,7 @@ struct LineOccupation {
     end: Moment,
 }
 
-/// The next event; of simultaneous events the one listed first.
+/// Next event; if several are simultaneous, the first in this list takes precedence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderActs(usize),
@@ -56,11 +56,11 @@ pub(crate) enum Event {
 }
 
 impl Bus {
-    /// Upper bound for the duration of a character: a transmission that ended before does not overlap any character
-    /// still in transit.
+    /// Upper bound for the duration of a character. A transmission that ended earlier than this does not overlap any
+    /// character still in transit.
     const LONGEST_CHARACTER: Duration = Duration::from_millis(20);
 
-    /// Creates the virtual line from `config`. Its encoders have been powered for a long time.
+    /// Creates the virtual line from `config`, with encoders that have been powered for a long time.
     pub fn new(config: &Config) -> Self {
         Bus {
             encoders: (0..config.encoders).map(|index| Encoder::new(config, index)).collect(),
@@ -80,7 +80,7 @@ impl Bus {
         self.encoders.get(index)
     }
 
-    /// Returns an encoder, mutably, in order to turn its shaft or to heat it.
+    /// Returns a mutable reference to an encoder, for example to turn its shaft or to heat it.
     pub fn encoder_mut(&mut self, index: usize) -> Option<&mut Encoder> {
         self.encoders.get_mut(index)
     }
@@ -137,7 +137,7 @@ impl Bus {
         self.wires.inbox.push(byte);
     }
 
-    /// Puts bytes on the line, one character after another; returns when the last one has been transmitted.
+    /// Transmits bytes one character after another, and returns the end of the last character.
     fn drive(&mut self, talker: Talker, start: Moment, format: CharacterFormat, bytes: &[u8]) -> Moment {
         let sent = self.wires.send(start, format.character_time(), bytes);
         let on_the_way = |character: Character| CharacterInTransit { talker, character, format };
@@ -166,8 +166,8 @@ impl Bus {
     }
 }
 
-/// Returns the byte that a receiver makes of an unreadable character. Never an address byte, so no frame begins with
-/// it.
+/// Returns the byte that a receiver produces for an unreadable character. The byte is never an address, so it cannot
+/// begin a frame.
 fn garbage(rng: &mut Rng) -> u8 {
     rng.u8(0x80..0xFF)
 }

@@ -10,8 +10,8 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
 
 parameters! {
-    /// Settings of a virtual line with encoders. The default is one SKM36 with factory settings, at rest and without
-    /// faults.
+    /// Settings of a virtual line with encoders. The default is a single SKM36 with factory settings, at rest and
+    /// without faults.
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -32,8 +32,8 @@ parameters! {
 }
 
 impl Config {
-    /// Parses percent-decoded keys and values. If a key occurs twice, its last value counts. Numbers are decimal or
-    /// `0x…`; several encoders have consecutive addresses and serial numbers, starting with those of the first.
+    /// Parses percent-decoded keys and values; the last value of a repeated key counts. Numbers are decimal or `0x…`,
+    /// and several encoders have consecutive addresses and serial numbers, starting with those of the first.
     ///
     /// # Errors
     /// Names the key and the allowed values.
@@ -47,8 +47,7 @@ impl Config {
         DeviceAddress::new(self.address.byte().saturating_add(index)).unwrap_or(self.address)
     }
 
-    /// Returns the serial number of an encoder; its final number counts up, so that no two encoders are mistaken for
-    /// each other.
+    /// Returns the serial number of an encoder. The final digits count up, so that no two encoders are confused.
     pub(super) fn serial_number_of(&self, index: u8) -> String {
         let first = self.serial_number.as_deref().unwrap_or(self.model.serial_number);
         let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -64,12 +63,12 @@ impl Config {
         format!("{own:<9}")
     }
 
-    /// Returns periods and turns of the given type if known, or else of the model.
+    /// Returns periods and turns of the given type if known, otherwise those of the model.
     pub(super) fn geometry(&self, types: &EncoderTypes) -> Geometry {
         self.encoder_type.and_then(|code| types.find(code)?.geometry).unwrap_or(self.model.geometry)
     }
 
-    /// Returns whether the encoder has no bearing, according to the given type if known, or else to the model.
+    /// Returns whether the encoder has no bearing, according to the given type if known, otherwise to the model.
     pub(super) fn is_kit(&self, types: &EncoderTypes) -> bool {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }

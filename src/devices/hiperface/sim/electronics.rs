@@ -13,7 +13,7 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::units::Moment;
 
-/// The number of EEPROM writes, by command.
+/// Number of EEPROM writes by command.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wear(BTreeMap<u8, u32>);
 
@@ -31,7 +31,8 @@ impl Wear {
     }
 }
 
-/// Status codes waiting for 50h, oldest first. The queue holds four; later ones are lost while it is full.
+/// Status codes waiting to be read with 50h, oldest first. The queue holds four codes; further codes are lost while it
+/// is full.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StatusQueue(VecDeque<StatusCode>);
 
@@ -53,7 +54,7 @@ impl StatusQueue {
     }
 }
 
-/// An encoder without its line.
+/// Virtual encoder without its line.
 #[derive(Clone, Debug)]
 pub(super) struct Electronics {
     model: Model,
@@ -61,7 +62,7 @@ pub(super) struct Electronics {
     encoder_type: u8,
     serial_number: String,
     pub(super) address: DeviceAddress,
-    /// Used after the next start.
+    /// Settings that take effect at the next start.
     pub(super) stored_settings: LineSettings,
     pub(super) memory: Memory,
     pub(super) shaft: Shaft,
@@ -74,12 +75,12 @@ pub(super) struct Electronics {
 impl Electronics {
     /// 24 bits.
     const COUNTER_END: u32 = 0x00FF_FFFF;
-    /// Analogue channels of the data sheets.
+    /// Analogue channel of the sine signal, as in the data sheets.
     const SINE: u8 = 0x00;
     const COSINE: u8 = 0x01;
     const TEMPERATURE: u8 = 0x48;
 
-    /// Creates the encoder number `index` of a line, 0 first.
+    /// Creates encoder number `index` on a line, counted from 0.
     pub(super) fn new(config: &Config, index: u8) -> Self {
         let model = config.model;
         let types = EncoderTypes::built_in();
@@ -102,7 +103,7 @@ impl Electronics {
         electronics
     }
 
-    /// Restarts after power-on or reset: the content of the RAM is lost, and monitoring starts again.
+    /// Restarts after power-on or reset: RAM content is lost, and monitoring starts again.
     pub(super) fn restart(&mut self) {
         self.queue = StatusQueue::default();
         self.watch_temperature(i16::MIN);
@@ -113,15 +114,15 @@ impl Electronics {
         self.watch_temperature(before);
     }
 
-    /// Returns whether the encoder supports the command: 63h is for kit encoders only.
+    /// Returns whether the encoder supports the command; only kit encoders support 63h.
     pub(super) fn has(&self, command: Command) -> bool {
         command != Command::Synchronise || self.kit
     }
 
-    /// Carries out a request at `at` and returns the data of its reply. 53h has neither effect nor data here.
+    /// Executes a request at time `at` and returns the data of its reply. 53h has neither effect nor data here.
     ///
     /// # Errors
-    /// The code with which the encoder refuses; nothing has changed.
+    /// The status code with which the encoder refuses the request; nothing has changed.
     pub(super) fn execute(&mut self, at: Moment, request: &Request) -> Result<Vec<u8>, StatusCode> {
         let data = self.carry_out(at, request)?;
         let command = request.command();
@@ -210,10 +211,10 @@ impl Electronics {
         }
     }
 
-    /// Handles 4Bh during a power failure: the first half of the bytes is written.
+    /// Handles 4Bh during a power failure, in which only the first half of the bytes is written.
     ///
     /// # Errors
-    /// As for the complete store.
+    /// As for a complete store.
     pub(super) fn store_half(
         &mut self,
         field: u8,
@@ -248,7 +249,7 @@ impl Electronics {
         self.memory.check_code(CodeNumber::ZERO, code0)
     }
 
-    /// Reports a temperature that has just passed its limit, once.
+    /// Reports once that the temperature has just exceeded its limit.
     fn watch_temperature(&mut self, before: i16) {
         let limit = self.model.temperature_limit;
         if before <= limit && limit < self.temperature {
@@ -257,7 +258,7 @@ impl Electronics {
     }
 }
 
-/// Returns the memory as delivered by the motor manufacturer: field 0 with the name plate, the rest free.
+/// Returns the memory as delivered by the motor manufacturer: field 0 contains the name plate, and the rest is free.
 fn factory_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
     let mut memory = Memory::new(model.user_blocks);
     if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {

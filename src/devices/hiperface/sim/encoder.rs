@@ -23,11 +23,11 @@ use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pace {
-    /// Typical times as observed: 3.7 ms for the position, 20 ms plus 1.5 ms per byte for a store, half of the maximum
-    /// time for all others.
+    /// Typical times as observed: 3.7 ms for the position, 20 ms plus 1.5 ms per byte for a store, and half of the
+    /// maximum time for all other commands.
     #[default]
     Typical,
-    /// Always the longest time of the manual's table.
+    /// Always the maximum time from the manual's table.
     Worst,
 }
 
@@ -36,7 +36,7 @@ impl Pace {
     const STORE: Duration = Duration::from_millis(20);
     const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
 
-    /// Returns the processing time of a refused frame, which is that of the status reply.
+    /// Returns the processing time of a frame; that of a refused frame equals that of the status reply.
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
         let longest = |command: Command| command.row().max_time;
         match (self, verdict) {
@@ -52,17 +52,17 @@ impl Pace {
     }
 }
 
-/// A character at an encoder's receiver.
+/// Character received by an encoder.
 #[derive(Clone, Copy)]
 pub(super) struct ReceivedCharacter {
     pub(super) start: Moment,
     pub(super) end: Moment,
     pub(super) byte: u8,
-    /// Whether the parity bit matches and the stop bit is in its place.
+    /// Whether the parity bit matches and the stop bit is valid.
     pub(super) intact: bool,
 }
 
-/// A reply that begins now.
+/// Reply that begins now.
 #[derive(Clone)]
 pub(super) struct Transmission {
     pub(super) start: Moment,
@@ -70,20 +70,20 @@ pub(super) struct Transmission {
     pub(super) bytes: Vec<u8>,
 }
 
-/// A virtual encoder. Moments are those of its [`Bus`](super::Bus). There is no `Debug`, because frames may contain
-/// access codes.
+/// Virtual encoder on a [`Bus`](super::Bus), whose clock it uses. There is no `Debug` implementation, because frames
+/// may contain access codes.
 #[derive(Clone)]
 pub struct Encoder {
     electronics: Electronics,
     faults: Faults,
     pace: Pace,
     power: Power,
-    /// Stored settings at the last start.
+    /// Interface settings that were stored at the last start.
     user: LineSettings,
     /// 67h.
     temporary: Option<LineSettings>,
     activity: Activity,
-    /// End of the last lost character, with which the rest of its frame is lost.
+    /// End of the last lost character, which invalidates the rest of its frame.
     lost: Option<Moment>,
     frames_processed: u32,
     stores_begun: u32,
@@ -93,7 +93,7 @@ pub struct Encoder {
 #[derive(Clone, Debug)]
 enum Power {
     Off,
-    /// Switched on at that moment; whether a plausible command arrived in the DEFAULT window.
+    /// State after power-on, with the time of power-on and whether a plausible command arrived in the DEFAULT window.
     Starting {
         since: Moment,
         keeps_default: bool,
@@ -113,12 +113,12 @@ struct Reception {
     bytes: Vec<u8>,
     intact: bool,
     overlong: bool,
-    /// Time at which the silence has lasted long enough, unless another character begins before.
+    /// Time at which the silence has lasted long enough, unless another character begins earlier.
     ends: Moment,
 }
 
 impl Reception {
-    /// Capacity in bytes, more than the longest request (4Bh with 128 bytes: 135).
+    /// Capacity in bytes, greater than the length of the longest request (4Bh with 128 bytes: 135).
     const CAPACITY: usize = 140;
 
     fn beginning(ends: Moment) -> Self {
@@ -159,7 +159,7 @@ impl Encoder {
         self.electronics.counter
     }
 
-    /// Sets the counter (24 bits are taken) without wear.
+    /// Sets the counter to the lowest 24 bits of `counter`, without wear.
     pub fn set_counter(&mut self, counter: u32) {
         self.electronics.counter = counter & 0x00FF_FFFF;
     }
@@ -168,27 +168,27 @@ impl Encoder {
         self.electronics.shaft.position(at)
     }
 
-    /// Turns the shaft at another speed from `now` on.
+    /// Changes the speed of the shaft from `now` on.
     pub fn set_rpm(&mut self, now: Moment, rpm: f64) {
         self.electronics.shaft.set_rpm(now, rpm);
     }
 
-    /// Sets the temperature; beyond the limit the encoder warns once (code 1Eh).
+    /// Sets the temperature; above the limit, the encoder warns once (code 1Eh).
     pub fn set_temperature(&mut self, celsius: i16) {
         self.electronics.set_temperature(celsius);
     }
 
-    /// Adds a code of the monitoring to the queue; lost if four are waiting.
+    /// Adds a monitoring code to the status queue; the code is lost if four are already waiting.
     pub fn report(&mut self, code: StatusCode) {
         self.electronics.queue.push(code);
     }
 
-    /// Returns the settings stored with 57h, in force after the next start.
+    /// Returns the settings stored with 57h, which take effect at the next start.
     pub fn stored_settings(&self) -> LineSettings {
         self.electronics.stored_settings
     }
 
-    /// Returns the settings with which the encoder listens at a moment, or `None` while it does not listen.
+    /// Returns the settings with which the encoder listens at time `at`, or `None` while it does not listen.
     pub fn settings_at(&self, at: Moment) -> Option<LineSettings> {
         if self.silent {
             return None;
@@ -213,7 +213,7 @@ impl Encoder {
         }
     }
 
-    /// Replaces the faults; the counts of frames and stores are kept.
+    /// Replaces the faults, keeping the counts of frames and stores.
     pub(super) fn set_faults(&mut self, faults: Faults) {
         self.silent = faults.silent_after().is_some_and(|frames| frames <= self.frames_processed);
         self.faults = faults;
@@ -224,7 +224,7 @@ impl Encoder {
         self.power_on(now);
     }
 
-    /// Restores the power of an encoder that has lost it.
+    /// Restores the power of an encoder after a power failure.
     pub(super) fn connect(&mut self, now: Moment) {
         if matches!(self.power, Power::Off) {
             self.power_on(now);
@@ -246,7 +246,7 @@ impl Encoder {
         self.electronics.restart();
     }
 
-    /// Returns when [`act`](Self::act) must be called next.
+    /// Returns the time at which [`act`](Self::act) must be called next.
     pub(super) fn next_action_time(&self) -> Option<Moment> {
         match &self.activity {
             Activity::Listening(reception) => reception.as_ref().map(|reception| reception.ends),
@@ -254,7 +254,7 @@ impl Encoder {
         }
     }
 
-    /// Records the start of a character at the receiver, after everything due before has been [done](Self::act).
+    /// Records the start of a received character, after all actions due earlier have been [executed](Self::act).
     pub(super) fn hear(&mut self, heard: ReceivedCharacter) {
         let Some(settings) = self.settings_at(heard.start) else { return };
         let Some(timing) = Timing::of_settings(settings) else { return };
@@ -275,7 +275,7 @@ impl Encoder {
         }
     }
 
-    /// Executes what is due at `at`, the time returned by [`next_action_time`](Self::next_action_time).
+    /// Executes the action due at `at`, the time returned by [`next_action_time`](Self::next_action_time).
     pub(super) fn act(&mut self, at: Moment) -> Option<Transmission> {
         match std::mem::replace(&mut self.activity, Activity::Listening(None)) {
             Activity::Listening(Some(reception)) => {
@@ -325,7 +325,7 @@ impl Encoder {
         Request::parse(frame).map_err(|error| error.status())
     }
 
-    /// Ends the processing: applies the effect, and starts the reply.
+    /// Completes the processing of a request: applies its effect and starts the reply.
     fn answer(
         &mut self,
         at: Moment,
@@ -334,7 +334,7 @@ impl Encoder {
     ) -> Option<Transmission> {
         let address = self.address().byte();
         if let Ok(request) = &verdict
-            && self.dies_in(request)
+            && self.fails_during(request)
         {
             self.power_off();
             return None;
@@ -360,7 +360,7 @@ impl Encoder {
     }
 
     /// Returns whether power is lost during this store, so that only half of it is written.
-    fn dies_in(&mut self, request: &Request) -> bool {
+    fn fails_during(&mut self, request: &Request) -> bool {
         let Request::StoreData { field, address, code, data } = request else { return false };
         if self.electronics.memory.check_store(*field, *address, data.len(), *code).is_err() {
             return false;

@@ -20,7 +20,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// E, not WE, code 0, no code required, 64 bytes.
+    /// Status of the extended label: E set, WE clear, code 0, no code required, 64 bytes.
     const LABEL_STATUS: DataFieldStatus = DataFieldStatus::from_byte(0x83);
 
     /// Creates a memory of `blocks` blocks of 16 bytes, without fields and with all access codes at factory values.
@@ -33,7 +33,7 @@ impl Memory {
         }
     }
 
-    /// Adds a read-only field FFh of 64 bytes.
+    /// Adds the read-only field FFh of 64 bytes.
     #[must_use]
     pub(super) fn with_extended_label(mut self, content: &[u8]) -> Self {
         let mut label = content.to_vec();
@@ -59,7 +59,7 @@ impl Memory {
     /// Handles 4Ch.
     ///
     /// # Errors
-    /// 12h for a field that does not exist.
+    /// 12h if the field does not exist.
     pub fn status(&self, field: u8) -> Result<DataFieldStatus, StatusCode> {
         if field == EXTENDED_LABEL_FIELD {
             return self.extended_label.as_ref().map(|_| Self::LABEL_STATUS).ok_or(StatusCode::NO_SUCH_FIELD);
@@ -67,7 +67,7 @@ impl Memory {
         self.fields.get(usize::from(field)).copied().ok_or(StatusCode::NO_SUCH_FIELD)
     }
 
-    /// Returns all bytes of a field, whatever its access code, or `None` if it does not exist.
+    /// Returns all bytes of a field regardless of its access code, or `None` if the field does not exist.
     pub fn field_bytes(&self, field: u8) -> Option<&[u8]> {
         if field == EXTENDED_LABEL_FIELD {
             return self.extended_label.as_deref();
@@ -93,7 +93,7 @@ impl Memory {
         Ok(wanted)
     }
 
-    /// Checks whether 4Bh with `count` bytes would be carried out.
+    /// Checks whether 4Bh with `count` bytes would be executed.
     ///
     /// # Errors
     /// 12h, 11h, 0Fh if the field requires its access code, 0Eh if it is write-protected (FFh always is).
@@ -118,7 +118,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Handles 4Dh: creates the next field, changes or deletes an existing one.
+    /// Handles 4Dh: creates the next field, or changes or deletes an existing one.
     ///
     /// # Errors
     /// 12h for a number beyond the next one, 0Fh for a wrong access code, 0Eh for FFh, 10h if the memory is too small,
@@ -179,8 +179,8 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns the present status of a field, if `code` is its access code (required even if CE is 0) and it is not the
-    /// encoder's own field.
+    /// Returns the status of a field, if `code` is its access code (required even if CE is 0) and the field is not the
+    /// encoder's own.
     fn check_owner(&self, field: u8, code: AccessCode) -> Result<DataFieldStatus, StatusCode> {
         let present = self.status(field)?;
         self.check_code(present.code(), code)?;
@@ -218,7 +218,7 @@ mod tests {
         DataFieldStatus::from_byte(byte)
     }
 
-    /// Returns a memory with field 0: 32 bytes, field 1: 16 bytes, of 8 blocks.
+    /// Returns a memory of 8 blocks with field 0 (32 bytes) and field 1 (16 bytes).
     fn two_fields() -> Memory {
         let mut memory = Memory::new(8);
         memory.define(0, status(0xC9), CODE).unwrap();

@@ -3,12 +3,12 @@
 
 use crate::devices::hiperface::protocol::Geometry;
 
-/// An encoder with factory settings (and the motor's, for data field 0).
+/// Encoder model with the factory settings of the encoder and, for data field 0, of the motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
-    /// The name used in `sim:?model=`.
+    /// Name used in `sim:?model=`.
     pub name: &'static str,
-    /// Type byte of 52h; FFh refers to the extended label.
+    /// Type byte in the reply to 52h; FFh refers to the extended label.
     pub encoder_type: u8,
     pub geometry: Geometry,
     /// Whether the encoder has no bearing and supports command 63h.
@@ -17,18 +17,18 @@ pub struct Model {
     pub firmware_version: &'static str,
     /// `DD.MM.YY`.
     pub firmware_date: &'static str,
-    /// EEPROM size in units of 16 bytes, as reported by 52h; the encoder itself uses a part of it.
+    /// EEPROM size in units of 16 bytes, as reported by 52h. The encoder itself uses part of the EEPROM.
     pub eeprom_units: u8,
-    /// Blocks of 16 bytes for data fields.
+    /// Number of 16-byte blocks available for data fields.
     pub user_blocks: u8,
     pub options: u8,
-    /// Position at the start, in steps.
+    /// Initial position in steps.
     pub position: u32,
-    /// Degrees Celsius above which code 1Eh is reported.
+    /// Temperature in degrees Celsius above which code 1Eh is reported.
     pub temperature_limit: i16,
-    /// Content of data field 0 (a multiple of 16 bytes, status C9h for 32); empty for no field.
+    /// Content of data field 0 (a multiple of 16 bytes, status C9h for 32), or empty if there is no such field.
     pub name_plate: &'static [u8],
-    /// Content of field FFh, padded with 00h to 64 bytes; empty for no label.
+    /// Content of field FFh, padded with 00h to 64 bytes, or empty if there is no extended label.
     pub extended_label: &'static [u8],
 }
 
@@ -61,16 +61,16 @@ const fn rotary(periods: u32, turns: u32) -> Geometry {
     Geometry::Rotary { periods, turns }
 }
 
-/// Name plate of a servo motor in the format of a drive manufacturer: designation, then big-endian words: speed in
-/// 1/min, rated and peak current in 10 mA, pole pairs, voltage, commutation offset in 1/65536 turn, serial number (32
-/// bits).
+/// Name plate of a servo motor in a drive manufacturer's format: designation, then big-endian words with speed in
+/// 1/min, rated and peak current in 10 mA, pole pairs, voltage, commutation offset in 1/65536 turn, and serial number
+/// (32 bits).
 const MOTOR: &[u8] = b"EMD71K-4 3000rpm\x0B\xB8\x01\x22\x03\x66\x00\x03\x00\xE6\x2A\x5F\x00\x01\xE2\x40";
 
 /// Name plate of the motor into which the kit encoder is built, in the same layout.
 const KIT_MOTOR: &[u8] = b"SMK42-08 4500rpm\x11\x94\x00\xB4\x02\x1C\x00\x04\x00\x30\x71\xC4\x00\x03\x0D\x40";
 
-/// Extended label: 16 periods, 4096 turns, limits 0 and 1 valid: channel 48h, 115 °C. The first byte is the XOR of all
-/// others.
+/// Extended label with 16 periods, 4096 turns and valid limits 0 and 1 (channel 48h, 115 °C). The first byte is the XOR
+/// of all others.
 const SEL37_LABEL: &[u8] = b"\x53\x00\x00\x00\x00\x10\x00\x00\x10\x00SEL37-HFB0-K02    \x00\x03\x00\x48\x00\x73";
 
 impl Model {

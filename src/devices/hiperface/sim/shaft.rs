@@ -8,23 +8,23 @@ use std::f64::consts::TAU;
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::units::Moment;
 
-/// A shaft turning at constant speed.
+/// Shaft that turns at constant speed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Shaft {
     geometry: Geometry,
     rpm: f64,
-    /// Mechanical position in steps at `since`.
+    /// Mechanical position in steps at the time `since`.
     place: f64,
     since: Moment,
     offset: u64,
 }
 
 impl Shaft {
-    /// Speed above which no position is available (data sheets: 6000/min for the absolute value).
+    /// Speed above which no position is available (6000/min for the absolute value, according to data sheets).
     pub(super) const MAX_RPM: f64 = 6000.0;
     /// Number of values of the position word, which has 32 bits.
     const WORD: u64 = 1 << 32;
-    /// Scale of analogue values: 10 bits for 5 V.
+    /// Analogue counts per volt, with 10 bits for 5 V.
     const COUNTS_PER_VOLT: f64 = 1023.0 / 5.0;
     const MEAN_VOLTS: f64 = 2.5;
     const AMPLITUDE_VOLTS: f64 = 0.5;
@@ -57,12 +57,13 @@ impl Shaft {
         self.offset = (u64::from(position) % range + range - self.whole_steps(at)) % range;
     }
 
-    /// Returns the sine signal in counts of 10 bits for 5 V: mean 2.5 V, 1 Vpp, 0 rising at the start of a period.
+    /// Returns the sine signal in counts of 10 bits for 5 V, with a mean of 2.5 V and 1 Vpp. The signal crosses its
+    /// mean upwards at the start of a period.
     pub(super) fn sine(&self, at: Moment) -> i16 {
         Self::counts(self.phase(at).sin())
     }
 
-    /// Returns the cosine signal, scaled as the sine signal.
+    /// Returns the cosine signal, scaled like the sine signal.
     pub(super) fn cosine(&self, at: Moment) -> i16 {
         Self::counts(self.phase(at).cos())
     }
@@ -81,7 +82,7 @@ impl Shaft {
         self.place(at) as u64 // not negative, below the range
     }
 
-    /// Returns the mechanical position in steps, from 0 up to the range.
+    /// Returns the mechanical position in steps, from 0 to just below the range.
     fn place(&self, at: Moment) -> f64 {
         // A linear scale has no turns; there `rpm` counts periods per minute.
         let steps_per_turn = self.geometry.steps_per_turn().unwrap_or(STEPS_PER_PERIOD.into()) as f64;
@@ -134,7 +135,7 @@ mod tests {
         assert!(!shaft.reaches(0x0100_0000));
     }
 
-    /// Quarter periods: 2.5 V is count 511 (01FFh of the reference), 3 V is 613, 2 V is 409.
+    /// Values at quarter periods are 511 counts for 2.5 V (01FFh in the reference), 613 for 3 V, and 409 for 2 V.
     #[test]
     fn the_signals_repeat_every_period() {
         for (position, sine, cosine) in [(0, 511, 613), (8, 613, 511), (16, 511, 409), (24, 409, 511)] {

@@ -14,7 +14,7 @@ use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::LineSettings;
 use crate::devices::hiperface::state::explain as words;
 
-/// Interval of reading a watched value; watched values change slowly, and delay the position.
+/// Interval between readings of a watched value. Watched values change slowly, and reading them delays the position.
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
@@ -57,7 +57,7 @@ impl Encoder {
         }
     }
 
-    /// Starts or stops watching a value in addition to the position.
+    /// Starts or stops reading a value in addition to the position.
     fn watch(&mut self, what: Watch, on: bool) {
         let mut watched = self.record.watched();
         watched.retain(|own| *own != what);
@@ -78,7 +78,7 @@ impl Encoder {
         self.identity.as_ref().map(|identity| identity.label.settings)
     }
 
-    /// Starts a job after which the encoder uses other settings.
+    /// Starts a job after which the encoder uses different settings.
     fn submit_settings_job(&mut self, job: HiperfaceJob, then: Option<LineSettings>, services: &mut Services) {
         if self.try_submit(job, services) {
             self.settings_then = then;

@@ -12,19 +12,19 @@ use crate::profile::PlanId;
 
 pub enum HiperfaceAction {
     ReadStatus,
-    /// Start or stop reading a value while the position is polled.
+    /// Starts or stops reading a value while the position is polled.
     Watch(Watch, bool),
     ReadAnalogue(u8),
-    /// Read the shaft at rest: position, sine and cosine.
+    /// Reads position, sine and cosine with the shaft at rest.
     ReadRest,
     ReadCounter,
-    /// Run the device check; with a restart first if set.
+    /// Runs the device check, after a restart if requested.
     Check {
         /// Send 53h first.
         restart: bool,
     },
     Reset,
-    /// Change the interface settings until the next restart.
+    /// Changes the interface settings until the next restart.
     ConfigureForNow(LineSettings),
     UseCode {
         number: CodeNumber,
@@ -38,9 +38,9 @@ pub enum HiperfaceAction {
     },
     Revert(FieldRange),
     Plan(Change),
-    /// Prepare the plan again with other options, if the change is a restore.
+    /// Prepares the plan again with other options, if the change is a restore.
     PlanAgain(RestoreOptions),
-    /// Write even though the encoder has reached its limit of write cycles.
+    /// Permits writing even though the encoder has reached its limit of write cycles.
     ForceWear(bool),
     Write(PlanId),
     CloseReview,

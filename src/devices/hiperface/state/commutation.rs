@@ -19,7 +19,7 @@ use crate::devices::hiperface::state::TEXTS;
 
 pub use form::{Form, OffsetInputs, Slot, Source, Storage, Vector};
 pub use offset_location::OffsetLocation;
-pub use outcome::{Offset, Setting, Stored, may_read, stored};
+pub use outcome::{Offset, Setting, Stored, check_can_read, stored};
 pub use report::kind_words;
 
 pub enum CommutationAction {
@@ -27,9 +27,9 @@ pub enum CommutationAction {
     Read(Slot),
     Use(Slot),
     Clear,
-    /// Method 1: enter the offset in the memory, as an edit.
+    /// Method 1, which enters the offset in the memory as an edit.
     Store,
-    /// Method 2: show the effect of setting the position.
+    /// Method 2, which shows the effect of setting the position.
     Set,
 }
 
@@ -39,12 +39,12 @@ pub struct Commutation {
     /// Reason why the last action was not carried out.
     pub problem: Option<Text>,
     readings: [Option<RestReading>; 3],
-    /// The last position read, where the shaft still is as far as known.
+    /// Last position read; the shaft is still there, as far as known.
     last: Option<Slot>,
     asked: Option<PendingReading>,
 }
 
-/// A reading in progress: its purpose and the settings at its start, whatever is selected or entered in the meantime.
+/// Reading in progress, with its purpose and the settings at its start, regardless of later selections and entries.
 #[derive(Debug)]
 struct PendingReading {
     slot: Slot,
@@ -55,14 +55,14 @@ struct PendingReading {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestReading {
-    /// The position in periods, in the whole range of the encoder.
+    /// Position in periods, within the whole range of the encoder.
     pub fine_periods: f64,
     pub kind: Kind,
-    /// Position word, if the encoder was read.
+    /// Position word, if it was read from the encoder.
     pub raw: Option<u32>,
 }
 
-/// How a position was obtained, and its quality.
+/// Source and quality of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     Fine {
@@ -71,7 +71,7 @@ pub enum Kind {
         /// Resolution in periods, or `None` if the phase was entered.
         resolution_periods: Option<f64>,
     },
-    /// Only the absolute position, at the middle of its step.
+    /// Absolute position only, taken at the middle of its step.
     Absolute,
     Typed,
 }
@@ -107,12 +107,12 @@ impl Commutation {
         self.problem = None;
     }
 
-    /// Discards the readings, because they refer to another zero or are no longer required.
+    /// Discards the readings, because they refer to a different zero or are no longer required.
     pub(super) fn forget_readings(&mut self) {
         (self.readings, self.last, self.problem) = ([None; 3], None, None);
     }
 
-    /// Stores a reading at rest in the slot for which it was requested, if any.
+    /// Stores a reading taken at rest in the slot for which it was requested, if any.
     pub(super) fn take(&mut self, rest: Rest, geometry: Option<Geometry>) {
         let Some(asked) = self.asked.take() else { return };
         match asked.reading(rest, geometry) {
@@ -121,7 +121,8 @@ impl Commutation {
         }
     }
 
-    /// Handles a failed job; returns whether it is the reading, whose error is shown where it was requested.
+    /// Handles a failed job, and returns whether it was the requested reading, whose error is then shown with the
+    /// request.
     pub(super) fn failed(&mut self, why: &Text) -> bool {
         let own = self.asked.take().is_some();
         if own {
@@ -168,7 +169,7 @@ impl PendingReading {
     }
 }
 
-/// Combines absolute position and phase; they disagree if the residual exceeds 14/32.
+/// Combines absolute position and phase, which disagree if the residual exceeds 14/32.
 fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<RestReading, Text> {
     let steps = u64::from(STEPS_PER_PERIOD);
     // An unknown range does not wrap.

@@ -27,8 +27,8 @@ pub enum LinkKind {
     Replay,
 }
 
-/// Entries of the connection form. Entries of other connection types are preserved and left out of the link. An empty
-/// entry selects the default.
+/// Entries of the connection form. An empty entry selects the default; entries for other connection types are preserved
+/// but not included in the link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkForm {
     pub kind: LinkKind,
@@ -38,15 +38,15 @@ pub struct LinkForm {
     pub file: String,
     pub baud: Baud,
     pub parity: Parity,
-    /// `40`, `0x40` or `40h`, always hexadecimal; or `broadcast`.
+    /// Address as `40`, `0x40` or `40h`, always hexadecimal, or `broadcast`.
     pub address: String,
     pub echo: Echo,
-    /// If set, the encoder's time-out is 44 bits, else 11.
+    /// Whether the encoder's time-out is 44 bits rather than 11 bits.
     pub long_timeout: bool,
     pub model: String,
     /// Typed values of other parameters.
     pub typed: Typed,
-    /// Link parameters without an entry, or with a value that their entry cannot show.
+    /// Link parameters without a form entry, or with a value that their entry cannot show.
     pub rest: Vec<(String, String)>,
 }
 
@@ -115,7 +115,7 @@ impl FormModel for LinkForm {
 }
 
 impl LinkForm {
-    /// Returns the available virtual encoders, the default one first.
+    /// Returns the available virtual encoders, starting with the default.
     pub fn models() -> impl Iterator<Item = &'static str> {
         MODELS.iter().map(|model| model.name)
     }
@@ -129,13 +129,13 @@ impl LinkForm {
         LinkParameters::entries()
     }
 
-    /// Returns the typed parameters: those of the virtual encoder, if applicable, and those of the link.
+    /// Returns the typed parameters of the link and, if applicable, of the virtual encoder.
     fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == LinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
         [own, Self::of_the_link()].concat()
     }
 
-    /// Fills in the entry of a parameter; returns `false` if no entry can show it.
+    /// Fills in the form entry for a parameter, or returns `false` if no entry can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("model", LinkKind::Virtual) {
             value.clone_into(&mut self.model);

@@ -9,7 +9,7 @@ use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::profile::Document;
 use crate::store::DeviceKey;
 
-/// Edited bytes as field, address and value.
+/// Edited bytes, each as field, address and value.
 pub(crate) type Edits = Vec<(u8, usize, u8)>;
 
 impl HasSession for Encoder {

@@ -21,29 +21,29 @@ pub struct Encoder {
     pub session: Session<Hiperface>,
     pub identity: Option<Identity>,
     pub staged: Staged,
-    /// Status queue as last read, with the codes announced since, or `None` if never read.
+    /// Status queue as last read, plus the codes announced since, or `None` if never read.
     pub codes: Option<Vec<StatusCode>>,
-    /// Data fields that could not be read, with a reason other than their access code.
+    /// Data fields that could not be read for a reason other than their access code, with that reason.
     pub unreadable: BTreeMap<u8, Text>,
     pub line_quality: LineQuality,
     pub check: Option<Vec<check::HiperfaceStepResult>>,
     pub counter: Option<u32>,
     /// Old and new value of the last position set by this program.
     pub position_set: Option<(u32, u32)>,
-    /// Analogue values as last read with their limits, or the reason why the encoder does not provide them.
+    /// Analogue values as last read, with their limits, or the reason why the encoder does not provide them.
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
     pub record: Record,
     pub commutation: Commutation,
     pub(super) rest: RequestedRest,
     pub(super) meaning: Meaning,
-    /// Access codes that the user entered or changed, with which the next session with this encoder begins.
+    /// Access codes that the user entered or changed; the next session with this encoder begins with these codes.
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
     pub(super) asked: Option<Item>,
-    /// Access codes to be given to the session again once the encoder is identified.
+    /// Access codes that must be passed to the session again once the encoder is identified.
     pub(super) codes_due: Vec<(CodeNumber, AccessCode)>,
-    /// Interface settings of the encoder after the running job.
+    /// Interface settings that the encoder will have after the running job.
     pub(super) settings_then: Option<LineSettings>,
-    /// Number of the access code entered last, whose correctness is revealed by reading the fields.
+    /// Number of the access code entered last; reading the fields will show whether the code is correct.
     pub(super) tried_code: Option<CodeNumber>,
 }
 
@@ -92,7 +92,7 @@ impl Encoder {
         self.session.log_answer(facts, services);
     }
 
-    /// Returns whether edits have not been written.
+    /// Returns whether there are edits that have not been written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
     }
@@ -101,7 +101,7 @@ impl Encoder {
         self.staged.device().iter().find(|field| field.number == number)
     }
 
-    /// Returns the edited profile, if the session is one.
+    /// Returns the edited profile, if the session edits a profile.
     pub(crate) fn wanted_profile(&self) -> Option<HiperfaceProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
@@ -111,7 +111,7 @@ impl Encoder {
         Some(profile)
     }
 
-    /// Adopts a reading of the encoder; edits are kept, unless they belong to another encoder.
+    /// Adopts the values read from the encoder. Edits are kept unless they belong to another encoder.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
         let fresh = std::mem::take(&mut self.session.just_connected);
@@ -153,7 +153,7 @@ impl Encoder {
         }
     }
 
-    /// Explains why the bytes of a field cannot be edited, or returns `None` if they can.
+    /// Returns the reason why the bytes of a field cannot be edited, or `None` if they can be.
     pub fn reason_not_editable(&self, field: &FieldImage) -> Option<Text> {
         self.unreadable.get(&field.number).cloned().or_else(|| rules::edit(field).err())
     }
@@ -163,7 +163,7 @@ impl Encoder {
         self.record.add(samples, dropped, geometry);
     }
 
-    /// Reports whether the access code of the user opens the fields that it protects; never the code itself.
+    /// Reports whether the user's access code opens the fields that it protects, without revealing the code.
     fn report_code(&mut self, services: &mut Services) {
         let Some(number) = self.tried_code.take() else { return };
         let own = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
@@ -181,7 +181,7 @@ impl Encoder {
         services.notify(severity, vec![text.with("number", number)], Some(&self.session.name()));
     }
 
-    /// Returns whether the encoder differs from the one read before.
+    /// Returns whether the encoder is a different one from the one read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.label.encoder_type, identity.serial.serial_number.clone());
         self.identity.as_ref().is_some_and(|known| who(known) != who(identity))

@@ -69,13 +69,13 @@ impl Kind for Hiperface {
 
 impl Encoder {
     /// Reads the encoder. After connecting, the encoder is identified before access codes are used, since they belong
-    /// to a single encoder.
+    /// to a specific encoder.
     pub(super) fn read_encoder(&mut self, services: &mut Services) {
         let identify = self.session.just_connected && !self.access_codes.is_empty();
         self.submit(if identify { HiperfaceJob::Identify } else { HiperfaceJob::Survey }, services);
     }
 
-    /// Passes the next access code of a reconnected encoder to the session; after the last one the encoder is read.
+    /// Passes the next access code of a reconnected encoder to the session, or reads the encoder if none is left.
     fn submit_access_codes(&mut self, services: &mut Services) {
         match self.codes_due.pop() {
             Some((number, code)) => self.submit(HiperfaceJob::UseCode { number, code }, services),
@@ -89,8 +89,8 @@ impl Encoder {
         self.codes.get_or_insert_default().extend(codes);
     }
 
-    /// Adopts a new address or new codes after a write, for the next session as well. The position before it was set is
-    /// only stored here, since the encoder does not report its offset.
+    /// Adopts a new address or new access codes after a write, for the next session as well. The previous position is
+    /// stored only here, since the encoder does not report its offset.
     pub(super) fn follow(&mut self, ops: &[Op], services: &mut Services) {
         for op in ops {
             match op {
@@ -117,7 +117,7 @@ impl Encoder {
         }
     }
 
-    /// Adopts the settings that the job has changed, so that the next session begins with them.
+    /// Adopts the settings that the job has changed, so that the next session starts with these settings.
     fn adopt_line_settings(&mut self) {
         let Some(settings) = self.settings_then.take() else { return };
         let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.format()) else { return };
@@ -232,8 +232,8 @@ impl SessionEvents for Encoder {
         }
     }
 
-    /// Returns whether the link is open but the encoder does not reply, or nothing was read since it was opened,
-    /// because the bytes received are invalid.
+    /// Returns whether the link is open but the encoder does not reply, or only invalid bytes have been received since
+    /// it was opened.
     fn is_silence(&self, error: &JobError) -> bool {
         let cause = match error {
             JobError::Device(cause) => cause,
@@ -273,7 +273,7 @@ impl SessionEvents for Encoder {
         begun
     }
 
-    /// Handles a failed job. A missing feature is a result; an invalid reply is not.
+    /// Handles a failed job. A missing feature counts as a result, an invalid reply does not.
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);

@@ -41,7 +41,7 @@ use crate::devices::hiperface::procedures::write::{Interrupted, Written};
 use crate::devices::hiperface::profile::{PlanError, Redo, UnknownField};
 use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 
-/// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
+/// Returns the messages for a job that ended early, at least one sentence, each of which may be on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
@@ -53,7 +53,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns the text of an interrupted write: how far it got, its result, and where the backup is.
+/// Returns the messages for an interrupted write: progress, result, and location of the backup.
 pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let done = &interrupted.done;
     let mut texts = vec![match &interrupted.cause {
@@ -78,7 +78,7 @@ pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, ki
     texts
 }
 
-/// Returns why the connection failed, if nothing more can be requested over it.
+/// Returns the reason why the connection failed, if the connection can no longer be used.
 pub fn loss(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link(error)),
@@ -86,13 +86,13 @@ pub fn loss(error: &JobError) -> Option<Text> {
     }
 }
 
-/// Returns the text of a completed write. Values that cannot be read back were acknowledged by the encoder.
+/// Returns the message for a completed write. Values that cannot be read back were acknowledged by the encoder.
 pub fn written(written: &Written) -> Text {
     let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
     TEXTS.text(id).with("cycles", written.write_cycles)
 }
 
-/// Returns the same for the end of a review.
+/// Returns the message for a completed write, as shown at the end of a review.
 pub fn verified(written: &Written) -> Text {
     match written.verified {
         0 => Text::new("session.acknowledged").with("cycles", written.write_cycles),
@@ -160,7 +160,7 @@ pub fn encoder(error: &Error) -> Text {
     }
 }
 
-/// Returns the text of a value that must be set up again.
+/// Returns the message for a value that must be set up again.
 pub fn redo(redo: &Redo) -> Text {
     match redo {
         Redo::Commutation => TEXTS.text("redo.commutation"),
@@ -168,13 +168,14 @@ pub fn redo(redo: &Redo) -> Text {
     }
 }
 
-/// Returns the text for a data field with bytes of unknown meaning that would go onto another encoder.
+/// Returns the message for a data field with bytes of unknown meaning that would be written to another encoder.
 pub fn unknown_field(field: &UnknownField) -> Text {
     let id = if field.bytes == 1 { "review.unknown_field_one" } else { "review.unknown_field" };
     TEXTS.text(id).with("field", field.field).with("bytes", field.bytes)
 }
 
-/// Returns the text of fields created by a write that are not deleted when it is undone; `None` if there are none.
+/// Returns the message for fields that a write created and that are not deleted by undoing it, or `None` if there are
+/// no such fields.
 pub fn created_left(fields: &[u8]) -> Option<Text> {
     let numbers: Vec<String> = fields.iter().map(ToString::to_string).collect();
     (!fields.is_empty()).then(|| TEXTS.text("review.created_left").with("fields", numbers.join(", ")))
@@ -185,13 +186,13 @@ pub fn codes_unheard(count: u32) -> Text {
     TEXTS.text("status.unheard").with("count", count)
 }
 
-/// Returns the text for a profile for another type of encoder.
+/// Returns the message for a profile that belongs to another type of encoder.
 pub fn other_type(types: OtherType) -> Text {
     let OtherType { profile, device } = types;
     TEXTS.text("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))
 }
 
-/// Returns the name of a type, if the built-in table has one, and its code.
+/// Returns the code of an encoder type, with its name if the built-in table contains one.
 fn type_name(code: u8) -> String {
     match EncoderTypes::built_in().find(code) {
         Some(own) => format!("{} ({code:02X}h)", own.name),
@@ -226,7 +227,7 @@ pub fn plan(error: &PlanError) -> Text {
     }
 }
 
-/// Returns the text for bytes that a field does not have.
+/// Returns the message for an access to bytes beyond the end of a field.
 pub fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
     let text = TEXTS.text(if count == 1 { "encoder.out_of_field_one" } else { "encoder.out_of_field" });
     text.with("field", field).with("last", last).with("start", start).with("count", count)
@@ -262,7 +263,7 @@ mod tests {
                 "To complete the write, restore the profile again",
                 "To complete the write, restore the profile again",
             ),
-            (ChangeKind::Bytes, "remain as edits", "To complete the write, run the command again"),
+            (ChangeKind::Bytes, "remain as edits", "Run the command again to complete the write"),
             (ChangeKind::Single, "repeat the change", "run the command again if necessary"),
         ];
         for (kind, part, terminal) in cases {

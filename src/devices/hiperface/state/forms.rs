@@ -7,15 +7,15 @@ use crate::devices::hiperface::protocol::{
 use crate::devices::hiperface::state::TEXTS;
 use crate::units::CharacterFormat;
 
-/// Parses an access code: one hexadecimal byte.
+/// Parses an access code, which is one hexadecimal byte.
 ///
 /// # Errors
-/// A text that states why the entry is invalid, without repeating it.
+/// States why the entry is invalid, without repeating the entry.
 pub fn access_code(text: &str) -> Result<AccessCode, Text> {
     byte(text).map(AccessCode::new).ok_or_else(|| TEXTS.text("entry.code"))
 }
 
-/// Parses a new access code, entered twice because it cannot be read back.
+/// Parses a new access code, which is entered twice because it cannot be read back.
 ///
 /// # Errors
 /// Explains why the entries are invalid without repeating them.
@@ -24,35 +24,35 @@ pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
     if access_code(again)?.byte() == code.byte() { Ok(code) } else { Err(TEXTS.text("entry.codes_differ")) }
 }
 
-/// Returns an address, 40h…5Fh in hexadecimal.
+/// Parses an encoder address, 40h…5Fh in hexadecimal.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// States why the entry is invalid.
 pub fn address(text: &str) -> Result<DeviceAddress, Text> {
     byte(text)
         .and_then(DeviceAddress::new)
         .ok_or_else(|| with_addresses(TEXTS.text("entry.address")).with("entry", text))
 }
 
-/// Adds the lowest and highest address of an encoder in hexadecimal.
+/// Adds the lowest and highest encoder address in hexadecimal to a message.
 pub(super) fn with_addresses(text: Text) -> Text {
     let [first, last] = [DeviceAddress::FIRST, DeviceAddress::LAST].map(|own| format!("{:02X}", own.byte()));
     text.with("first", first).with("last", last)
 }
 
-/// Returns an analogue channel in hexadecimal.
+/// Parses an analogue channel in hexadecimal.
 ///
 /// # Errors
-/// Why the entry is invalid.
+/// States why the entry is invalid.
 pub fn channel(text: &str) -> Result<u8, Text> {
     byte(text).ok_or_else(|| TEXTS.text("entry.channel").with("entry", text))
 }
 
-/// Parses a position in steps, decimal or with `0x`; or degrees within the first turn followed by `°` or `deg`. Signs,
-/// exponents and words are not allowed.
+/// Parses a position in steps, decimal or with `0x`, or in degrees within the first turn, followed by `°` or `deg`.
+/// Signs, exponents and words are not allowed.
 ///
 /// # Errors
-/// A text that states why the entry is invalid, with the range if known.
+/// States why the entry is invalid, with the range if known.
 pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     let text = text.trim();
     let last = geometry.and_then(Geometry::range).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));

@@ -6,14 +6,14 @@ use crate::devices::hiperface::protocol::{Answer, Frame, FrameFact, Reply, Reque
 use crate::devices::hiperface::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// Decoder of frames in the order of transmission.
+/// Decoder that explains frames in the order of transmission.
 #[derive(Debug, Default)]
 pub(super) struct Meaning {
     request: Option<(u8, Request)>,
 }
 
 impl Meaning {
-    /// Returns the meaning of a frame, without access codes.
+    /// Returns an explanation of a frame, without access codes.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         match (entry.bytes.to_bytes(), entry.direction) {
             (Some(bytes), Direction::Sent) => self.sent(&bytes),
@@ -60,7 +60,7 @@ fn is_report(answer: &Answer) -> bool {
     }
 }
 
-/// Replaces the masked secrets of a request, including its checksum, with other values.
+/// Replaces the last byte of a frame with the checksum of all other bytes.
 fn with_checksum(mut frame: Vec<u8>) -> Vec<u8> {
     if frame.pop().is_some() {
         frame.push(frame.iter().fold(0, |sum, byte| sum ^ byte));
@@ -79,8 +79,8 @@ mod tests {
         TraceEntry { at: Moment::START, direction, bytes: MaskedBytes::clear(bytes) }
     }
 
-    /// Issue 22.11: a damaged reply has a meaning that names the error, and a mark. The frames are those of the manual's
-    /// commands, damaged by hand.
+    /// Issue 22.11: a damaged reply is marked and has an explanation that names the error. The frames are those of the
+    /// manual's commands, damaged by hand.
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let position = [0x40, 0x42, 0x02];

@@ -6,7 +6,7 @@ use crate::devices::hiperface::procedures::profile_of;
 use crate::devices::hiperface::profile::{HiperfaceProfile, Recorded};
 
 impl Encoder {
-    /// Returns the parts of a field that belong to the mounting, with their meaning.
+    /// Returns the parts of a field that contain mounting values, with their meaning.
     pub fn mounting(&self, field: u8) -> Vec<(std::ops::Range<usize>, String)> {
         let own = |profile: &HiperfaceProfile| {
             let marks = profile.mounting.iter().filter(|mark| mark.item.field == field);

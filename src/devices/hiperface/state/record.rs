@@ -48,7 +48,7 @@ impl Record {
         }
     }
 
-    /// Records exactly these values in addition to the position.
+    /// Records the given values, and no others, in addition to the position.
     pub(super) fn watch(&mut self, watched: &[Watch]) {
         self.track.watch(watched);
     }
@@ -57,12 +57,12 @@ impl Record {
         self.track.watched()
     }
 
-    /// Returns the last position, as long as the encoder returns one.
+    /// Returns the last position, unless the encoder currently has none.
     pub fn last(&self) -> Option<&PositionReading> {
         self.last.as_ref().filter(|_| !self.refused)
     }
 
-    /// Returns whether the encoder has no position to return at the moment.
+    /// Returns whether the encoder currently has no position to report.
     pub fn refused(&self) -> bool {
         self.refused
     }

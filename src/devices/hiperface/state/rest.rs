@@ -8,7 +8,7 @@ use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::procedures::Rest;
 use crate::devices::hiperface::protocol::Geometry;
 
-/// A reading requested by the user rather than by the assistant.
+/// Reading with the shaft at rest, requested by the user rather than by the assistant.
 #[derive(Debug, Default)]
 pub(super) struct RequestedRest {
     is_under_way: bool,
@@ -16,7 +16,7 @@ pub(super) struct RequestedRest {
 }
 
 impl Encoder {
-    /// Returns periods and turns, if the type defines them.
+    /// Returns periods and turns, if the encoder type defines them.
     pub fn geometry(&self) -> Option<Geometry> {
         self.identity.as_ref().and_then(|identity| identity.geometry)
     }
@@ -34,7 +34,8 @@ impl Encoder {
         self.commutation.take(rest, geometry);
     }
 
-    /// Handles a failed job; returns whether it is such a reading, whose error is shown where it was requested.
+    /// Handles a failed job, and returns whether it was a reading requested by the user, whose error is then shown with
+    /// the request.
     pub(super) fn handle_rest_failure(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Err(why.clone()));

@@ -11,10 +11,10 @@ use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
-/// Permission for an action, or why not.
+/// Permission for an action, or the reason why it is not allowed.
 pub type Allowed = Result<(), Text>;
 
-/// Checks whether a new field of this size can be created; returns its number.
+/// Checks whether a new field of this size can be created.
 pub fn create(memory: FreeMemory, size: FieldSize, code: CodeNumber, code_required: bool) -> Allowed {
     allowed(plan_create(memory, memory.fields, DataFieldStatus::new(size, code, code_required)))
 }
@@ -25,7 +25,7 @@ pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &
     allowed(plan_redefine(memory, field, field.status.with_size(size)))
 }
 
-/// Checks whether the field can change its size, because it is the last.
+/// Checks whether the field can change its size, which only the last field can.
 pub fn resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
     status(field)?;
     allowed(plan_delete(memory, field))
@@ -36,7 +36,8 @@ pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &Staged) -> Allowe
     check_edits_preserved(staged, field.number, 0)
 }
 
-/// Checks that protection and access code of the field can be changed, for which the encoder requires its access code.
+/// Checks whether the protection and access code of the field can be changed, for which the encoder requires the
+/// field's access code.
 pub fn status(field: &FieldImage) -> Allowed {
     match field.bytes {
         Some(_) => Ok(()),
@@ -66,7 +67,7 @@ pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
     }
 }
 
-/// Checks that every unwritten edit still has a location after the plan.
+/// Checks that the bytes of every unwritten edit still exist after the plan.
 pub(super) fn keeps_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
     plan.ops.iter().try_for_each(|op| match op {
         Op::Define { field, from: Some(_), to } => {
@@ -76,7 +77,7 @@ pub(super) fn keeps_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
     })
 }
 
-/// Checks that no edit of the field is beyond its first `bytes` bytes.
+/// Checks that no edit of the field is beyond the first `bytes` bytes.
 fn check_edits_preserved(staged: &Staged, field: u8, bytes: usize) -> Allowed {
     match staged.edits().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
         0 => Ok(()),
@@ -95,7 +96,7 @@ pub fn edit(field: &FieldImage) -> Allowed {
     Ok(())
 }
 
-/// Returns the maximum size of the last field.
+/// Returns the maximum size to which the last field can be changed.
 pub fn largest(memory: FreeMemory, field: &FieldImage) -> FieldSize {
     let fits = |size: &FieldSize| plan_redefine(memory, field, field.status.with_size(*size)).is_ok();
     FieldSize::all().filter(fits).last().unwrap_or(field.status.size())
@@ -109,7 +110,7 @@ fn allowed(plan: Result<HiperfacePlan, PlanError>) -> Allowed {
 mod tests {
     use super::*;
 
-    /// As a restore does that creates fields again.
+    /// A plan that deletes an edited field is refused, for example a restore that creates fields again.
     #[test]
     fn a_plan_that_deletes_an_edited_field_is_refused() {
         let status = DataFieldStatus::from_byte(0xC8);

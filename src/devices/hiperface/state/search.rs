@@ -26,10 +26,10 @@ pub struct Search {
     pub(crate) url: LinkUrl,
     pub(crate) options: FindOptions,
     pub(crate) line: Option<LiveSession<Hiperface>>,
-    /// Receiver that disconnects when the link is open or cannot be opened.
+    /// Receiver that is disconnected once the link is open or cannot be opened.
     pub(crate) over: crossbeam_channel::Receiver<()>,
     pub found: Vec<FoundEncoder>,
-    /// End of the search, or `None` while it is running.
+    /// Message about the end of the search, or `None` while it is running.
     pub end: Option<Text>,
 }
 
@@ -113,11 +113,11 @@ impl Search {
     }
 }
 
-/// Searches for encoders on the line of the connection form.
+/// Search for encoders on the line selected in the connection form.
 #[derive(Default)]
 pub struct SearchFinder {
     pub search: Option<Search>,
-    /// The search that starts once the user has confirmed that no drive is on the line.
+    /// Options of the search that starts once the user has confirmed that no drive is on the line.
     asked: Option<FindOptions>,
 }
 
@@ -176,7 +176,7 @@ impl Finder for SearchFinder {
         match (search.filter(|search| search.number == number && search.is_running()), result) {
             (Some(search), result) => search.opened(result, services),
             // A search that was ended while its link was opening does not use it.
-            (None, Ok(opened)) => opened.turn_away(SessionId(number), services),
+            (None, Ok(opened)) => opened.close_unneeded(SessionId(number), services),
             (None, Err(_)) => {}
         }
     }

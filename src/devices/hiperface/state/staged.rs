@@ -8,14 +8,14 @@
 use crate::app::{EditBase, Edits};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 
-/// Data fields with edited bytes by field and address.
+/// Data fields with edited bytes, by field and address.
 pub type Staged = Edits<Vec<FieldImage>>;
 
 impl EditBase for Vec<FieldImage> {
     type Place = (u8, usize);
     type Value = u8;
 
-    /// Returns whether a byte differs from that of the encoder, as far as known.
+    /// Returns whether a byte differs from the encoder's byte, as far as known.
     fn is_edit(&self, (field, address): (u8, usize), byte: u8) -> bool {
         let image = self.iter().find(|image| image.number == field);
         match image.map(|image| (&image.bytes, image.status)) {
@@ -30,7 +30,7 @@ impl EditBase for Vec<FieldImage> {
 pub enum StagedError {
     #[error("data field {field} does not exist")]
     NoField { field: u8 },
-    /// The bytes are unknown, because the access code is.
+    /// The bytes are unknown, because the access code is unknown.
     #[error("data field {field} is locked")]
     Locked { field: u8 },
     /// The field ends before.
@@ -43,8 +43,8 @@ pub enum StagedError {
 }
 
 impl Staged {
-    /// Adopts a reading of the encoder; edits are kept, unless their byte no longer exists or already has the edited
-    /// value.
+    /// Adopts the values read from the encoder. Edits are kept, unless their byte no longer exists or already has the
+    /// edited value.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
         self.read_again(|own| *own = device);
     }
@@ -93,7 +93,7 @@ impl Staged {
         runs
     }
 
-    /// Returns the edited runs with their bytes.
+    /// Returns the runs of edited bytes.
     pub fn changed_runs(&self) -> Vec<(FieldRange, Vec<u8>)> {
         let bytes = |range: &FieldRange| {
             let addresses = (range.start..).take(range.count.unwrap_or(0));
@@ -124,7 +124,7 @@ impl Staged {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }
 
-    /// Adopts edits from a draft, dropping those for bytes that do not exist or already have the value.
+    /// Adopts edits from a draft, except those for bytes that do not exist or already have the value.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = (u8, usize, u8)>) {
         self.set(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
     }

@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// Text catalogue of HIPERFACE; other names are those of common texts.
+/// Message catalogue of HIPERFACE; names not found here are those of common messages.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/hiperface.ron"));

@@ -19,7 +19,7 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
-    /// Prepares the plan of the review again; an encoder that did not reply is queried again.
+    /// Prepares the plan under review again. An encoder that did not reply is queried again.
     pub(super) fn plan_again(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;

@@ -7,7 +7,7 @@ use egui::{RichText, Ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, Text};
 use crate::devices::hiperface::state::commutation::{
-    CommutationAction as Assistant, Form, Slot, Source, Vector, kind_words, may_read,
+    CommutationAction as Assistant, Form, Slot, Source, Vector, check_can_read, kind_words,
 };
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
@@ -18,10 +18,12 @@ use crate::ui::controls::{
 use crate::ui::{Theme, icons};
 
 const NUMBER: f32 = 96.0;
-/// Width of the column of read buttons.
+/// Width of the column with the read buttons.
 const READ: f32 = 176.0;
 const POSITION: f32 = 80.0;
-/// The least width for two columns.
+/// Width from which both limits are in one row.
+const BOTH_LIMITS: f32 = 420.0;
+/// Minimum width for a layout with two columns.
 const COLUMNS: f32 = 700.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
@@ -34,18 +36,18 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         (0.5, COLUMNS),
         (&mut *actions, &mut form),
         |ui, (_, form)| {
-            before(ui, theme, form);
+            before_ui(ui, theme, form);
             theme.gap(ui);
-            motor(ui, theme, encoder, form);
+            motor_ui(ui, theme, encoder, form);
             if wide {
                 theme.gap(ui);
                 result::report_ui(ui, theme, encoder);
             }
         },
         |ui, (actions, form)| {
-            rest(ui, theme, encoder, form, actions);
+            rest_ui(ui, theme, encoder, form, actions);
             theme.gap(ui);
-            second(ui, theme, encoder, form, actions);
+            second_ui(ui, theme, encoder, form, actions);
             theme.gap(ui);
             result::offset_ui(ui, theme, encoder);
             theme.gap(ui);
@@ -67,7 +69,7 @@ fn ask(encoder: &Encoder, action: Assistant) -> Action {
     Action::device(encoder.session.id, Hiperface::Commutation(action))
 }
 
-fn before(ui: &mut Ui, theme: &Theme, form: &mut Form) {
+fn before_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     card(ui, theme, TEXTS.text("commutation.before"), |ui| {
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(icons::WARNING).color(theme.palette.warn));
@@ -79,17 +81,32 @@ fn before(ui: &mut Ui, theme: &Theme, form: &mut Form) {
             ui.checkbox(&mut form.released, say(theme, "commutation.released"));
         });
         let (current, time) = form.limit_problems();
-        number(ui, theme, "commutation.current", &mut form.current_a, "");
+        limits_ui(ui, theme, form);
         problem_ui(ui, theme, current.as_ref());
-        number(ui, theme, "commutation.time", &mut form.time_s, "");
         problem_ui(ui, theme, time.as_ref());
         entry(ui, theme, &say(theme, "commutation.vector"), |ui| {
             let vectors = Vector::ALL.map(|vector| (vector, say(theme, vector.word())));
             choice(ui, &say(theme, "commutation.vector"), &mut form.vector, vectors);
         });
         if form.vector == Vector::Other {
-            number(ui, theme, "commutation.vector_angle", &mut form.vector_deg, "0");
+            number_ui(ui, theme, "commutation.vector_angle", &mut form.vector_deg, "0");
         }
+    });
+}
+
+/// Draws the entries of the current limit and time limit, in one row if there is room.
+fn limits_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
+    if ui.available_width() < BOTH_LIMITS {
+        number_ui(ui, theme, "commutation.current", &mut form.current_a, "");
+        number_ui(ui, theme, "commutation.time", &mut form.time_s, "");
+        return;
+    }
+    let [current, time] = ["commutation.current", "commutation.time"].map(|id| say(theme, id));
+    entry(ui, theme, &current, |ui| {
+        text_entry(ui, &mut form.current_a, NUMBER, &current, "");
+        ui.add_space(theme.space.between);
+        ui.label(theme.label(&time));
+        text_entry(ui, &mut form.time_s, NUMBER, &time, "");
     });
 }
 
@@ -99,11 +116,11 @@ fn problem_ui(ui: &mut Ui, theme: &Theme, problem: Option<&Text>) {
     }
 }
 
-fn motor(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
+fn motor_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
     card(ui, theme, TEXTS.text("commutation.motor"), |ui| {
-        number(ui, theme, "commutation.pole_pairs", &mut form.pole_pairs, "");
+        number_ui(ui, theme, "commutation.pole_pairs", &mut form.pole_pairs, "");
         let of_type = Form::default().periods(encoder.geometry()).map(|periods| periods.to_string());
-        number(ui, theme, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
+        number_ui(ui, theme, "commutation.periods", &mut form.periods, &of_type.unwrap_or_default());
         if let Some(words) = form.other_periods(encoder.geometry()) {
             verdict_ui(ui, theme, Verdict::Warn, &words);
         }
@@ -122,9 +139,9 @@ fn motor(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
             choice(ui, &say(theme, "commutation.source"), &mut form.source, sources);
         });
         if form.source == Source::Typed {
-            number(ui, theme, "commutation.phase", &mut form.phase, &theme.number(0.0, 4));
+            number_ui(ui, theme, "commutation.phase", &mut form.phase, &theme.number(0.0, 4));
         }
-        let limit = number(ui, theme, "commutation.limit", &mut form.limit_deg, "5");
+        let limit = number_ui(ui, theme, "commutation.limit", &mut form.limit_deg, "5");
         limit.on_hover_text(say(theme, "commutation.limit_hint"));
         if let Err(why) = form.inputs(encoder.geometry()) {
             paragraph(ui, theme.label(theme.words(&why)));
@@ -132,11 +149,11 @@ fn motor(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
     });
 }
 
-fn number(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) -> egui::Response {
+fn number_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String, hint: &str) -> egui::Response {
     labelled_entry(ui, theme, TEXTS.text(id), text, NUMBER, hint)
 }
 
-fn rest(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
+fn rest_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
     let commutation = &encoder.commutation;
     let any = Slot::ALL.into_iter().any(|slot| commutation.reading(slot).is_some());
     let mut clear = false;
@@ -171,10 +188,10 @@ fn rest(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions:
     }
 }
 
-fn second(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
+fn second_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("commutation.second"), |ui| {
         paragraph(ui, theme.label(say(theme, "commutation.second_words")));
-        number(ui, theme, "commutation.second_angle", &mut form.second_deg, "90");
+        number_ui(ui, theme, "commutation.second_angle", &mut form.second_deg, "90");
         let [_, _, typed] = &mut form.typed;
         slot(ui, theme, encoder, Slot::Second, typed, actions);
         match encoder.commutation.second(encoder.geometry()) {
@@ -185,7 +202,7 @@ fn second(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, action
     });
 }
 
-/// Draws one position, read or entered, with both ways to obtain it.
+/// Draws one position, read or entered, and the controls for both methods.
 fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut String, actions: &mut Vec<Action>) {
     let commutation = &encoder.commutation;
     let (read, take) = match slot {
@@ -193,14 +210,13 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
         Slot::OtherSide => ("commutation.read_other", "commutation.use_other"),
         Slot::Second => ("commutation.read_second", "commutation.use_second"),
     };
-    ui.add_space(theme.space.inside);
     let reading = commutation.reading(slot);
     let shown = match reading {
         Some(reading) => theme.mono(theme.number(reading.fine_periods, 5)),
         None => theme.mono("–").color(theme.palette.muted),
     };
     ui.horizontal_wrapped(|ui| {
-        let allowed = may_read(commutation, encoder.session.is_ready());
+        let allowed = check_can_read(commutation, encoder.session.is_ready());
         // All of the same width, so that the entries form one column.
         let size = egui::vec2(READ.min(ui.available_width()), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {

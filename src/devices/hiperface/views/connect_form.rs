@@ -24,7 +24,7 @@ pub(crate) struct SearchView {
     power_cycle: bool,
 }
 
-/// How long to wait for the encoder's supply to be switched off and on.
+/// Time allowed for switching the encoder's supply off and on.
 const POWER_CYCLE: Duration = Duration::from_secs(30);
 
 pub(crate) struct HiperfaceConnectForm;
@@ -50,13 +50,13 @@ impl TypedConnectForm for HiperfaceConnectForm {
         segments(ui, theme, &mut form.kind, kinds);
         ui.add_space(theme.space.between);
         match form.kind {
-            LinkKind::Virtual => simulated(ui, theme, form),
+            LinkKind::Virtual => simulated_ui(ui, theme, form),
             LinkKind::Serial => serial(ui, theme, dialog, &mut form.port, actions),
             LinkKind::Tcp => network(ui, theme, &mut form.host, &mut form.tcp_port),
             LinkKind::Replay => recording(ui, theme, &mut form.file, actions),
         }
         if form.kind != LinkKind::Replay {
-            line(ui, theme, form);
+            line_ui(ui, theme, form);
             more_settings_ui(ui, theme, form, open);
         }
         if form.kind != LinkKind::Replay {
@@ -66,7 +66,7 @@ impl TypedConnectForm for HiperfaceConnectForm {
     }
 }
 
-fn simulated(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
+fn simulated_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
     entry(ui, theme, &say(theme, "connect.model"), |ui| {
         let mut at = LinkForm::models().position(|model| model == form.model).unwrap_or(0);
         let models = LinkForm::models().enumerate().map(|(at, model)| (at, model.to_ascii_uppercase()));
@@ -79,7 +79,7 @@ fn simulated(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
     typed(ui, theme, say, LinkForm::of_the_virtual(), &mut form.typed);
 }
 
-fn line(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
+fn line_ui(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
     entry(ui, theme, &theme.say("settings_card.baud"), |ui| {
         let bauds = BAUDS.map(|baud| (baud, baud.to_string()));
         choice(ui, &theme.say("settings_card.baud"), &mut form.baud, bauds);
@@ -142,7 +142,7 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchView, ac
             }
         });
         if let Some(search) = search {
-            found(ui, theme, search, actions);
+            found_ui(ui, theme, search, actions);
         }
     });
 }
@@ -151,7 +151,7 @@ fn find(action: SearchAction) -> Action {
     Action::Connect(Connect::find::<SearchFinder>(action))
 }
 
-fn found(ui: &mut Ui, theme: &Theme, search: &Search, actions: &mut Vec<Action>) {
+fn found_ui(ui: &mut Ui, theme: &Theme, search: &Search, actions: &mut Vec<Action>) {
     for (at, found) in search.found.iter().enumerate() {
         ui.horizontal(|ui| {
             let word = TEXTS.text("find.choose").with("address", format!("{:02X}h", found.address));

@@ -20,11 +20,11 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &m
         |ui, (actions, _)| {
             identity(ui, theme, encoder, actions);
             theme.gap(ui);
-            status(ui, theme, encoder, actions);
-            extended_label(ui, theme, encoder);
+            status_ui(ui, theme, encoder, actions);
+            extended_label_ui(ui, theme, encoder);
         },
         |ui, (actions, restart)| {
-            check(ui, theme, encoder, restart, actions);
+            check_ui(ui, theme, encoder, restart, actions);
             theme.gap(ui);
             wiring::card_ui(ui, theme);
         },
@@ -45,7 +45,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
         };
         ui.label(theme.value(&identity.name));
         ui.add_space(theme.space.inside);
-        facts(ui, theme, identity);
+        facts_ui(ui, theme, identity);
         if let Some(memory) = identity.memory {
             let id = if memory.fields == 1 { "encoder_card.memory_one" } else { "encoder_card.memory_words" };
             let text = TEXTS
@@ -58,12 +58,12 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
             let total = format!("{} B", identity.label.eeprom_bytes());
             row(ui, theme, &say(theme, "encoder_card.memory"), theme.mono(total));
         }
-        line_quality(ui, theme, encoder);
+        line_quality_ui(ui, theme, encoder);
     });
 }
 
-/// Draws the repetitions on the line while connected.
-fn line_quality(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
+/// Draws the number of repetitions on the line while connected.
+fn line_quality_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     if encoder.session.line().is_none() {
         return;
     }
@@ -73,7 +73,7 @@ fn line_quality(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     row(ui, theme, &say(theme, "encoder_card.line"), words);
 }
 
-fn facts(ui: &mut Ui, theme: &Theme, identity: &Identity) {
+fn facts_ui(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     let none = || theme.say("encoder_card.not_told");
     let or_none = |text: &str| if text.is_empty() { none() } else { text.to_owned() };
     let serial = &identity.serial;
@@ -91,7 +91,7 @@ fn facts(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     row(ui, theme, &say(theme, "encoder_card.options"), theme.mono(format!("{:02X}h", identity.label.options)));
 }
 
-fn status(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn status_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let read = |ui: &mut Ui| {
         if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_CLOCKWISE, &theme.say("status_card.read"))
             .clicked()
@@ -125,7 +125,7 @@ fn status(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Actio
     });
 }
 
-fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
+fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &mut bool, actions: &mut Vec<Action>) {
     card(ui, theme, "check_card.title", |ui| {
         let lines = encoder.check.as_deref().map(words::check);
         lines_ui(ui, theme, lines.as_deref(), TEXTS.text("check_card.nothing"));
@@ -137,7 +137,7 @@ fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, restart: &mut bool, acti
     });
 }
 
-fn extended_label(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
+fn extended_label_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     let Some(bytes) = encoder.identity.as_ref().and_then(|identity| identity.extended_label.as_deref()) else { return };
     theme.gap(ui);
     folding_card(ui, theme, TEXTS.text("label_card.title"), |ui| {

@@ -50,7 +50,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     raw_row(ui, theme, format!("{:08X}h  {}", reading.raw, reading.raw));
 }
 
-/// Draws the menu of the values read with the position.
+/// Draws the menu for selecting the values read along with the position.
 pub(crate) fn watch_menu(
     ui: &mut Ui,
     theme: &Theme,

@@ -61,19 +61,19 @@ pub(super) fn page_ui(
     egui::Panel::bottom("memory_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
         edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::EditKind::Bytes, actions);
     });
-    map(ui, theme, encoder, &wanted, memory, view, actions);
+    map_ui(ui, theme, encoder, &wanted, memory, view, actions);
     ui.add_space(theme.space.between);
     let selected = wanted.iter().find(|field| field.number == view.field).filter(|_| !view.free);
     match (selected, memory) {
         (Some(field), _) => field_ui(ui, theme, encoder, field, memory, view, actions),
-        (None, Some(memory)) => create(ui, theme, encoder, memory, view, actions),
+        (None, Some(memory)) => create_ui(ui, theme, encoder, memory, view, actions),
         (None, None) => {
             ui.label(theme.label(say(theme, "memory.no_fields")));
         }
     }
 }
 
-fn map(
+fn map_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -214,7 +214,7 @@ fn field_ui(
     }));
 }
 
-/// Draws the selected field and its actions; disabled ones show the reason.
+/// Draws the selected field and its actions; disabled actions show the reason.
 fn field_header_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -237,9 +237,9 @@ fn field_header_ui(
         if allowed_button(ui, theme, &ready().and_then(|()| rules::status(field)), icon, &say(theme, word)).clicked() {
             change = Some(Change::LockField { number: field.number, lock });
         }
-        code_menu(ui, theme, &ready().and_then(|()| rules::status(field)), field, &mut change);
+        code_menu_ui(ui, theme, &ready().and_then(|()| rules::status(field)), field, &mut change);
         let resizable = ready().and_then(|()| rules::resizable(memory, field));
-        size_menu(ui, theme, &resizable, memory, (field, &encoder.staged), &mut change);
+        size_menu_ui(ui, theme, &resizable, memory, (field, &encoder.staged), &mut change);
         let deletable = ready().and_then(|()| rules::delete(memory, field, &encoder.staged));
         if allowed_button(ui, theme, &deletable, icons::TRASH, &say(theme, "memory.delete")).clicked() {
             change = Some(Change::DeleteField { number: field.number });
@@ -248,7 +248,7 @@ fn field_header_ui(
     actions.extend(change.map(|change| Action::device(encoder.session.id, Hiperface::Plan(change))));
 }
 
-fn code_menu(ui: &mut Ui, theme: &Theme, allowed: &rules::Allowed, field: &FieldImage, change: &mut Option<Change>) {
+fn code_menu_ui(ui: &mut Ui, theme: &Theme, allowed: &rules::Allowed, field: &FieldImage, change: &mut Option<Change>) {
     let word = say(theme, "memory.code");
     ui.add_enabled_ui(allowed.is_ok(), |ui| {
         let menu = ui.menu_button(format!("{}  {word}", icons::KEY), |ui| {
@@ -269,7 +269,7 @@ fn code_menu(ui: &mut Ui, theme: &Theme, allowed: &rules::Allowed, field: &Field
     });
 }
 
-fn size_menu(
+fn size_menu_ui(
     ui: &mut Ui,
     theme: &Theme,
     allowed: &rules::Allowed,
@@ -300,7 +300,7 @@ fn size_menu(
     name(menu.response, true, &word);
 }
 
-fn create(
+fn create_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,

@@ -45,7 +45,7 @@ pub(crate) struct HiperfaceUiState {
     values: values::ValuesUiState,
     setup: setup::SetupUiState,
     check_restart: bool,
-    /// Typed number of an analogue channel to watch.
+    /// Number of the analogue channel to watch, as typed.
     channel: String,
 }
 
@@ -117,7 +117,7 @@ impl TypedDeviceView for HiperfaceView {
     }
 }
 
-/// Returns a text of this catalogue, or a common one, in the window language.
+/// Returns a message from this catalogue or the common one, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -53,21 +53,21 @@ pub(super) fn page_ui(
         theme,
         (actions, view),
         |ui, (actions, view)| {
-            position(ui, theme, encoder, view, actions);
+            position_ui(ui, theme, encoder, view, actions);
             theme.gap(ui);
-            codes(ui, theme, encoder, view, actions);
+            codes_ui(ui, theme, encoder, view, actions);
         },
         |ui, (actions, view)| {
-            address(ui, theme, encoder, view, actions);
+            address_ui(ui, theme, encoder, view, actions);
             theme.gap(ui);
-            settings(ui, theme, encoder, view, actions);
+            settings_ui(ui, theme, encoder, view, actions);
             theme.gap(ui);
-            restart(ui, theme, encoder, actions);
+            restart_ui(ui, theme, encoder, actions);
         },
     );
 }
 
-/// Passes a change on, or stores the reason why it cannot be made.
+/// Submits a change, or stores the reason why it cannot be made.
 fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Text>, actions: &mut Vec<Action>) {
     match change {
         Ok(change) => {
@@ -78,7 +78,7 @@ fn plan(encoder: &Encoder, change: Result<Change, Text>, problem: &mut Option<Te
     }
 }
 
-fn position(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
+fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     let geometry = encoder.identity.as_ref().and_then(|identity| identity.geometry);
     let kit = encoder.identity.as_ref().and_then(|identity| identity.kit);
     card(ui, theme, TEXTS.text("position_card.title"), |ui| {
@@ -121,7 +121,7 @@ fn position(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiSta
     });
 }
 
-fn codes(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
+fn codes_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("codes_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "codes_card.words")));
         entry(ui, theme, &say(theme, "codes_card.number"), |ui| {
@@ -161,7 +161,7 @@ fn codes(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState,
     });
 }
 
-fn address(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
+fn address_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     let now = encoder.identity.as_ref().map_or_else(|| "–".to_owned(), |own| format!("{:02X}h", own.address));
     folding_card(ui, theme, TEXTS.text("address_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "address_card.words")));
@@ -179,7 +179,7 @@ fn address(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiStat
     });
 }
 
-fn settings(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
+fn settings_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut SetupUiState, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("settings_card.title"), |ui| {
         let Some(stored) = encoder.identity.as_ref().map(|identity| identity.label.settings) else {
             ui.label(theme.label(say(theme, "settings_card.nothing")));
@@ -232,7 +232,7 @@ fn chosen_settings(stored: LineSettings) -> Chosen {
     }
 }
 
-fn restart(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn restart_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     folding_card(ui, theme, TEXTS.text("restart_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "restart_card.words")));
         if enabled_button(ui, encoder.session.is_ready(), icons::POWER, &say(theme, "restart_card.run")).clicked() {

@@ -31,12 +31,12 @@ pub(super) fn page_ui(
         ui,
         theme,
         (actions, view),
-        |ui, (actions, view)| analogue(ui, theme, encoder, view, actions),
+        |ui, (actions, view)| analogue_ui(ui, theme, encoder, view, actions),
         |ui, (actions, _)| counter(ui, theme, encoder, actions),
     );
 }
 
-fn analogue(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut ValuesUiState, actions: &mut Vec<Action>) {
+fn analogue_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut ValuesUiState, actions: &mut Vec<Action>) {
     let palette = theme.palette;
     card(ui, theme, TEXTS.text("analogue_card.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "analogue_card.words")));

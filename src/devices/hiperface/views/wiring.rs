@@ -9,10 +9,10 @@ use crate::ui::Theme;
 use crate::ui::controls::{folding_card, paragraph};
 use crate::ui::wiring::wires_ui;
 
-/// Width of the name column.
+/// Width of the column with the wire names.
 const WIRE: f32 = 56.0;
 
-/// Wire names in the manual with their signals.
+/// Wire names from the manual, with their signals.
 const WIRES: [(&str, &str); 8] = [
     ("US", "wiring.supply"),
     ("GND", "wiring.ground"),
@@ -42,9 +42,9 @@ mod tests {
     use crate::devices::hiperface::state::TEXTS;
     use crate::ui::wiring::{check_notes, check_wires};
 
-    /// Issue 22.23: HIPERFACE manual, "Hardware im Regler" (eight lines, 7…12 V, typically 8 V, overall screen, twisted in
-    /// pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485), figure 15 (130 Ω and 1 kΩ built in; BUS version: at most 8, no
-    /// 130 Ω, terminated at the one farthest from the master).
+    /// Issue 22.23: HIPERFACE manual, "Hardware im Regler" (eight lines, 7…12 V, typically 8 V, overall screen, twisted
+    /// in pairs), figure 11 (at most 250 mA, 1 Vpp, RS-485), figure 15 (130 Ω and 1 kΩ built in; BUS version: at most
+    /// 8, no 130 Ω, terminated at the one farthest from the master).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         check_wires(

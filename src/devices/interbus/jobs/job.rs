@@ -13,7 +13,7 @@ use crate::devices::interbus::protocol::{
 };
 use crate::store::DeviceKey;
 
-/// Store count from which the user is warned of wear (reference 3: some 200, at most 500).
+/// Store count from which the user is warned of wear (reference 3: about 200, at most 500).
 pub const WEAR_WARNING: u64 = 150;
 /// Store count beyond which the user has to confirm once more.
 pub const WEAR_ASK: u64 = NOMINAL_STORES as u64;
@@ -22,31 +22,31 @@ pub const WEAR_LAST: u64 = GUARANTEED_STORES as u64;
 /// Store count at which the EEPROM is considered worn.
 pub const WEAR_LIMIT: u64 = 450;
 
-/// Returns the store limit for a plan with the given cost, unless forced. The EEPROM is already worn at the limit, and
-/// a plan that stores nothing causes no wear.
+/// Returns the store limit for a plan with the given cost, unless forced. The EEPROM is worn once the limit is
+/// reached, and a plan that stores nothing causes no wear.
 pub const fn wear_limit(cost: u64) -> u64 {
     if cost == 0 { u64::MAX } else { WEAR_LIMIT - 1 }
 }
 
-/// A job for an INTERBUS encoder's session. All jobs but the first and [`Position`](Self::Position) briefly replace the
-/// position and make cam outputs invalid; reading a cam program selects it. Afterwards the encoder returns to its
-/// previous mode, unless the job selects another one.
+/// A job for a session with an INTERBUS encoder. All jobs except [`Hello`](Self::Hello) and
+/// [`Position`](Self::Position) briefly replace the position and make cam outputs invalid; reading a cam program
+/// selects it. Afterwards the encoder returns to its previous mode, unless the job selects another one.
 #[derive(Debug)]
 pub enum InterbusJob {
     /// Reads the IN word for a window that has just connected, without sending anything to the encoder.
     Hello,
-    /// Everything that can be read without selecting a cam program.
+    /// Reads everything that can be read without selecting a cam program.
     Survey,
     /// Reads the given cam programs and the window shift.
     Programs(Vec<ProgramNumber>),
     Identify,
     Status,
-    /// Checks gateway and encoder, with a verdict a line.
+    /// Checks the gateway and the encoder, with one verdict per line.
     Check,
     /// Reads the IN word once, without sending anything to the encoder.
     Position,
     Read(Item),
-    /// Anything that can be read out, a register of the chip as well.
+    /// Reads a single read-out, which may also be a register of the chip.
     ReadOut(ReadOut),
     /// Selects another mode (position, speed, or a cam program), in which the encoder stays.
     Select(StartupMode),
@@ -56,7 +56,8 @@ pub enum InterbusJob {
     /// Plans a change without writing anything.
     Prepare(Change),
     Commit(Box<Commit>),
-    /// Ends an earlier parameterisation, error or read-out. Values set and not stored are stored by that, and counted.
+    /// Ends an earlier parameterisation, error or read-out. This stores values that were set but not stored, and counts
+    /// as a store.
     LeadBack,
 }
 
@@ -69,11 +70,11 @@ pub enum Change {
     /// Writes the values in the image; items not in the image are left unchanged and are not read.
     Write(Box<Image>),
     Item(Item, ItemValue),
-    /// Stores the preset and sets the current shaft position to it; only at standstill.
+    /// Stores the preset and assigns it to the current shaft position, only at standstill.
     Preset {
         value: u32,
     },
-    /// Restores the factory settings; experimental (reference 6.10).
+    /// Restores the factory settings. Experimental (reference 6.10).
     Default,
 }
 
@@ -81,7 +82,7 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edits; any not yet written remain edits.
+    /// Edited values; those not yet written remain as edits.
     Edits,
     Preset,
     Default,
@@ -103,7 +104,7 @@ pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: InterbusPlan,
     pub identity: Identity,
-    /// Parameters of the position, as read for the plan.
+    /// Position parameters as read for the plan.
     pub parameters: Parameters,
     /// Number of stores recorded for the encoder on this computer, or `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
@@ -111,28 +112,28 @@ pub struct Prepared {
     pub unchanged: u64,
     /// Items of a profile that the encoder does not have.
     pub missing: Vec<String>,
-    /// Values of the mounting that differ and are left alone.
+    /// Mounting values that differ and are left unchanged.
     pub mounting_left: Vec<Item>,
     pub other_type: Option<OtherType>,
-    /// Mounting values that are written although they come from another device; they must be set up again.
+    /// Mounting values that are written although they come from another device, and must therefore be set up again.
     pub mounting_written: Vec<Item>,
 }
 
-/// The used life of an EEPROM.
+/// Wear of an EEPROM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wear {
-    /// Store count after the plan; the user should be told that stores are limited.
+    /// Store count after the plan. The user should be told that stores are limited.
     Known(u64),
-    /// Store count after the plan, more than the manufacturer specifies.
+    /// Store count after the plan, which exceeds the manufacturer's specification.
     Ask(u64),
-    /// Store count after the plan, which is refused unless forced.
+    /// Store count after the plan. The plan is refused unless forced.
     Worn(u64),
-    /// The number of earlier stores is unknown; the plan is refused unless forced.
+    /// The number of earlier stores is unknown, so the plan is refused unless forced.
     Unknown,
 }
 
 impl Wear {
-    /// Returns the wear after the given number of stores, or `None` if it needs no mention.
+    /// Returns the wear after the given number of stores, or `None` if it is not worth mentioning.
     pub const fn of(stores: u64) -> Option<Self> {
         match stores {
             WEAR_LIMIT.. => Some(Wear::Worn(stores)),
@@ -144,7 +145,7 @@ impl Wear {
 }
 
 impl Prepared {
-    /// Returns the wear after the plan, or `None` if it needs no mention.
+    /// Returns the wear after the plan, or `None` if it is not worth mentioning.
     pub fn wear(&self) -> Option<Wear> {
         let cost = self.plan.write_cycles();
         let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(Wear::Unknown) };

@@ -11,7 +11,7 @@ use crate::store::{DeviceKey, Drafts, EntryId, Logbook, LogbookError, Outcome, S
 
 use super::job::key_of;
 
-/// Description in the logbook entry.
+/// Description of the logbook entry.
 const WHAT: &str = "cam programs read, each of which may be stored when it is left";
 
 pub(super) struct Notes {
@@ -29,7 +29,7 @@ impl Notes {
         self.store.excursions()
     }
 
-    /// Returns the name for the notes. A virtual encoder is marked, since it may have the serial number of a real one.
+    /// Returns the name used in notes. A virtual encoder is marked, since it may have the serial number of a real one.
     fn name(&self, serial_number: &str) -> String {
         format!("{serial_number}{}", if self.is_virtual { " (virtual)" } else { "" })
     }
@@ -45,7 +45,7 @@ impl Notes {
     }
 }
 
-/// Logs a failure to record, which stops nothing.
+/// Logs a recording error, which does not stop anything.
 fn warn<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
     ended.inspect_err(|why| tracing::warn!("{why}")).ok()
 }
@@ -87,8 +87,8 @@ impl Journal for Notes {
     }
 }
 
-/// Formats an excursion: the mode in which the encoder was found, then the modes it was switched to, with the numbers
-/// of read-out 9.
+/// Formats an excursion: the mode in which the encoder was found, then the modes to which it was switched, with the
+/// numbers of read-out 9.
 fn emit(excursion: &Excursion) -> String {
     let modes: Vec<u32> =
         std::iter::once(excursion.found).chain(excursion.sent.iter().copied()).map(StartupMode::emit).collect();
@@ -105,7 +105,7 @@ fn parse(text: &str) -> Option<Excursion> {
 mod tests {
     use super::*;
 
-    /// Read-out 9: 1 is position mode, 6 cam program 4.
+    /// In read-out 9, 1 is position mode and 6 is cam program 4.
     #[test]
     fn an_excursion_is_stored_as_mode_numbers() {
         let mode = |number| StartupMode::parse(Value::of_word(number));

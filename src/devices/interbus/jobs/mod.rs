@@ -44,7 +44,7 @@ impl fmt::Debug for Interbus {
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Interbus {
-    /// Returns the host side of the process data, which reports each step of the handshake.
+    /// Returns the process data master, which reports each step of the handshake.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext, on_step: impl FnMut(Handshake) + 'a) -> Master<'a> {
         let notes = Notes::of(context.store.clone(), context.is_virtual);
         Master::new(context.ctx(&mut *self.wire), &mut self.station).with_reporter(on_step).with_journal(notes)
@@ -69,7 +69,7 @@ impl Session<Interbus> {
         &self.device.station
     }
 
-    /// Returns the motor on the shaft, or `None` if the encoder is not in this process.
+    /// Returns the motor on the shaft, or `None` if the encoder is not simulated in this process.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }
@@ -81,7 +81,7 @@ impl Device for Interbus {
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
     type Sample = WordReading;
-    /// Values that can be watched: none, since reading any other value replaces the position.
+    /// Values that can be watched. There are none, since reading any other value replaces the position.
     type Watch = Infallible;
     type JobStep = JobStep;
 
@@ -159,8 +159,8 @@ impl Device for Interbus {
 type Steps<'s> = &'s mut dyn FnMut(u64, u64, JobStep);
 
 impl Interbus {
-    /// Runs jobs that only read, or that return the encoder to its mode. All of them briefly replace the position,
-    /// except reading the IN word.
+    /// Runs jobs that only read, or that return the encoder to its mode. All of them except reading the IN word briefly
+    /// replace the position.
     fn ask(
         &mut self,
         context: &mut SessionContext,

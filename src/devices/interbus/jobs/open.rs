@@ -12,7 +12,7 @@ use crate::store::Store;
 use crate::worker::open::{inside, margin, open_bytes, read_recording, simulated, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
-/// Checks a link URL for an INTERBUS encoder without opening the link.
+/// Checks the link URL of an INTERBUS encoder without opening the link.
 ///
 /// # Errors
 /// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
@@ -43,7 +43,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
     Ok(Session::to_gateway(wire, clock, station, store, motor))
 }
 
-/// Reads the settings of the gateway and of the virtual encoder. The latter apply only to a link to a virtual encoder.
+/// Reads the settings of the gateway and the virtual encoder. The latter only apply to a link to a virtual encoder.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Modbus | Scheme::Replay) {
         return Err(wrong_target_error(url.scheme, "sim:, modbus:, replay:"));
@@ -54,7 +54,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     Ok((station, config))
 }
 
-/// Removes the request number, which differs each time, so that a recording can answer any request.
+/// Removes the request number, which differs for each request, so that a recording can answer any request.
 fn without_number(entry: TraceEntry) -> TraceEntry {
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
     TraceEntry { bytes: MaskedBytes::masked(&bytes, &[0, 1]), ..entry }

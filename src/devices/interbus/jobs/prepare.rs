@@ -77,7 +77,7 @@ pub(super) fn prepare(
     })
 }
 
-/// Returns the programs that an image contains; the window shift can be read with any of them.
+/// Returns the programs that an image contains. The window shift can be read with any of them.
 fn affected_programs(wanted: &Image) -> Vec<ProgramNumber> {
     let known: Vec<ProgramNumber> = wanted.known().map(|(number, _)| number).collect();
     match wanted.shift {

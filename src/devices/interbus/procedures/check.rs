@@ -16,13 +16,13 @@ pub type InterbusStepResult = check::StepResult<CheckStep, CheckFinding>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
     Gateway,
-    /// The order of a word's two halves.
+    /// Order of the two halves of a word.
     WordOrder,
-    /// The IN word before any request: a position, cam outputs, or an error.
+    /// IN word before any request: a position, cam outputs, or an error.
     InputWord,
-    /// Identity, and whether steps and turns are plausible.
+    /// Identity of the encoder, and whether its steps and turns are plausible.
     Identity,
-    /// Read-outs, which show that OUT reaches the encoder and IN comes back.
+    /// Read-outs, which show that OUT reaches the encoder and that IN returns.
     Handshake,
     Temperature,
     Wear,
@@ -36,15 +36,15 @@ pub enum CheckFinding {
         /// The longest, in milliseconds.
         slowest_ms: u64,
     },
-    /// Words make sense in the configured order.
+    /// Words are meaningful in the configured order.
     OrderFits,
-    /// Words make sense only with their halves exchanged.
+    /// Words are meaningful only with their halves exchanged.
     OrderSwapped {
         input: u32,
         swapped: u32,
     },
     Runs(u32),
-    /// Bits that should be 0 are not.
+    /// Bits that should be 0 are set.
     Stray(u32),
     Error(ErrorWord),
     /// The encoder is being parameterised or read out by another master.
@@ -61,7 +61,7 @@ pub enum CheckFinding {
         preset: u32,
         last: u32,
     },
-    /// The encoder reports its steps minus one.
+    /// The encoder reports its number of steps minus one.
     StepsMinusOne,
     Mode(StartupMode),
     ReadOuts {
@@ -70,7 +70,7 @@ pub enum CheckFinding {
         each_ms: u64,
     },
     Failed(Error),
-    /// Tenths of a degree Celsius.
+    /// Temperature in tenths of a degree Celsius.
     Temperature(i32),
     Wear {
         /// Minimum number of stores.
@@ -79,13 +79,13 @@ pub enum CheckFinding {
     },
 }
 
-/// Number of IN word readings for measuring the gateway's reply time.
+/// Number of IN word readings used to measure the reply time of the gateway.
 const LOOKS: u32 = 20;
-/// Permissible temperature of electronics in a housing, in tenths of a degree Celsius (`U`: the manual gives no
+/// Permissible temperature of electronics in a housing, in tenths of a degree Celsius (`U`: the manual states no
 /// limits).
 const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;
 
-/// Runs the check, ending early only if the gateway fails. `wear` is called once the encoder is identified.
+/// Runs the check, which ends early only if the gateway fails. `wear` is called once the encoder is identified.
 ///
 /// # Errors
 /// Errors of the exchange.

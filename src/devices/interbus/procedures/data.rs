@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::Error;
 use crate::units::Moment;
 
-/// Cyclic process data of one encoder, with a clock.
+/// Cyclic process data of an encoder, with a clock.
 pub trait ProcessData {
-    /// Carries out one cycle: sends the OUT word and returns the IN word read after it.
+    /// Carries out one cycle, which sends the OUT word and then reads the IN word.
     ///
     /// # Errors
     /// Errors of the exchange, or cancellation.
@@ -27,12 +27,12 @@ pub trait ProcessData {
 
     fn now(&self) -> Moment;
 
-    /// Waits; ends early when cancelled.
+    /// Waits, but returns early if cancelled.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
     fn wait(&mut self, duration: Duration) -> Result<(), Error>;
 
-    /// Sets whether cancellation is ignored; returns the previous setting.
+    /// Sets whether cancellation is ignored, and returns the previous setting.
     fn shield(&mut self, shielded: bool) -> bool;
 }

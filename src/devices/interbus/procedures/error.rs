@@ -10,11 +10,11 @@ use crate::profile::DeviceError;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequestedItem {
-    /// Read the IN word: two input registers, function 4.
+    /// Read of the IN word: two input registers, function 4.
     Input { register: u16 },
-    /// Read the OUT word stored in the gateway: two holding registers, function 3.
+    /// Read of the OUT word stored in the gateway: two holding registers, function 3.
     Output { register: u16 },
-    /// Write an OUT word: two holding registers, function 16.
+    /// Write of an OUT word: two holding registers, function 16.
     Write { register: u16, word: u32 },
 }
 
@@ -48,7 +48,7 @@ impl fmt::Display for RequestedItem {
     }
 }
 
-/// A code with which a gateway refuses a request (Modbus application protocol 1.1b3, chapter 7).
+/// An exception code with which a gateway refuses a request (Modbus application protocol 1.1b3, chapter 7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exception(u8);
 
@@ -93,7 +93,7 @@ impl Exception {
         }
     }
 
-    /// Returns whether asking again may help.
+    /// Returns whether repeating the request may help.
     pub(super) const fn passes(self) -> bool {
         !matches!(self.0, 1..=3)
     }
@@ -108,7 +108,7 @@ pub enum Damage {
     Unit { requested: u8, got: u8 },
     #[error("a reply to function {got} instead of {requested}")]
     Function { requested: u8, got: u8 },
-    /// The reply covers different registers than requested, or a different number of them.
+    /// The reply covers registers other than those requested, or a different number of them.
     #[error("not the registers that were requested")]
     Registers,
 }
@@ -117,9 +117,9 @@ pub enum Damage {
 pub enum AwaitedWord {
     Echo,
     Value,
-    /// A running word: a position, a speed, or cam outputs.
+    /// A word sent during operation: a position, a speed, or cam outputs.
     Run,
-    /// The preset is shown as position.
+    /// The position equals the preset.
     Preset,
 }
 
@@ -140,7 +140,7 @@ pub enum Implausible {
     Gear(#[from] GearError),
     #[error("{0} is not a direction")]
     Direction(u32),
-    /// A preset, an edge or a shift out of range.
+    /// A preset, edge or shift is out of range.
     #[error("{value} for OUT {read:08X} is too large")]
     Value { read: u32, value: u32 },
 }
@@ -155,7 +155,7 @@ pub enum Error {
     Damaged {
         requested: RequestedItem,
         tries: u32,
-        /// Damage of the last reply received.
+        /// Damage found in the last reply received.
         cause: Damage,
     },
     /// Bytes keep arriving during the required silence.
@@ -188,37 +188,36 @@ pub enum Error {
     /// active.
     #[error("the encoder is being parameterised: IN is {input:08X}")]
     NotRunning { input: u32 },
-    /// IN words make sense only with their halves exchanged.
+    /// IN words are meaningful only with their halves exchanged.
     #[error("IN {input:08X} makes sense as {swapped:08X} only: the word order may be swapped")]
     WordOrder {
-        /// The word in the order received.
+        /// The word in the order in which it was received.
         input: u32,
         swapped: u32,
     },
     #[error("the encoder reports implausible data: {0}")]
     Implausible(#[from] Implausible),
-    /// The encoder does not enter the requested mode.
+    /// The encoder did not enter the requested mode.
     #[error("the encoder stays in mode {} instead of changing to {}", is.emit(), wanted.emit())]
     NoMode { wanted: StartupMode, is: StartupMode },
     #[error("mode {} cannot be selected", mode.emit())]
     NotSelectable { mode: StartupMode },
-    /// The encoder is in a mode that the manual does not define: the effect of any word other than a read-out is
+    /// The encoder is in a mode that the manual does not define, so the effect of any word other than a read-out is
     /// unknown.
     #[error("the encoder is in the unknown mode {}: values were read and nothing else was sent", mode.emit())]
     UnknownMode { mode: StartupMode },
-    /// The shaft is turning but must stand still.
+    /// The shaft is turning, but must stand still.
     #[error("the shaft is moving: from position {from} to {to}")]
     Moving { from: u32, to: u32 },
-    /// A written value does not read back.
+    /// A written value differs when read back.
     #[error("{item} is {reads} after {wanted} was written")]
     NotTaken { item: String, wanted: u32, reads: u32 },
     #[error("{item} has changed since the plan was made")]
     Changed { item: String },
-    /// Something ended early, and the encoder could not be led back.
+    /// The work ended early, and the encoder could not be returned to its mode.
     #[error("{cause}; the encoder could not be returned to operation: {standing}")]
     NotLedBack {
-        /// The error of the work, or the reason why the encoder could not be returned to its mode if the work
-        /// succeeded.
+        /// The error of the work. If the work succeeded, the reason why the encoder could not be returned to its mode.
         cause: Box<Error>,
         standing: LeftState,
     },
@@ -252,7 +251,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the gateway can no longer be reached, which makes further attempts useless.
+    /// Returns whether the gateway can no longer be reached, so that further attempts are useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent => true,

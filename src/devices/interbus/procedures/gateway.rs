@@ -20,23 +20,23 @@ use crate::link::Ctx;
 use crate::link::line::{LineState, SerialLine};
 use crate::units::Moment;
 
-/// Number of unanswered attempts before a gateway counts as lost; each may take its full time.
+/// Number of unanswered attempts after which a gateway counts as lost. Each attempt may take its full time.
 const SILENCES: u32 = 3;
 const TRIES: u32 = 5;
 /// Pause before a request to a busy gateway is repeated.
 const BUSY_PAUSE: Duration = Duration::from_millis(200);
 /// Pause after bytes that are not a frame; the next bytes start a new frame.
 const QUIET: Duration = Duration::from_millis(50);
-/// Interval of checking for cancellation.
+/// Interval at which cancellation is checked.
 const SLICE: Duration = Duration::from_millis(50);
-/// Number of bytes before a frame's function code: number, protocol, length, unit.
+/// Number of bytes before the function code of a frame: number, protocol, length, unit.
 const HEADER: usize = 7;
-/// Length of the shortest frame, a refusal.
+/// Length of the shortest frame, which is a refusal.
 const SHORTEST: usize = HEADER + 2;
-/// Set in the function of a refusal.
+/// Bit that is set in the function code of a refusal.
 const REFUSED: u8 = 0x80;
 
-/// Gateway for one job, with the encoder at its registers.
+/// A gateway for one job, with the encoder at its registers.
 pub struct Gateway<'a> {
     line: SerialLine<'a>,
     link: LinkParameters,
@@ -60,7 +60,7 @@ enum ExchangeError {
     Exception(Exception),
 }
 
-/// A complete frame, or bytes that do not form one, with their damage.
+/// A complete frame, or the bytes that do not form one, with their damage.
 type Whole = Result<Vec<u8>, (Damage, Vec<u8>)>;
 
 impl<'a> Gateway<'a> {
@@ -75,7 +75,7 @@ impl<'a> Gateway<'a> {
         (gateway, known)
     }
 
-    /// Sends a request and repeats it if a retry may help.
+    /// Sends a request, and repeats it if a retry may help.
     fn ask(&mut self, requested: RequestedItem) -> Result<Vec<u16>, Error> {
         let mut tries = 0;
         loop {
@@ -211,8 +211,8 @@ pub enum Fault {
     Refused(Exception),
 }
 
-/// Returns the fault of a traced frame received after the given request, or `None` if the frame answers that request
-/// or, by its number, an earlier one.
+/// Returns the fault of a traced frame received after the given request. Returns `None` if the frame answers that
+/// request or, by its number, an earlier one.
 pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     let broken = |damage| Some(Fault::Broken(damage));
     let length = guess_response_frame_len(received, ModbusProto::TcpUdp).map(usize::from);
@@ -241,7 +241,7 @@ fn requested_item(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedIt
     Some((u16::from_be_bytes([number_high, number_low]), unit, requested))
 }
 
-/// Parses a reply with the right number.
+/// Parses a reply that has the right number.
 fn judge(request: &ModbusRequest, requested: RequestedItem, mut frame: Vec<u8>) -> Result<Vec<u16>, ExchangeError> {
     let [_, _, ..] = frame.as_slice() else { return Err(ExchangeError::Damage(Damage::Registers)) };
     // A recording has the number of its own request.
@@ -309,7 +309,7 @@ impl ProcessData for Gateway<'_> {
     }
 }
 
-/// The process data word in a frame.
+/// The process data word contained in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Carried {
     Out(u32),

@@ -17,7 +17,7 @@ pub struct Handshake {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WordReply {
-    /// A running word: a position, a speed or cam outputs.
+    /// A word sent during operation: a position, a speed or cam outputs.
     Runs,
     Busy,
     Echoed,

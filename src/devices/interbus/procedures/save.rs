@@ -27,7 +27,8 @@ impl Survey {
     }
 }
 
-/// Reads everything that can be restored; the cam programs only if requested, since each switches the encoder's outputs.
+/// Reads everything that can be restored; the cam programs only if requested, since each switches the encoder's
+/// outputs.
 ///
 /// # Errors
 /// Errors of the handshake and the exchange.

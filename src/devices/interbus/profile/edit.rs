@@ -6,12 +6,12 @@ use super::{
 };
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, Program, ProgramNumber, Value};
 
-/// Plans the changes that give an encoder the wanted values; only differences are written. Values that the wanted image
-/// lacks are left unchanged; `device` must contain all values of the wanted image.
+/// Plans the changes that give an encoder the wanted values; only differences are written. Values that the wanted
+/// image lacks are left unchanged; `device` must contain all values of the wanted image.
 ///
-/// Parameters come first, in a single parameterisation and in an order in which each is valid when sent; the cams are
-/// then within range. The window shift is set together with the first changed program. If no program changes, it is set
-/// on its own with the first program that was read, which costs a store cycle.
+/// Parameters come first, in a single parameterisation and in an order in which each is valid when sent, so that
+/// the cams are then within range. The window shift is set together with the first changed program. If no program
+/// changes, it is set with the first program that was read, which costs a store cycle.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -55,8 +55,8 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
     Ok(plan)
 }
 
-/// Plans to set the position at the present shaft angle to a value. The preset is always programmed, since it can be
-/// fired once per programming (reference 4), and then fired.
+/// Plans to set the position at the present shaft angle to a value. The preset is always programmed before it is
+/// fired, since it can be fired only once per programming (reference 4).
 ///
 /// # Errors
 /// The value exceeds the measuring range.
@@ -67,12 +67,13 @@ pub fn plan_preset(device: &Parameters, value: u32) -> Result<InterbusPlan, Plan
     Ok(InterbusPlan { base, ops: vec![Op::Parameterise(vec![change]), Op::FirePreset { value }] })
 }
 
-/// Plans to restore the factory settings: experimental (reference 6.10). The resulting values are not known in advance.
+/// Plans to restore the factory settings, which is experimental (reference 6.10). The resulting values are not
+/// known in advance.
 pub fn plan_default(device: &Parameters) -> InterbusPlan {
     InterbusPlan { base: Base { parameters: Some(*device), ..Base::default() }, ops: vec![Op::Default] }
 }
 
-/// Returns the parameter changes, ordered so that each number is within its limits when it is sent.
+/// Returns the parameter changes, ordered so that each value is within its limits when it is sent.
 fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<ParameterChange>, PlanError> {
     if device == wanted {
         return Ok(Vec::new());
@@ -120,7 +121,7 @@ fn cam_changes(number: ProgramNumber, from: &Program, to: &Program, steps: u32) 
     Ok(changes)
 }
 
-/// Checks that an active cam does not remain beyond a shortened range.
+/// Checks that no active cam remains beyond a shortened range.
 fn check_kept_cams(device: &Image, wanted: &Image) -> Result<(), PlanError> {
     if wanted.parameters.steps >= device.parameters.steps {
         return Ok(());
@@ -144,10 +145,10 @@ fn check_edge(item: Item, edge: Edge, position: Value, steps: u32) -> Result<(),
 }
 
 impl Edge {
-    /// Both edges, in the order in which they are set.
+    /// Both edges in the order in which they are set.
     pub const BOTH: [Edge; 2] = [Edge::Start, Edge::Stop];
 
-    /// Returns this edge of a cam.
+    /// Returns the position of this edge of a cam.
     pub const fn of(self, cam: Cam) -> Value {
         match self {
             Edge::Start => cam.start,

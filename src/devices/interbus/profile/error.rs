@@ -3,8 +3,8 @@
 use super::{Edge, Item};
 use crate::devices::interbus::protocol::{Flags, GearError, OutOfRange};
 
-/// A difference of type between a profile and an encoder, determined by their flags (manual, 10.2): only one of them
-/// counts turns, or only one reports its steps minus one, so that the same number denotes another gear.
+/// A type mismatch between a profile and an encoder, determined by their flags (manual, 10.2): only one of them counts
+/// turns, or only one reports its steps minus one, so that the same number denotes another gear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the profile is of a {} encoder, the encoder is a {} one", profile.type_name(), device.type_name())]
 pub struct OtherType {
@@ -14,7 +14,7 @@ pub struct OtherType {
     pub device: Flags,
 }
 
-/// The reason why a change cannot be planned. Nothing has been written.
+/// The reason why a change cannot be planned. Nothing has been written in this case.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another encoder.
@@ -34,7 +34,7 @@ pub enum PlanError {
     /// A parameter is out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// A mounting value, which remains as it is in the encoder, does not fit the values to be written.
+    /// A mounting value, which is left unchanged in the encoder, does not fit the values to be written.
     #[error("{item}, which is left alone as a value of the mounting: {value} is not within {low} to {high}")]
     MountingLeft {
         /// The item.

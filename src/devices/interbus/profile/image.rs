@@ -5,12 +5,12 @@ use std::str::FromStr;
 
 use crate::devices::interbus::protocol::{Gear, GearError, Parameter, Program, ProgramNumber, WindowShift};
 
-/// All values that can be written and read back. Values that were not read, or are not in a profile, are `None`.
+/// Encoder values that can be written and read back. Values that were not read or are not in a profile are `None`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Image {
     /// Position parameters.
     pub parameters: Parameters,
-    /// Shift of the position under its window in cam mode, common to all programs.
+    /// Shift of the position in the window in cam mode, common to all programs.
     pub shift: Option<WindowShift>,
     /// Cam programs, the first at index 0. A program that was read contains every cam, active or not.
     pub programs: [Option<Program>; ProgramNumber::COUNT],
@@ -19,15 +19,15 @@ pub struct Image {
 /// Position parameters of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Parameters {
-    /// Steps over all programmed turns, that is the measuring range. See [`Gear`].
+    /// Steps over all programmed turns, which is the measuring range. See [`Gear`].
     pub steps: u32,
-    /// Number of turns after which the position starts again.
+    /// Number of turns after which the position repeats.
     pub revolutions: u32,
     /// Counting direction.
     pub direction: Direction,
-    /// Position assigned to the present shaft angle when the preset is fired; belongs to the mounting.
+    /// Position assigned to the present shaft angle when the preset is fired. Depends on the mounting.
     pub preset: u32,
-    /// Zero shift; belongs to the mounting.
+    /// Zero shift. Depends on the mounting.
     pub zero_shift: u32,
 }
 
@@ -103,7 +103,7 @@ impl Parameters {
         }
     }
 
-    /// Returns the gear formed by steps and turns.
+    /// Returns the gear formed by the steps and turns.
     ///
     /// # Errors
     /// Steps or turns are out of range.
@@ -113,17 +113,17 @@ impl Parameters {
 }
 
 impl Image {
-    /// Creates an image that only contains parameters.
+    /// Creates an image that contains only parameters.
     pub const fn of(parameters: Parameters) -> Self {
         Image { parameters, shift: None, programs: [None; ProgramNumber::COUNT] }
     }
 
-    /// Returns a program, if known.
+    /// Returns a program, or `None` if it is unknown.
     pub fn program(&self, number: ProgramNumber) -> Option<&Program> {
         self.programs.get(usize::from(number.get() - 1)).and_then(Option::as_ref)
     }
 
-    /// Returns the entry of a program, mutably.
+    /// Returns a mutable reference to the entry of a program.
     pub fn program_mut(&mut self, number: ProgramNumber) -> Option<&mut Option<Program>> {
         self.programs.get_mut(usize::from(number.get() - 1))
     }

@@ -11,7 +11,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Parameter, Program, Pro
 pub enum Item {
     /// Steps over all programmed turns.
     Steps,
-    /// Number of turns after which the position starts again.
+    /// Number of turns after which the position repeats.
     Revolutions,
     /// Counting direction.
     Direction,
@@ -19,7 +19,7 @@ pub enum Item {
     Preset,
     /// Zero point shifting.
     ZeroShift,
-    /// Shift of the position under its window, common to all programs.
+    /// Shift of the position in the window, common to all programs.
     Shift,
     /// Mask of the active cams of a program.
     CamMask(ProgramNumber),
@@ -72,7 +72,7 @@ const ITEMS: &str = "steps, revolutions, direction, preset, zero-shift, shift, c
                      cam-mask:P, temperature and operating-time";
 
 impl Item {
-    /// Items without a number, in the order of comparison.
+    /// Items without a program or cam number, in comparison order.
     const PLAIN: [Item; 8] = [
         Item::Steps,
         Item::Revolutions,
@@ -84,18 +84,18 @@ impl Item {
         Item::OperatingTime,
     ];
 
-    /// Returns all writable items in comparison order: parameters, shift, then mask and cams of each program.
+    /// Returns all writable items in comparison order: parameters, the shift, then the mask and cams of each program.
     pub fn writable() -> impl Iterator<Item = Item> {
         let plain = Item::PLAIN.into_iter().filter(|item| item.is_writable());
         plain.chain(ProgramNumber::all().flat_map(Item::of_program))
     }
 
-    /// Returns the items of a program: mask and cams.
+    /// Returns the items of a program: its mask and cams.
     pub fn of_program(program: ProgramNumber) -> impl Iterator<Item = Item> {
         std::iter::once(Item::CamMask(program)).chain(CamNumber::all().map(move |cam| Item::Cam(program, cam)))
     }
 
-    /// Returns whether the item can be written; measured values cannot.
+    /// Returns whether the item can be written. Measured values cannot.
     pub const fn is_writable(self) -> bool {
         !matches!(self, Item::Temperature | Item::OperatingTime)
     }
@@ -132,7 +132,7 @@ impl Item {
         }
     }
 
-    /// Returns the unit of the value; empty if there is none.
+    /// Returns the unit of the value, or an empty string if there is none.
     pub const fn unit(self) -> &'static str {
         match self {
             Item::Steps | Item::Preset | Item::ZeroShift | Item::Cam(..) => "steps",
@@ -220,8 +220,8 @@ impl Image {
         })
     }
 
-    /// Sets the value of an item; returns `false` if the item cannot have the value. An unknown program becomes known
-    /// to this extent, with a mask of 0.
+    /// Sets the value of an item, or returns `false` if the item cannot have the value. A program that was unknown is
+    /// created with a mask of 0.
     pub fn put(&mut self, item: Item, value: ItemValue) -> bool {
         let parameters = &mut self.parameters;
         match (item, value) {

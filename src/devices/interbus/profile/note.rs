@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::Parameter;
 /// A single change within an operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangeStep {
-    /// Name of the changed item, or of an edge of one.
+    /// Name of the changed item, or of the changed edge of a cam.
     pub name: String,
     /// Old value.
     pub from: String,
@@ -16,7 +16,7 @@ pub struct ChangeStep {
 }
 
 impl Op {
-    /// Returns the changes, old and new, as one line.
+    /// Returns a single line with the old and new values of the changes.
     pub fn note(&self) -> String {
         match self {
             Op::FirePreset { value } => format!("position: → {value}"),
@@ -28,7 +28,8 @@ impl Op {
         }
     }
 
-    /// Returns the changes one by one: parameters, masks and cam edges. Empty if none of them is readable.
+    /// Returns the individual changes of parameters, masks and cam edges. The result is empty if none of them is
+    /// readable.
     pub fn steps(&self) -> Vec<ChangeStep> {
         let step = |name: String, from: &dyn ToString, to: &dyn ToString| ChangeStep {
             name,

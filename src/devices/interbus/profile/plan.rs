@@ -10,7 +10,7 @@ use crate::profile::{Operation, Plan};
 pub type InterbusPlan = Plan<Base, Op>;
 
 /// The values on which a plan is based: everything that its operations change, and the range of its cams. Unchanged
-/// programs are excluded, since reading one switches the outputs of the encoder.
+/// programs are excluded, since reading a program switches the outputs of the encoder.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Parameters, or `None` if the plan is empty.
@@ -21,15 +21,16 @@ pub struct Base {
     pub programs: Vec<(ProgramNumber, Program)>,
 }
 
-/// An operation, from entering a mode to leaving it. Each costs one EEPROM store cycle, except firing the preset.
+/// An operation, from entering a mode to leaving it. Each operation costs one EEPROM store cycle, except firing the
+/// preset.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Set parameters in a single parameterisation, in this order; `80000000` stores them (reference 4).
+    /// Sets parameters in a single parameterisation, in the given order; `80000000` stores them (reference 4).
     Parameterise(Vec<ParameterChange>),
-    /// Select and change a cam program; leaving it stores the changes (reference 5).
+    /// Selects and changes a cam program. Leaving the program stores the changes (reference 5).
     Program(ProgramChange),
-    /// `40000000`: sets the position at the present shaft angle to the preset value, which has been programmed before
-    /// (reference 4).
+    /// `40000000`: sets the position at the present shaft angle to the preset value, which must have been programmed
+    /// before (reference 4).
     FirePreset {
         /// Preset value.
         value: u32,
@@ -46,7 +47,7 @@ pub struct ParameterChange {
     pub parameter: Parameter,
     /// Present value.
     pub from: u32,
-    /// New value; equal to the present one if a preset is programmed again in order to be fired.
+    /// New value, which equals the present one if a preset is programmed again in order to be fired.
     pub to: u32,
 }
 
@@ -55,11 +56,11 @@ pub struct ParameterChange {
 pub struct ProgramChange {
     /// Program number.
     pub program: ProgramNumber,
-    /// Changed cam edges, ordered by cam, start first.
+    /// Changed cam edges, ordered by cam, with the start first.
     pub cams: Vec<CamChange>,
     /// Present and new activation mask.
     pub mask: Option<(u8, u8)>,
-    /// Present and new window shift. The shift is common to all programs and set together with one of them.
+    /// Present and new window shift. The shift is common to all programs and set together with a program.
     pub shift: Option<(WindowShift, WindowShift)>,
 }
 
@@ -76,7 +77,7 @@ pub struct CamChange {
     pub to: Value,
 }
 
-/// An edge of a cam. Both edge positions belong to the cam.
+/// An edge of a cam. The positions of both edges are part of the cam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Edge {
     /// First position of the cam.
@@ -95,8 +96,8 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns the changed items; a cam is listed once, whether one of its edges changes or both. The items changed by
-    /// restoring the factory settings are unknown.
+    /// Returns the changed items. A cam is listed once even if both of its edges change. The items changed by restoring
+    /// the factory settings are unknown.
     pub fn items(&self) -> Vec<Item> {
         match self {
             Op::Parameterise(changes) => {
@@ -116,7 +117,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes, counted as in a comparison.
+    /// Returns the number of changes, counted in the same way as in a comparison.
     pub fn weight(&self) -> u64 {
         match self {
             Op::FirePreset { .. } | Op::Default => 1,

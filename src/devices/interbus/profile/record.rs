@@ -12,13 +12,13 @@ use crate::profile::ron_text::Unknown;
 pub struct InterbusProfile {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// EEPROM content. Programs, cams or a shift that are not in the profile are `None`.
+    /// EEPROM content. Programs, cams or a window shift that are not in the profile are `None`.
     pub image: Image,
     /// Names of programs and cams, which the encoder does not store.
     pub names: Names,
-    /// Values that belong to the mounting and are never written to another encoder without asking.
+    /// Values that depend on the mounting and are never written to another encoder without asking.
     pub mounting: Vec<MountingMark>,
-    /// Values that change on their own or cannot be written: recorded, but neither compared nor restored.
+    /// Values that change on their own or cannot be written. They are recorded, but neither compared nor restored.
     pub recorded: Recorded,
     /// Unknown entries, preserved when the profile is saved.
     pub unknown: UnknownEntries,
@@ -27,9 +27,9 @@ pub struct InterbusProfile {
 /// Identity of an encoder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
-    /// Serial number, read-out 0, in decimal; empty if the profile belongs to no particular encoder.
+    /// Serial number, read-out 0, in decimal. Empty if the profile belongs to no particular encoder.
     pub serial_number: String,
-    /// Flags, read-out Ah: how steps are counted, and whether turns are; `None` if unknown.
+    /// Flags, read-out Ah: how steps are counted and whether turns are counted. `None` if unknown.
     pub flags: Option<Flags>,
     /// Unknown entries, preserved when the profile is saved.
     pub unknown: Unknown,
@@ -52,10 +52,10 @@ pub struct Recorded {
     pub unknown: Unknown,
 }
 
-/// A mark on a value that is valid for one encoder on one machine only.
+/// A mark on a value that is only valid for one encoder on one machine.
 pub type MountingMark = crate::profile::MountingMark<Item>;
 
-/// User-defined names of programs and cams; empty if there is no name.
+/// User-defined names of programs and cams. A name is empty if none was defined.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Names {
     programs: BTreeMap<ProgramNumber, String>,
@@ -71,7 +71,7 @@ pub struct UnknownEntries {
 }
 
 impl InterbusProfile {
-    /// Creates a profile from a reading and marks the values of the mounting.
+    /// Creates a profile from a reading and marks the mounting values.
     pub fn of(identity: ProfileIdentity, image: Image, recorded: Recorded) -> Self {
         let mut profile = InterbusProfile {
             identity,
@@ -85,7 +85,7 @@ impl InterbusProfile {
         profile
     }
 
-    /// Marks all unmarked items that belong to the mounting: preset and zero shift.
+    /// Marks the items that depend on the mounting: preset and zero shift.
     pub fn mark_mounting(&mut self) {
         for (item, meaning) in [(Item::Preset, "preset value"), (Item::ZeroShift, "zero point shifting")] {
             if !self.is_mounting(item) {
@@ -94,7 +94,7 @@ impl InterbusProfile {
         }
     }
 
-    /// Returns whether an item belongs to the mounting.
+    /// Returns whether an item is marked as a mounting value.
     pub fn is_mounting(&self, item: Item) -> bool {
         self.mounting.iter().any(|mark| mark.item == item)
     }

@@ -6,12 +6,12 @@ pub use crate::profile::RestoreOptions;
 use super::{Image, InterbusPlan, InterbusProfile, Item, OtherType, PlanError, ProfileIdentity, plan_edits};
 use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
 
-/// Present state of an encoder, as far as planning requires it.
+/// Present state of an encoder, as far as planning needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// EEPROM content: at least the programs of [`programs_needed`], with the shift if there are any.
+    /// EEPROM content: at least the programs of [`programs_needed`], and the window shift if there are any.
     pub image: Image,
 }
 
@@ -19,7 +19,7 @@ pub struct DeviceState {
 pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
 
 /// Returns the programs that must be read before a restore of this profile can be planned. The window shift is read
-/// together with one of them: with the first program if the profile only contains the shift.
+/// together with a program, which is the first one if the profile only contains the shift.
 pub fn programs_needed(profile: &InterbusProfile) -> Vec<ProgramNumber> {
     let of_cams = profile.image.known().map(|(number, _)| number);
     let all: Vec<ProgramNumber> = of_cams.collect();
@@ -29,10 +29,10 @@ pub fn programs_needed(profile: &InterbusProfile) -> Vec<ProgramNumber> {
     }
 }
 
-/// Plans a restore.
+/// Plans a restore. Nothing is written.
 ///
 /// # Errors
-/// See [`PlanError`]; nothing has been written.
+/// See [`PlanError`].
 pub fn plan_restore(
     profile: &InterbusProfile,
     device: &DeviceState,
@@ -68,7 +68,7 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
-/// Refuses an encoder other than that of the profile. A profile without a serial number fits any encoder.
+/// Refuses an encoder that does not match the profile. A profile without a serial number matches any encoder.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
@@ -83,7 +83,7 @@ pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option
     (what(profile) != what(device)).then_some(OtherType { profile, device })
 }
 
-/// Refuses an encoder other than that of the profile, unless the options allow it.
+/// Refuses an encoder that does not match the profile, unless the options allow it.
 ///
 /// # Errors
 /// As [`check_device`].

@@ -18,7 +18,7 @@ pub enum Unit {
 pub struct Scale {
     unit: Unit,
     steps: f64,
-    /// The encoder's position at the machine's 0.
+    /// Encoder position at the machine's zero.
     zero: u32,
 }
 
@@ -35,11 +35,11 @@ pub struct Placed {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{value} is not within {least} to {most}")]
 pub struct Outside {
-    /// Given position in machine units.
+    /// Requested position in machine units.
     pub value: f64,
-    /// First position of the measuring range in machine units.
+    /// First position in the measuring range, in machine units.
     pub least: f64,
-    /// Last position of the measuring range in machine units.
+    /// Last position in the measuring range, in machine units.
     pub most: f64,
 }
 
@@ -52,11 +52,11 @@ pub struct ScaleError;
 const MOST_DECIMALS: usize = 6;
 /// Tolerance below which two computed numbers count as equal.
 const SAME: f64 = 1e-9;
-/// More than any scale has in a unit, or any unit in a range.
+/// Upper bound for the number of steps in a unit and of units in a range.
 const MOST: f64 = 1e12;
 
 impl Default for Scale {
-    /// Creates a scale in steps, from 0 on.
+    /// Creates a scale in steps, starting at 0.
     fn default() -> Self {
         Scale { unit: Unit::Steps, steps: 1.0, zero: 0 }
     }
@@ -66,7 +66,7 @@ impl Unit {
     /// All units.
     pub const ALL: [Unit; 3] = [Unit::Steps, Unit::Degrees, Unit::Millimetres];
 
-    /// Returns the unit symbol; empty for steps.
+    /// Returns the unit symbol, or an empty string for steps.
     pub const fn symbol(self) -> &'static str {
         match self {
             Unit::Steps => "",
@@ -77,8 +77,8 @@ impl Unit {
 }
 
 impl Scale {
-    /// Creates a scale in degrees with the given number of steps per machine turn, and the machine's 0 at an encoder
-    /// position.
+    /// Creates a scale in degrees with the given number of steps per machine turn. The machine's zero is at encoder
+    /// position `zero`.
     ///
     /// # Errors
     /// [`ScaleError`] if the steps are not above 0.
@@ -86,8 +86,8 @@ impl Scale {
         Scale::new(Unit::Degrees, steps_in_turn, zero)
     }
 
-    /// Creates a scale in millimetres with the given number of steps per millimetre, and the machine's 0 at an encoder
-    /// position.
+    /// Creates a scale in millimetres with the given number of steps per millimetre. The machine's zero is at encoder
+    /// position `zero`.
     ///
     /// # Errors
     /// [`ScaleError`] if the steps are not above 0.
@@ -95,7 +95,8 @@ impl Scale {
         Scale::new(Unit::Millimetres, steps_in_one, zero)
     }
 
-    /// Creates a scale for a unit. `steps` is the number of steps per turn or millimetre, and unused for steps.
+    /// Creates a scale for a unit. `steps` is the number of steps per turn or millimetre, and is ignored for the unit
+    /// *steps*.
     ///
     /// # Errors
     /// [`ScaleError`] if `steps` is used and not above 0.
@@ -119,13 +120,13 @@ impl Scale {
         self.steps
     }
 
-    /// Returns the encoder position at the machine's 0.
+    /// Returns the encoder position at the machine's zero.
     pub const fn zero(&self) -> u32 {
         self.zero
     }
 
-    /// Returns whether the scale wraps at the end of the measuring range: steps do, and degrees if the range is a whole
-    /// number of machine turns.
+    /// Returns whether the scale wraps at the end of the measuring range. Steps always do, and degrees if the range is
+    /// a whole number of machine turns.
     pub fn is_round(&self, range: u32) -> bool {
         match self.unit {
             Unit::Steps => true,
@@ -148,8 +149,8 @@ impl Scale {
         f64::from(range) / self.steps
     }
 
-    /// Returns the step nearest to a machine position. Degrees wrap with the measuring range; steps must be within it,
-    /// wherever 0 is.
+    /// Returns the step nearest to a machine position. Degrees wrap with the measuring range, while steps must be
+    /// within it, wherever 0 is.
     ///
     /// # Errors
     /// [`Outside`] with the limits.

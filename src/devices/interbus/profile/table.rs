@@ -21,9 +21,9 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 pub struct TableOptions {
     /// Scale of its edges.
     pub scale: Scale,
-    /// Steps of the measuring range.
+    /// Number of steps in the measuring range.
     pub range: u32,
-    /// The program of rows that name none.
+    /// Program for rows that do not specify one.
     pub program: ProgramNumber,
 }
 
@@ -32,11 +32,11 @@ pub struct TableOptions {
 pub struct CamTable {
     /// Delimiter of its columns.
     pub delimiter: Option<Delimiter>,
-    /// Its first line contains the column names.
+    /// Whether the first line contains the column names.
     pub header: bool,
-    /// The valid rows, in the order of the table.
+    /// Valid rows in table order.
     pub rows: Vec<TableRow>,
-    /// The problems, in the order of the table.
+    /// Problems in table order.
     pub problems: Vec<TableProblem>,
     /// Warnings about rows that are otherwise valid.
     pub notes: Vec<TableNote>,
@@ -45,13 +45,13 @@ pub struct CamTable {
 /// A pulse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableRow {
-    /// The line, counted from 1.
+    /// Line number, counted from 1.
     pub line: u64,
     /// Its program.
     pub program: ProgramNumber,
-    /// The cam that it takes.
+    /// Cam that the pulse uses.
     pub cam: CamNumber,
-    /// Its name; may be empty.
+    /// Name of the pulse, which may be empty.
     pub name: String,
     /// Its first position.
     pub start: TableEdge,
@@ -59,36 +59,36 @@ pub struct TableRow {
     pub stop: TableEdge,
 }
 
-/// An edge as it was asked for, and as the encoder can have it.
+/// A cam edge as requested and as rounded to encoder steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableEdge {
-    /// As in the table, in units.
+    /// Requested position from the table, in machine units.
     pub requested: f64,
-    /// In steps of the encoder.
+    /// Position in encoder steps.
     pub step: u32,
     /// Rounding error, in units.
     pub off: f64,
 }
 
-/// Something that could not be taken.
+/// A problem that prevented a table entry from being read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}, column {column}: {kind}")]
 pub struct TableProblem {
-    /// The line, counted from 1.
+    /// Line number, counted from 1.
     pub line: u64,
-    /// The column, counted from 1.
+    /// Column number, counted from 1.
     pub column: u64,
     /// The problem.
     pub kind: TableProblemKind,
 }
 
-/// A problem in a line.
+/// Kinds of problems in a table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TableProblemKind {
     /// The table is empty.
     #[error("the table has no rows")]
     Empty,
-    /// A header without a start or a stop.
+    /// The header has no column for the start or stop.
     #[error("the header names no column for the {0}")]
     NoColumn(Column),
     /// The line ends before this column.
@@ -117,13 +117,13 @@ pub enum TableProblemKind {
     Outside {
         /// The edge.
         column: Column,
-        /// With the limits, in units.
+        /// Requested position and the limits, in machine units.
         outside: Outside,
     },
     /// All eight cams of the program are in use.
     #[error("program {} has no cam left: it has eight", .0.get())]
     Full(ProgramNumber),
-    /// This cam of the program is in an earlier line, which counts.
+    /// The same cam of the program appears in an earlier line, which takes precedence.
     #[error("cam {} of program {} stands in line {first} already", cam.get(), program.get())]
     Twice {
         /// Program of the cam.
@@ -133,7 +133,7 @@ pub enum TableProblemKind {
         /// The line that counts.
         first: u64,
     },
-    /// A name that is too long.
+    /// The name is too long.
     #[error("a name has at most {most} characters")]
     Name {
         /// The limit.
@@ -141,21 +141,21 @@ pub enum TableProblemKind {
     },
 }
 
-/// Note about the rows that were read.
+/// A note about valid rows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TableNote {
-    /// Several pulses on one track, each of which uses a cam of its own.
+    /// Several pulses are on one track, each of which uses a cam of its own.
     Pulses {
         /// Program of the pulses.
         program: ProgramNumber,
         /// The track's name.
         name: String,
-        /// The cams that they take.
+        /// Cams that the pulses use.
         cams: Vec<CamNumber>,
     },
-    /// The first line names no known column: they are taken in the usual order.
+    /// The first line contains no known column name, so the columns are read in the usual order.
     OtherHeader,
-    /// The header names another unit than the one that counts.
+    /// The header names a unit other than the one used.
     OtherUnit {
         /// As in the header.
         header: Unit,
@@ -179,18 +179,18 @@ pub enum Column {
     Stop,
 }
 
-/// Program from a table: its cams are active, and no others. The edges of the others stay as they are.
+/// A program imported from a table. Only its cams are active; the edges of other cams are left unchanged.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Filled {
     /// The program.
     pub program: ProgramNumber,
     /// Its cams.
     pub cams: [Option<Cam>; Program::CAMS],
-    /// Their names; empty without a name.
+    /// Names of the cams; empty for unnamed cams.
     pub names: [String; Program::CAMS],
 }
 
-/// The most characters of a cam's name.
+/// Maximum length of a cam name in characters.
 pub const LONGEST_NAME: usize = 40;
 
 impl std::fmt::Display for Column {
@@ -206,14 +206,14 @@ impl std::fmt::Display for Column {
 }
 
 impl TableOptions {
-    /// Reads a table. Everything left out is reported.
+    /// Reads a table. Entries that are left out are reported.
     pub fn read(&self, text: &str) -> CamTable {
         read::read(self, text)
     }
 }
 
 impl CamTable {
-    /// Returns the programs in the table, for edits.
+    /// Returns the programs in the table, for use in edits.
     pub fn filled(&self) -> Vec<Filled> {
         let own = |program| self.rows.iter().filter(move |row| row.program == program);
         ProgramNumber::all()
@@ -237,7 +237,7 @@ impl CamTable {
         self.rows.iter().filter(|row| row.start.is_off() || row.stop.is_off())
     }
 
-    /// Returns the most that an edge is off, in units.
+    /// Returns the largest rounding error of an edge, in machine units.
     pub fn most_off(&self) -> f64 {
         let edges = self.rows.iter().flat_map(|row| [row.start, row.stop]);
         edges.map(|edge| edge.off.abs()).fold(0.0, f64::max)
@@ -252,7 +252,7 @@ impl TableRow {
 }
 
 impl TableEdge {
-    /// Returns whether the edge is not where it was requested.
+    /// Returns whether the edge was rounded.
     pub fn is_off(self) -> bool {
         self.off.abs() > 1e-9 * self.requested.abs().max(1.0)
     }

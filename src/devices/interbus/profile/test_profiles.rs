@@ -33,8 +33,8 @@ pub(super) fn with(image: &Image, items: &[(&str, ItemValue)]) -> Image {
     image
 }
 
-/// Returns an image with 3600 steps over one turn and 8 active cams in each program: cam c of program p spans 100·c + p
-/// to 100·c + p + 49.
+/// Returns an image with 3600 steps over one turn and 8 active cams in each program, where cam c of program p spans
+/// 100·c + p to 100·c + p + 49.
 pub(super) fn image() -> Image {
     let parameters =
         Parameters { steps: 3600, revolutions: 1, direction: Direction::Clockwise, preset: 500, zero_shift: 0 };

@@ -65,7 +65,7 @@ impl Profile for InterbusProfile {
         }
     }
 
-    /// Compares parameters, the shift of the window, masks and cams. Recorded values and names are not compared.
+    /// Compares parameters, the window shift, masks and cams. Recorded values and names are not compared.
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
         for item in Item::writable() {

@@ -2,7 +2,8 @@
 
 use super::value::Value;
 
-/// Number of a cam within its program, 0 to 7. Words have room for 16, but the manual only mentions 8 (reference 6.9).
+/// Number of a cam within its program, 0 to 7. Words have room for 16 cams, but the manual only mentions 8 (reference
+/// 6.9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CamNumber(u8);
 
@@ -10,8 +11,8 @@ pub struct CamNumber(u8);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProgramNumber(u8);
 
-/// A cam, defined by a range of positions that includes both edges (`U`). If the start is beyond the stop, the range
-/// extends across the end of the measuring range.
+/// A cam, defined by a range of positions that includes both edges (`U`). If the start is after the stop, the range
+/// wraps around the end of the measuring range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cam {
     /// First position at which the cam is on.
@@ -20,17 +21,17 @@ pub struct Cam {
     pub stop: Value,
 }
 
-/// A program of eight cams with their activation mask.
+/// A program of eight cams with its activation mask.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Program {
-    /// Cams by number; `None` if undefined.
+    /// Cams by number. Undefined cams are `None`.
     pub cams: [Option<Cam>; Program::CAMS],
     /// Activation mask: bit i for cam i.
     pub mask: u8,
 }
 
 impl CamNumber {
-    /// All numbers in ascending order.
+    /// All cam numbers in ascending order.
     pub const EACH: [CamNumber; Program::CAMS] = [
         CamNumber(0),
         CamNumber(1),
@@ -42,12 +43,12 @@ impl CamNumber {
         CamNumber(7),
     ];
 
-    /// Returns all numbers in ascending order.
+    /// Returns all cam numbers in ascending order.
     pub fn all() -> impl Iterator<Item = CamNumber> {
         CamNumber::EACH.into_iter()
     }
 
-    /// Creates a cam number, or returns `None` beyond 7.
+    /// Creates a cam number, or returns `None` for numbers above 7.
     pub const fn new(number: u8) -> Option<Self> {
         if (number as usize) < Program::CAMS { Some(CamNumber(number)) } else { None }
     }
@@ -64,7 +65,7 @@ impl ProgramNumber {
     /// Program 1.
     pub const FIRST: ProgramNumber = ProgramNumber(1);
 
-    /// Returns all numbers in ascending order.
+    /// Returns all program numbers in ascending order.
     pub fn all() -> impl Iterator<Item = ProgramNumber> {
         (1..=8).map(ProgramNumber)
     }
@@ -81,7 +82,7 @@ impl ProgramNumber {
 }
 
 impl Cam {
-    /// Returns whether the cam extends across the end of the measuring range.
+    /// Returns whether the cam wraps around the end of the measuring range.
     pub fn wraps(self) -> bool {
         self.start > self.stop
     }

@@ -17,18 +17,18 @@ pub struct CamOutput {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cam outputs are not valid in {word:08X}")]
 pub struct CamOutputError {
-    /// The invalid word, which [`Reply`](super::Reply) can parse.
+    /// The invalid word, which may be parsed by [`Reply`](super::Reply).
     pub word: u32,
 }
 
-/// `shift_iw`: number of bits by which the position is shifted right under the window, 0 to 25.
+/// `shift_iw`: number of bits by which the position is shifted right in the window, 0 to 25.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct WindowShift(u8);
 
-/// Meaning of a bit in the word.
+/// Meaning of a bit in the cam output word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CamBit {
-    /// Bit 31: all other bits are invalid.
+    /// Bit 31: if set, all other bits are invalid.
     Invalid,
     /// A bit that should be 0.
     Zero,
@@ -39,11 +39,11 @@ pub enum CamBit {
 }
 
 const WINDOW_BITS: u32 = 17;
-/// Bits of the outputs, below the window.
+/// Number of output bits, which are below the window.
 const OUTPUT_BITS: u32 = 8;
 
 impl WindowShift {
-    /// Creates a shift, or returns `None` beyond 25.
+    /// Creates a window shift, or returns `None` for numbers above 25.
     pub const fn new(shift: u8) -> Option<Self> {
         if shift as u32 <= Value::BITS { Some(WindowShift(shift)) } else { None }
     }
@@ -60,13 +60,13 @@ impl WindowShift {
 }
 
 impl CamOutput {
-    /// Returns the word of an encoder at a position with the given outputs.
+    /// Returns the word that an encoder sends at a position with the given outputs.
     pub const fn at(position: Value, outputs: u8, shift: WindowShift) -> Self {
         let window = (position.get() & shift.mask()) >> shift.0;
         CamOutput { outputs, window, stray: 0 }
     }
 
-    /// Parses a word.
+    /// Parses a cam output word.
     ///
     /// # Errors
     /// Bit 31 is set.
@@ -92,7 +92,7 @@ impl CamOutput {
         ((self.window as u64) << shift.0) as u32 & shift.mask()
     }
 
-    /// Returns the meaning of a bit of the word, counted from 0, or `None` beyond 31.
+    /// Returns the meaning of a bit of the word, counted from 0, or `None` for bits above 31.
     pub const fn bit(bit: u8, shift: WindowShift) -> Option<CamBit> {
         Some(match bit {
             0..=7 => CamBit::Cam(bit),

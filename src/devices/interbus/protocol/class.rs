@@ -6,11 +6,11 @@ use super::value::Value;
 /// Class of the process data that an encoder exchanges with its master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
-    /// 16 bits IN with the position.
+    /// 16 bits IN, containing the position.
     K1,
-    /// 32 bits IN with the position.
+    /// 32 bits IN, containing the position.
     K2,
-    /// 32 bits IN and OUT: seven bits of status or command and 25 data bits.
+    /// 32 bits IN and OUT, each with seven bits of status or command and 25 data bits.
     K3,
 }
 
@@ -34,7 +34,7 @@ impl Class {
     /// All classes.
     pub const ALL: [Class; 3] = [Class::K1, Class::K2, Class::K3];
 
-    /// Returns the number of bytes from the encoder and to it.
+    /// Returns the number of bytes from and to the encoder.
     pub const fn bytes(self) -> (usize, usize) {
         match self {
             Class::K1 => (2, 0),
@@ -44,8 +44,8 @@ impl Class {
     }
 }
 
-/// Returns the identification code of an encoder. The code of K3 with copper or fibre is 37h = 55: manual 5.1 prints
-/// 36h next to 55 (reference 6.1).
+/// Returns the identification code of an encoder. The code of K3 with copper or fibre is 37h = 55, although manual 5.1
+/// prints 36h next to 55 (reference 6.1).
 pub const fn id_code(class: Class, interface: Interface) -> u8 {
     match (class, interface) {
         (Class::K1 | Class::K2, Interface::Standard | Interface::OpticalFibre) => 0x36,
@@ -55,7 +55,7 @@ pub const fn id_code(class: Class, interface: Interface) -> u8 {
     }
 }
 
-/// Returns the devices with an identification code: several if they share it, none for other devices.
+/// Returns the devices with an identification code. Several devices may share a code; an unknown code yields none.
 pub fn class_of_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
     Class::ALL
         .into_iter()
@@ -63,10 +63,11 @@ pub fn class_of_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
         .filter(move |(class, interface)| id_code(*class, *interface) == code)
 }
 
-/// Word of a K1 or K2 encoder: a right-justified position with zeros above. Bits that should be 0 are preserved.
+/// Word of a K1 or K2 encoder, which contains a right-justified position with zeros above it. Bits that should be 0
+/// are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Single {
-    /// 12 position bits of a single turn in a 16-bit word.
+    /// 12 position bits of a single-turn encoder in a 16-bit word.
     K1(u16),
     /// Up to 25 position bits in a 32-bit word.
     K2(u32),

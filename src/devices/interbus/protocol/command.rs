@@ -12,33 +12,33 @@ use super::value::{Code, Value};
 pub enum Command {
     /// 00000000h: normal operation.
     Normal,
-    /// 80000000h: run. Its rising edge ends parameterisation, a read-out and the setting of cams.
+    /// 80000000h: runs the encoder. The rising edge ends parameterisation, a read-out and the setting of cams.
     Run,
     /// 40000000h: applies the preset to the position, once for each programmed preset.
     Preset,
-    /// 60000000h: applies the preset any number of times; *run* follows.
+    /// 60000000h: applies the preset any number of times, each followed by *run*.
     FrabaPreset,
     /// Sets a parameter.
     Set(Parameter, Value),
-    /// 20400001h and 20400000h: selects speed or position for the IN word.
+    /// 20400001h and 20400000h: selects the speed or the position for the IN word.
     Velocity(bool),
     /// 2021xxxxh: requests a read-out.
     ReadOut(ReadOut),
-    /// 2080000ph: selects cam mode with this program, or position mode without one.
+    /// 2080000ph: selects cam mode with the given program, or position mode if there is none.
     Cams(Option<ProgramNumber>),
-    /// 2040cccch: sets the active cams, bit i for cam i. There are 8, so the upper byte is 0 (reference 6.9).
+    /// 2040cccch: sets the active cams, with bit i for cam i. There are 8 cams, so the upper byte is 0 (reference 6.9).
     Activate(u16),
     /// 201000ssh: sets the window shift.
     Shift(WindowShift),
-    /// First byte 40h to 4Fh: sets the first position of a cam.
+    /// First byte 40h to 4Fh: sets the start position of a cam.
     CamStart(CamNumber, Value),
-    /// First byte 60h to 6Fh: sets the last position of a cam.
+    /// First byte 60h to 6Fh: sets the stop position of a cam.
     CamStop(CamNumber, Value),
     /// 20200000h: reads the activation mask.
     ReadActivation,
-    /// 2020001ch: reads the first position of a cam.
+    /// 2020001ch: reads the start position of a cam.
     ReadCamStart(CamNumber),
-    /// 2020002ch: reads the last position of a cam.
+    /// 2020002ch: reads the stop position of a cam.
     ReadCamStop(CamNumber),
     /// 20200040h: reads the window shift (20200030h is a misprint, reference 6.5).
     ReadShift,
@@ -46,7 +46,8 @@ pub enum Command {
     Unknown(u32),
 }
 
-/// An encoder in this mode would interpret the command as another one, or as none. The command must not be sent.
+/// A command that must not be sent, because the encoder would interpret it as another command or as none in its
+/// present mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{:08X} ({}) is not legal in {mode}", command.emit(), command.name())]
 pub struct Refused {
@@ -67,7 +68,7 @@ const READ_SHIFT: u32 = 0x40;
 const READ_OUT: u32 = 0x2021_0000;
 const MASK: u32 = 0x2040_0000;
 const CAMS: u32 = 0x2080_0000;
-/// Bits 31..29 of a cam's edges.
+/// Bits 31..29 of a word that sets a cam's start.
 const START: u32 = 0b010 << 29;
 const STOP: u32 = 0b011 << 29;
 
@@ -97,8 +98,8 @@ impl Command {
         }
     }
 
-    /// Returns the meanings of a word in any mode: one or two, or [`Command::Unknown`] if the manual does not define
-    /// the word.
+    /// Returns all meanings that a word has in any mode: one or two, or [`Command::Unknown`] if the manual does not
+    /// define the word.
     pub fn readings(word: u32) -> Vec<Command> {
         let both: Vec<Command> =
             [Command::decode_non_cam_command(word), Command::of_cams(word)].into_iter().flatten().collect();
@@ -113,7 +114,7 @@ impl Command {
     /// Parses a word as an encoder in the given mode interprets it.
     ///
     /// # Errors
-    /// [`Refused`] with the meaning in another mode, if any.
+    /// [`Refused`] with the meaning of the word in another mode, if any.
     pub fn in_mode(word: u32, mode: Mode) -> Result<Command, Refused> {
         let readings = Command::readings(word);
         match readings.iter().find(|command| command.is_legal_in(mode)) {
@@ -131,8 +132,8 @@ impl Command {
     }
 
     /// Returns whether the command may be sent in a mode. Words remain on the process data, so a word that enters a
-    /// mode is legal in it. Read-outs are allowed while the outputs are valid, since one of them reveals the mode
-    /// (`U`).
+    /// mode is also legal in that mode. Read-outs are allowed while the outputs are valid, since one of them reveals
+    /// the mode (`U`).
     pub const fn is_legal_in(self, mode: Mode) -> bool {
         use Mode::{Cam, Parameterisation, Position, ReadOut, Velocity};
         match self {

@@ -4,12 +4,13 @@
 use super::cam::{Program, ProgramNumber};
 use super::value::Value;
 
-/// Programs as a list of sections with constant outputs. A preview evaluates them for millions of positions.
+/// Cam programs as a list of sections with constant outputs, for fast evaluation: a preview evaluates them for
+/// millions of positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompiledPrograms {
-    /// Section starts in ascending order. The outputs before the first section are in `before`.
+    /// Starts of the sections in ascending order. The outputs before the first section are in `before`.
     starts: Vec<u32>,
-    /// Outputs of each section, one byte per program with the first program lowest.
+    /// Outputs of each section, one byte per program with the first program in the lowest byte.
     outputs: Vec<u64>,
     before: u64,
 }
@@ -28,8 +29,8 @@ impl CompiledPrograms {
         CompiledPrograms { starts, outputs, before: at(0) }
     }
 
-    /// Returns the outputs at a position: a byte per program, bit i for cam i. The result equals [`Program::outputs`]
-    /// of each program.
+    /// Returns the outputs at a position: one byte per program, with bit i for cam i. The result equals
+    /// [`Program::outputs`] of each program.
     pub fn outputs(&self, position: Value) -> [u8; ProgramNumber::COUNT] {
         let begun = self.starts.partition_point(|start| *start <= position.get());
         let stretch = begun.checked_sub(1).and_then(|at| self.outputs.get(at));

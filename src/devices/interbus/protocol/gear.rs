@@ -7,7 +7,7 @@ pub const STEPS_PER_TURN: u32 = 8192;
 /// Maximum number of turns that an encoder counts.
 pub const TURNS: u32 = 4096;
 
-/// A gear: `steps` of the position over `turns` of the shaft. Both are set separately and used together.
+/// A gear: `steps` of the position over `turns` of the shaft. The two numbers are set separately but used together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Gear {
     steps: u32,
@@ -17,13 +17,13 @@ pub struct Gear {
 /// The reason why two numbers do not form a gear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GearError {
-    /// The turns exceed those that an encoder counts.
+    /// The number of turns exceeds the number that an encoder counts.
     #[error("{turns} turns are not within 1 to {TURNS}")]
     Turns {
         /// Given number of turns.
         turns: u32,
     },
-    /// The steps exceed the resolution of the disc over these turns, or 25 bits.
+    /// The number of steps exceeds the resolution of the disc over these turns, or 25 bits.
     #[error("{steps} steps are not within 1 to {most}, which is what {turns} turns have")]
     Steps {
         /// Given number of steps.
@@ -39,7 +39,7 @@ impl Gear {
     /// Creates a gear.
     ///
     /// # Errors
-    /// [`GearError`] if a number exceeds its limit; turns are checked first.
+    /// [`GearError`] if a number exceeds its limit. The turns are checked first.
     pub const fn new(steps: u32, turns: u32) -> Result<Self, GearError> {
         if turns == 0 || turns > TURNS {
             return Err(GearError::Turns { turns });
@@ -58,29 +58,29 @@ impl Gear {
         if all > Value::MAX.get() { Value::MAX.get() } else { all }
     }
 
-    /// Returns the position steps over all turns, that is the measuring range.
+    /// Returns the number of position steps over all turns, which is the measuring range.
     pub const fn steps(self) -> u32 {
         self.steps
     }
 
-    /// Returns the number of shaft turns after which the position starts again.
+    /// Returns the number of shaft turns after which the position repeats.
     pub const fn turns(self) -> u32 {
         self.turns
     }
 
-    /// Returns the number of disc steps after which the position starts again.
+    /// Returns the number of disc steps after which the position repeats.
     pub const fn range(self) -> u32 {
         STEPS_PER_TURN * self.turns
     }
 
     /// Converts disc steps to position steps: `raw · steps / (8192 · turns)`, rounded down (`U`: the manual only states
-    /// that both numbers form one gear). The result does not wrap: the complete range yields all steps.
+    /// that both numbers form a gear). The result does not wrap, so the complete range yields all steps.
     pub const fn scaled(self, raw: u32) -> u64 {
         raw as u64 * self.steps as u64 / self.range() as u64
     }
 
-    /// Returns the position that the encoder sends for a disc position: [`scaled`](Self::scaled) within the range
-    /// (`U`).
+    /// Returns the position that the encoder sends for a disc position, which is [`scaled`](Self::scaled) within the
+    /// range (`U`).
     pub const fn position(self, raw: u32) -> Value {
         // Less than `steps`, which has 25 bits.
         Value::of_word(self.scaled(raw % self.range()) as u32)

@@ -11,7 +11,7 @@ pub enum LedState {
     Blinking,
 }
 
-/// The LEDs by their labels on the encoder.
+/// The LEDs, named by their labels on the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Leds {
     /// UL.
@@ -29,9 +29,9 @@ pub struct Leds {
 pub struct LedRow {
     /// LED states.
     pub leds: Leds,
-    /// Meaning in the words of the manual.
+    /// Meaning as worded in the manual.
     pub meaning: &'static str,
-    /// Suggested remedy; not in the manual (`U`).
+    /// Suggested remedy, which is not in the manual (`U`).
     pub remedy: &'static str,
 }
 
@@ -41,7 +41,7 @@ const fn leds(ul: LedState, ba: LedState, rc: LedState, rbda: LedState) -> Leds 
     Leds { ul, ba, rc, rbda }
 }
 
-/// The LED combinations in the manual, in its order.
+/// The LED combinations in the order of the manual.
 pub const LEDS: [LedRow; 4] = [
     LedRow {
         leds: leds(On, Off, On, Off),
@@ -62,7 +62,7 @@ pub const LEDS: [LedRow; 4] = [
 ];
 
 impl Leds {
-    /// Returns the row of the combination, or `None` if the manual does not define it.
+    /// Returns the row of an LED combination, or `None` if the manual does not define it.
     pub fn row(self) -> Option<&'static LedRow> {
         LEDS.iter().find(|row| row.leds == self)
     }

@@ -30,12 +30,12 @@ mod value;
 mod vectors;
 mod word_order;
 
-/// The word for this kind of device: on the command line, in profiles, and in stored data.
+/// Keyword for this kind of device on the command line, in profiles, and in stored data.
 pub const KIND: &str = "interbus";
 
-/// Stores that the EEPROM is made for (reference 3).
+/// Number of stores for which the EEPROM is designed (reference 3).
 pub const NOMINAL_STORES: u32 = 200;
-/// Stores that the maker guarantees at the very most (reference 3).
+/// Maximum number of stores that the manufacturer guarantees (reference 3).
 pub const GUARANTEED_STORES: u32 = 500;
 
 pub use cam::{Cam, CamNumber, Program, ProgramNumber};

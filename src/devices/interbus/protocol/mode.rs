@@ -5,15 +5,15 @@ use std::fmt;
 /// A mode of a K3 encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Mode {
-    /// Normal operation: IN contains the position.
+    /// Normal operation, in which IN contains the position.
     Position,
-    /// A parameter has been sent, but [`Command::Run`](super::Command::Run) has not: the outputs are invalid.
+    /// A parameter has been sent, but [`Command::Run`](super::Command::Run) has not, so the outputs are invalid.
     Parameterisation,
-    /// A read-out has been requested: IN contains its value.
+    /// A read-out has been requested, and IN contains its value.
     ReadOut,
-    /// Velocity: IN contains the speed in revolutions per minute.
+    /// Velocity mode, in which IN contains the speed in revolutions per minute.
     Velocity,
-    /// A cam program is selected: IN contains the cam output word.
+    /// A cam program is selected, and IN contains the cam output word.
     Cam,
 }
 

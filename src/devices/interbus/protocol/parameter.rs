@@ -18,7 +18,7 @@ pub enum Parameter {
     Preset,
     /// Zero shift. Contrary to manual 5.4.1, it does not apply the preset (reference 6.2).
     ZeroShift,
-    /// Restores the factory settings. Only in the appendix of the manual (reference 6.10): experimental.
+    /// Restores the factory settings. Experimental, since only the appendix of the manual mentions it (reference 6.10).
     Default,
 }
 
@@ -31,7 +31,7 @@ pub struct ParameterRow {
     pub code: u8,
     /// Name on the command line.
     pub name: &'static str,
-    /// Unit of the value; empty if there is none.
+    /// Unit of the value, or an empty string if there is none.
     pub unit: &'static str,
     limit: Limit,
 }
@@ -77,7 +77,7 @@ const fn row(parameter: Parameter, code: u8, name: &'static str, unit: &'static 
 }
 
 impl Parameter {
-    /// Returns its row of the table.
+    /// Returns the table row of the parameter.
     pub const fn row(self) -> &'static ParameterRow {
         let [steps, turns, direction, preset, zero_shift, default] = &PARAMETERS;
         match self {
@@ -95,7 +95,7 @@ impl Parameter {
         self.row().name
     }
 
-    /// Returns the parameter with a code, or `None` for codes that the manual does not define.
+    /// Returns the parameter with the given code, or `None` if the manual does not define the code.
     pub fn of_code(code: Code) -> Option<Self> {
         PARAMETERS.iter().find(|row| row.code == code.get()).map(|row| row.parameter)
     }
@@ -118,7 +118,7 @@ impl Parameter {
         }
     }
 
-    /// Checks a value for this parameter.
+    /// Checks a value of this parameter.
     ///
     /// # Errors
     /// [`OutOfRange`] with the limits for this gear.

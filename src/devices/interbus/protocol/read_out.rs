@@ -3,7 +3,8 @@
 use super::cam::ProgramNumber;
 use super::value::Value;
 
-/// Number of a read-out: bits 15..0 of a word 2021xxxxh. Numbers that the manual does not define are preserved.
+/// Number of a read-out, which is in bits 15..0 of the word 2021xxxxh. Numbers that the manual does not define are
+/// preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ReadOut(u16);
 
@@ -14,7 +15,7 @@ pub struct ReadOutRow {
     pub read_out: ReadOut,
     /// Name in the manual.
     pub name: &'static str,
-    /// Unit of the transmitted value; empty if there is none.
+    /// Unit of the transmitted value, or an empty string if there is none.
     pub unit: &'static str,
 }
 
@@ -38,7 +39,7 @@ const fn row(read_out: ReadOut, name: &'static str, unit: &'static str) -> ReadO
     ReadOutRow { read_out, name, unit }
 }
 
-/// The lowest digit of a chip register's number.
+/// Lowest digit of the read-out number of a chip register.
 const CHIP: u16 = 0xD;
 
 /// Value of a read-out.
@@ -56,13 +57,13 @@ pub enum ReadOutValue {
     Flags(Flags),
 }
 
-/// Read-out 9: present and start-up mode of the encoder. The manual prints `3h to 10h` for the programs, meaning
+/// Read-out 9: present and start-up mode of the encoder. The manual prints `3h to 10h` for the programs, but means
 /// decimal 3 to 10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StartupMode {
-    /// 0: operates like a K2 encoder.
+    /// 0: the encoder operates like a K2 encoder.
     K2,
-    /// 1: operates like a K3 encoder.
+    /// 1: the encoder operates like a K3 encoder.
     K3,
     /// 2: velocity.
     Velocity,
@@ -79,21 +80,21 @@ pub struct Flags(Value);
 impl ReadOut {
     /// Serial number, 0.
     pub const SERIAL_NUMBER: ReadOut = ReadOut(0x0);
-    /// Operating time, 8, in units of ten minutes.
+    /// Operating time in units of ten minutes, read-out 8.
     pub const OPERATING_TIME: ReadOut = ReadOut(0x8);
     /// Start-up mode, 9.
     pub const STARTUP_MODE: ReadOut = ReadOut(0x9);
     /// Flags, Ah.
     pub const FLAGS: ReadOut = ReadOut(0xA);
-    /// Temperature, Ch, in tenths of a degree Celsius.
+    /// Temperature in tenths of a degree Celsius, read-out Ch.
     pub const TEMPERATURE: ReadOut = ReadOut(0xC);
 
-    /// Creates a read-out from its number; every value is valid.
+    /// Creates a read-out from its number. Every number is valid.
     pub const fn new(number: u16) -> Self {
         ReadOut(number)
     }
 
-    /// Returns the read-out of an OPC chip register, `xDh`, or `None` beyond 15.
+    /// Returns the read-out of an OPC chip register, `xDh`, or `None` for registers above 15.
     pub const fn chip_register(register: u8) -> Option<Self> {
         if register < 16 { Some(ReadOut((register as u16) << 4 | CHIP)) } else { None }
     }
@@ -103,7 +104,7 @@ impl ReadOut {
         self.0
     }
 
-    /// Returns the number of the chip register, if it is one.
+    /// Returns the register number, or `None` if the read-out is not a chip register.
     pub const fn register(self) -> Option<u8> {
         if self.0 & 0xF == CHIP && self.0 <= 0xFF { Some((self.0 >> 4) as u8) } else { None }
     }
@@ -167,7 +168,7 @@ impl Flags {
         self.0
     }
 
-    /// Returns whether steps are reported minus one, as by older encoders (bit 0).
+    /// Returns whether the number of steps is reported minus one, as by older encoders (bit 0).
     pub const fn steps_minus_one(self) -> bool {
         self.0.get() & 1 != 0
     }

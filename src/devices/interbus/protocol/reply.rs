@@ -8,15 +8,15 @@ use super::value::{Code, Value};
 /// Meaning of an IN word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reply {
-    /// Bit 31 is clear: the encoder is running. The value is a position, a speed in velocity mode, or the cam output
-    /// word in cam mode.
+    /// Bit 31 is clear, and the encoder is running. The value is a position, a speed in velocity mode, or the cam
+    /// output word in cam mode.
     Run {
         /// Bits 24..0.
         value: Value,
-        /// Bits 30..25, which should be 0; other values justify a warning.
+        /// Bits 30..25, which should be 0. Other values justify a warning.
         stray: u8,
     },
-    /// Prefix 110 or 111, code 0: the encoder is processing a parameter; for cam 0 the word may be the echo.
+    /// Prefix 110 or 111, code 0: the encoder is processing a parameter. For cam 0, the word may be the echo.
     Busy {
         /// Bit 29.
         manufacturer: bool,
@@ -27,7 +27,7 @@ pub enum Reply {
     Echo {
         /// Bit 29.
         manufacturer: bool,
-        /// Code of the parameter, or number of the cam; never 0.
+        /// Parameter code or cam number, which is never 0.
         code: Code,
         /// Data as sent.
         data: Value,
@@ -38,7 +38,7 @@ pub enum Reply {
     UnknownReadOut(Value),
     /// Prefix 101 with a code that the manual does not define.
     Unknown {
-        /// Code other than 0 and 2.
+        /// A code other than 0 and 2.
         code: Code,
         /// Bits 24..0.
         data: Value,
@@ -47,7 +47,7 @@ pub enum Reply {
     Error(ErrorWord),
 }
 
-/// An error word: prefix 100.
+/// An error word, with prefix 100.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorWord {
     /// Error code, bits 28..25.
@@ -62,7 +62,7 @@ const ECHO: u32 = 0b110 << 29;
 const MANUFACTURER: u32 = 1 << 29;
 
 impl Reply {
-    /// Parses a word. Every word is valid.
+    /// Parses an IN word. Every word is valid.
     pub fn parse(word: u32) -> Self {
         let (code, data) = (Code::of_word(word), Value::of_word(word));
         let manufacturer = word & MANUFACTURER != 0;
@@ -91,8 +91,8 @@ impl Reply {
         }
     }
 
-    /// Returns the echo of a command: its word with bits 31 and 30 set and the data as sent (for cams `U`). Compare the
-    /// complete word: an older reply may have the same code (reference 4).
+    /// Returns the echo of a command, which is its word with bits 31 and 30 set and the data as sent (for cams `U`).
+    /// Compare the complete word, since an older reply may have the same code (reference 4).
     pub fn echo_of(command: Command) -> Self {
         Reply::parse(command.emit() | ECHO)
     }
@@ -117,7 +117,7 @@ impl ErrorWord {
     /// Manufacturer error for a cam edge beyond the measuring range, in `data` of code Ch.
     pub const CAM_BEYOND_RANGE: u32 = 4;
 
-    /// Returns the meaning in the words of the manual.
+    /// Returns the meaning as worded in the manual.
     pub const fn meaning(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "wrong parameter data",
@@ -129,7 +129,7 @@ impl ErrorWord {
         }
     }
 
-    /// Returns the remedy; mostly not in the manual (`U`).
+    /// Returns the remedy, which is usually not in the manual (`U`).
     pub const fn remedy(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "send a number within its limits, then run",

@@ -14,7 +14,7 @@ impl Value {
     /// Maximum value, 1FFFFFFh.
     pub const MAX: Value = Value((1 << Value::BITS) - 1);
 
-    /// Creates a value, or returns `None` beyond 25 bits.
+    /// Creates a value, or returns `None` for numbers of more than 25 bits.
     pub const fn new(number: u32) -> Option<Self> {
         if number <= Value::MAX.0 { Some(Value(number)) } else { None }
     }
@@ -37,7 +37,7 @@ impl Value {
 }
 
 impl Code {
-    /// Creates a code, or returns `None` beyond 4 bits.
+    /// Creates a code, or returns `None` for numbers of more than 4 bits.
     pub const fn new(code: u8) -> Option<Self> {
         if code < 16 { Some(Code(code)) } else { None }
     }

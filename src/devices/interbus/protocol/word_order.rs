@@ -9,13 +9,13 @@ pub const UNIT: Whole<u8> = Whole(Quantity::Unit, 0..=255);
 pub const INPUT: Whole<u16> = Whole(Quantity::InputRegister, 0..=LAST);
 /// Valid addresses of the first holding register of an OUT word.
 pub const OUTPUT: Whole<u16> = Whole(Quantity::HoldingRegister, 0..=LAST);
-/// Last register address that still has a successor.
+/// Last register address that is followed by another.
 const LAST: u16 = u16::MAX - 1;
 
-/// The half of a word that is in the first of its two registers.
+/// Word order, named by the half of a word that is in the first of its two registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordOrder {
-    /// Bits 31..16 first (`U`: the usual order of INTERBUS).
+    /// Bits 31..16 first (`U`: the usual order in INTERBUS).
     #[default]
     HighFirst,
     /// Bits 15..0 first.

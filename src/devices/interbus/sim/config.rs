@@ -21,26 +21,26 @@ parameters! {
         revolutions: Option<String> = None, "revolutions" => Maybe(ANY);
         pub(super) memory: Memory = Memory::delivered();
         counterclockwise: bool = false, "direction" => Words(&[("cw", false), ("ccw", true)]);
-        /// Steps within the range; not fired and not armed.
+        /// Preset in steps within the range, neither fired nor armed.
         preset: Option<String> = None, "preset" => Maybe(ANY);
         zero_shift: u32 = 0, "zero-shift" => VALUE;
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
-        /// Initial shaft position, in steps of the disc.
+        /// Initial shaft position, in disc steps.
         pub(super) position: u32 = 0x12_3456, "position" => Whole(Quantity::PlaceOfDisc, 0..=PLACES - 1);
         pub(super) serial_number: u32 = 7_101_234, "serial" => VALUE;
         /// Tens of minutes.
         pub(super) operating_time: u32 = 1000, "operating-time" => VALUE;
         pub(super) celsius: f64 = 25.3, "temperature" => Decimal(Quantity::Celsius, -273.0..=1000.0);
-        /// A negative temperature has 16 bits and not 25 (reference 3, `U`).
+        /// Whether a negative temperature has 16 bits instead of 25 (reference 3, `U`).
         pub(super) narrow_temperature: bool = false, "temperature-bits" => Words(&[("25", false), ("16", true)]);
         /// Whether read-out 3 returns 0 or 1 instead of a code (`U`).
         pub(super) complement_bit: bool = false, "complement" => Words(&[("code", false), ("bit", true)]);
-        /// The running cam program, else normal running.
+        /// The running cam program, or else normal operation.
         pub(super) mode: StartupMode = StartupMode::K3, "program" => Checked(Expected::Program, mode);
         /// Whether the encoder starts with demonstration cam programs.
         demonstration: bool = false, "cams" => Words(&[("demo", true), ("none", false)]);
         pub(super) stores: u32 = 3, "stores" => Checked(Expected::Stores, number::<u32>);
-        /// Whether step counts are reported minus one, as by older encoders.
+        /// Whether the number of steps is reported minus one, as by older encoders.
         pub(super) steps_minus_one: bool = false, "steps-minus-one" => SWITCH;
         pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
         /// Number of cycles for which the old IN word persists after a new OUT word.
@@ -48,7 +48,7 @@ parameters! {
         /// Whether a program selection is acknowledged before the program's outputs are sent (`U`).
         pub(super) acknowledges_selection: bool = true, "selection" => Words(&[("echo", true), ("output", false)]);
         pub(super) class: Class = Class::K3, "class" => Words(&[("K1", Class::K1), ("K2", Class::K2), ("K3", Class::K3)]);
-        /// Each has two registers from `input` and `output` on.
+        /// Number of encoders, each with two registers, starting at `input` and `output`.
         pub(super) encoders: u8 = 1, "encoders" => Whole(Quantity::Encoders, 1..=8);
         pub(super) unit: u8 = 1, "unit" => UNIT;
         pub(super) input: u16 = 0, "input" => INPUT;
@@ -57,7 +57,7 @@ parameters! {
         /// Share of requests that are answered with exception 0Bh and not carried out.
         pub(super) exceptions: f64 = 0.0, "exception" => Decimal(Quantity::RefusedRequests, 0.0..=1.0);
         pub(super) seed: u64 = 0, "seed" => SEED;
-        /// Shares of replies that are lost (`drop`), have one bit inverted (`flip`) or are replaced by random bytes
+        /// Shares of replies that are lost (`drop`), have one bit inverted (`flip`), or are replaced by random bytes
         /// (`garbage`).
         pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
     }
@@ -66,7 +66,7 @@ parameters! {
 const VALUE: Whole<u32> = Whole(Quantity::Number, 0..=Value::MAX.get());
 
 impl Config {
-    /// Parses percent-decoded keys and values. If a key is repeated, its last value counts. Numbers are decimal or
+    /// Parses percent-decoded keys and values. If a key is repeated, its last value applies. Numbers are decimal or
     /// `0x…`.
     ///
     /// # Errors

@@ -31,7 +31,7 @@ pub struct Encoder {
     identity: Identity,
     motor: Motor,
     shaft: Shaft,
-    /// Offset between the shaft position and the zero of the reported position, in steps of the disc.
+    /// Offset between the shaft position and the zero of the reported position, in disc steps.
     offset: i64,
     mode: StartupMode,
     activity: Activity,
@@ -39,7 +39,7 @@ pub struct Encoder {
     eeprom: Eeprom,
     unstored: Option<Stored>,
     power: bool,
-    /// OUT word sent by the master; remains in effect until the master changes it.
+    /// OUT word sent by the master, which remains in effect until the master changes it.
     out: u32,
     content: InWordContent,
     /// Previous IN word, which is still returned for some time after a new OUT word.
@@ -63,7 +63,7 @@ struct Identity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Activity {
     Running,
-    /// The last word set a parameter or a cam, so position and cam outputs are invalid.
+    /// The last word set a parameter or a cam, so the position and cam outputs are invalid.
     Setting,
     ReadingOut,
 }
@@ -74,8 +74,8 @@ enum InWordContent {
     Word(u32),
 }
 
-/// IN word from before the last change of the OUT word. Every reading of the IN word counts as a cycle; without
-/// readings, cycles elapse by themselves.
+/// IN word from before the last change of the OUT word. Each reading of the IN word counts as a cycle; without
+/// readings, cycles elapse with time.
 #[derive(Clone, Copy, Debug, Default)]
 struct Old {
     word: u32,
@@ -115,8 +115,8 @@ impl Encoder {
     /// Chosen; read-out 7.
     const SOFTWARE_VERSION: u32 = 204;
 
-    /// Creates the encoder with the given number, counted from 0 along the gateway, from `config`. The encoder counts
-    /// as powered for a long time.
+    /// Creates the encoder with the given number, counted from 0 along the gateway, from `config`. The encoder is
+    /// assumed to have been powered for a long time.
     pub(super) fn new(config: &Config, number: u8) -> Self {
         let memory = config.memory.clone();
         Encoder {
@@ -152,7 +152,7 @@ impl Encoder {
         self.motor.clone()
     }
 
-    /// Sets the shaft position in steps of the disc, which has 8192 per turn.
+    /// Sets the shaft position in disc steps, of which there are 8192 per turn.
     pub fn set_shaft(&mut self, now: Moment, place: i32) {
         self.settle(now);
         self.shaft.put(now, place);
@@ -201,12 +201,12 @@ impl Encoder {
         self.eeprom.set_die_in_store(faults.die_in_store());
     }
 
-    /// Returns whether the encoder is powered; an unpowered encoder has no words.
+    /// Returns whether the encoder is powered. An unpowered encoder has no words.
     pub const fn has_power(&self) -> bool {
         self.power
     }
 
-    /// Removes the power; values that have not been stored are lost.
+    /// Removes the power. Values that have not been stored are lost.
     pub fn disconnect(&mut self) {
         self.power = false;
         self.memory = self.eeprom.kept.clone();
@@ -296,7 +296,7 @@ impl Encoder {
         }
     }
 
-    /// Finishes a set command: the IN word becomes its echo, or an error.
+    /// Finishes a set command, after which the IN word is its echo or an error.
     fn set(&mut self, now: Moment, taken: Result<Stored, Fault>) {
         let word = match taken {
             Ok(_) => self.out | ECHO,
@@ -365,7 +365,8 @@ impl Encoder {
         }
     }
 
-    /// Selects cam mode with the given program, or position mode for `None`. A changed program is stored first.
+    /// Selects cam mode with the given program, or position mode for `None`. If the current program was changed, it is
+    /// stored first.
     fn select(&mut self, now: Moment, program: Option<ProgramNumber>) {
         self.store();
         if !self.power {

@@ -22,10 +22,10 @@ pub(super) trait Registers {
     fn write(&mut self, first: u16, values: &[u16]) -> Result<(), Exception>;
 }
 
-/// Length of the header before the unit: transaction, protocol and length.
+/// Length of the frame header before the unit: transaction, protocol and length.
 const PREFIX: usize = 6;
-/// Valid lengths in the frame header. The length counts from the unit on: at least unit and function, and a PDU of up
-/// to 253 bytes.
+/// Valid lengths in the frame header. The length includes at least the unit and function, and a PDU of up to 253
+/// bytes.
 const LENGTHS: std::ops::RangeInclusive<usize> = 2..=254;
 
 /// Removes the next complete frame from the received bytes, or returns `None` if the frame is incomplete. Bytes that
@@ -40,7 +40,7 @@ pub(super) fn next(received: &mut Vec<u8>) -> Option<Vec<u8>> {
     (received.len() >= PREFIX + length).then(|| received.drain(..PREFIX + length).collect())
 }
 
-/// Returns the reply to a whole frame.
+/// Returns the reply to a complete frame.
 pub(super) fn answer(request: &[u8], unit: u8, registers: &mut impl Registers) -> Vec<u8> {
     match carry_out(request, unit, registers) {
         Ok(reply) => reply,

@@ -67,7 +67,7 @@ impl Gateway {
         work(&mut self.lock().encoders.first)
     }
 
-    /// Replaces the faults, e.g. when a cable is repaired or breaks later. Request and store counts are kept.
+    /// Replaces the faults, for example when a cable is repaired or breaks later. Request and store counts are kept.
     pub fn set_faults(&self, faults: &Faults) {
         let mut shared = self.lock();
         shared.faults = faults.clone();
@@ -97,7 +97,7 @@ impl Registers for GatewayRegisters<'_> {
 }
 
 impl Shared {
-    /// Carries out a request and returns the reply as received by the host, or `None` if no reply arrives.
+    /// Carries out a request and returns the reply that the host receives, or `None` if no reply arrives.
     fn take(&mut self, request: &[u8]) -> Option<Vec<u8>> {
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
         self.requests = self.requests.saturating_add(1);
@@ -114,8 +114,8 @@ impl Shared {
         self.carry(reply)
     }
 
-    /// Applies the configured faults to a reply. TCP delivers bytes or none: what would be a fault of one byte on a
-    /// serial line affects the whole reply.
+    /// Applies the configured faults to a reply. TCP delivers complete data or none, so what would be a one-byte fault
+    /// on a serial line affects the whole reply.
     fn carry(&mut self, mut reply: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.passage(&mut self.rng, 0);
         let carried = passage.carried?;
@@ -153,8 +153,8 @@ impl ByteDevice for Gateway {
         self.to_host.due()
     }
 
-    /// Connects a client. Pending replies to the previous connection are dropped, and encoders that lost their power
-    /// get it back.
+    /// Connects a client. Pending replies to the previous connection are dropped, and encoders that lost power get it
+    /// back.
     fn connect(&mut self, now: Moment) {
         self.received.clear();
         self.to_host = Queue::default();

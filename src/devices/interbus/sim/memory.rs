@@ -4,13 +4,13 @@ use crate::devices::interbus::protocol::{
     Cam, CamNumber, GUARANTEED_STORES, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
 };
 
-/// The settings, all of which a store saves.
+/// The settings of an encoder, all of which can be stored.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Memory {
     pub(super) gear: Gear,
     pub(super) counterclockwise: bool,
     pub(super) preset: u32,
-    /// The preset was set and not fired yet.
+    /// Whether the preset has been set but not fired yet.
     pub(super) armed: bool,
     pub(super) zero_shift: u32,
     pub(super) shift: WindowShift,
@@ -18,7 +18,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Returns the factory settings: all steps over all turns, no active cams.
+    /// Returns the factory settings: all steps over all turns, and no active cams.
     pub(super) fn delivered() -> Self {
         Memory {
             gear: FULL,
@@ -35,7 +35,7 @@ impl Memory {
         self.gear
     }
 
-    /// Returns 3 for clockwise, 4 for counterclockwise.
+    /// Returns the counting direction: 3 for clockwise, 4 for counterclockwise.
     pub const fn direction(&self) -> u32 {
         if self.counterclockwise { 4 } else { 3 }
     }
@@ -44,7 +44,7 @@ impl Memory {
         self.preset
     }
 
-    /// Returns whether a preset was set and not fired yet.
+    /// Returns whether a preset has been set but not fired yet.
     pub const fn preset_is_armed(&self) -> bool {
         self.armed
     }
@@ -67,8 +67,8 @@ impl Memory {
         self.programs.get_mut(usize::from(number.get()) - 1)
     }
 
-    /// Adds demonstration cam programs: a staircase, nested cams, cams across the end of the range, and, if the range
-    /// allows it, the manual's example (cam 3 from 15 to 213).
+    /// Adds demonstration cam programs: a staircase, nested cams, cams that wrap around the end of the range, and, if
+    /// the range allows it, the manual's example (cam 3 from 15 to 213).
     pub(super) fn with_demonstration(mut self) -> Self {
         let steps = self.gear.steps();
         let place = |sixteenths: u32| (u64::from(steps) * u64::from(sixteenths) / 16) as u32;
@@ -93,13 +93,13 @@ impl Memory {
     }
 }
 
-/// A program in which no cam works.
+/// A program without active cams.
 const NONE: Program = {
     const ZERO: Cam = Cam { start: Value::of_word(0), stop: Value::of_word(0) };
     Program { cams: [Some(ZERO); Program::CAMS], mask: 0 }
 };
 
-/// All turns, and all steps that fit into 25 bits.
+/// Gear with all turns, and all steps that fit into 25 bits.
 const FULL: Gear = match Gear::new(Value::MAX.get(), TURNS) {
     Ok(gear) => gear,
     Err(_) => unreachable!(),
@@ -109,15 +109,15 @@ const FULL: Gear = match Gear::new(Value::MAX.get(), TURNS) {
 #[derive(Clone, Debug)]
 pub(super) struct Eeprom {
     pub(super) kept: Memory,
-    /// Whether the content was lost: 86000000 is sent until everything has been stored again.
+    /// Whether the content was lost; 86000000 is sent until everything has been stored again.
     pub(super) lost: bool,
     stores: u32,
-    /// Number of stores since the encoder was created, as used for triggering faults.
+    /// Number of stores since the encoder was created, used to trigger faults.
     begun: u32,
     die_in_store: Option<u32>,
 }
 
-/// The part that a store saves.
+/// The part of the settings that a store saves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stored {
     Parameters,
@@ -127,8 +127,8 @@ pub(super) enum Stored {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
     Kept,
-    /// The EEPROM is worn out and its content is lost (`U`: the manual guarantees 500 stores and does not cover later
-    /// ones).
+    /// The EEPROM is worn out and its content is lost (`U`: the manual guarantees 500 stores and says nothing about
+    /// later ones).
     Worn,
     /// Power was lost during the store.
     Died,
@@ -177,5 +177,5 @@ pub(super) fn cam_mut(program: &mut Program, number: CamNumber) -> Option<&mut C
     program.cams.get_mut(usize::from(number.get())).and_then(Option::as_mut)
 }
 
-/// Number of shaft positions that an encoder distinguishes, in steps of the disc.
+/// Number of shaft positions that an encoder distinguishes, in disc steps.
 pub(super) const PLACES: u32 = STEPS_PER_TURN * TURNS;

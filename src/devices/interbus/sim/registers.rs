@@ -57,7 +57,7 @@ impl Map {
         self.read(encoders, self.output, first, count, |encoder| Ok(encoder.out()))
     }
 
-    /// Writes whole or half OUT words (functions 6 and 16).
+    /// Writes complete or half OUT words (functions 6 and 16).
     pub(super) fn write(&self, encoders: &mut Encoders, now: Moment, first: u16, values: &[u16]) -> Result<()> {
         let begin = self.range(encoders, self.output, first, values.len())?;
         let places = begin..begin + values.len();
@@ -99,7 +99,7 @@ impl Map {
         Ok(registers)
     }
 
-    /// Returns the offset from the first encoder's register, after checking that the whole range exists.
+    /// Returns the offset from the first encoder's register, after checking that the complete range exists.
     fn range(&self, encoders: &Encoders, base: u16, first: u16, count: usize) -> Result<usize> {
         let begin = first.checked_sub(base).map(usize::from).ok_or(Exception::Address)?;
         if begin + count <= encoders.registers() { Ok(begin) } else { Err(Exception::Address) }

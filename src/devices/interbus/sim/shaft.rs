@@ -3,11 +3,11 @@
 use crate::devices::interbus::protocol::STEPS_PER_TURN;
 use crate::units::Moment;
 
-/// Shaft turning at constant speed. The position does not wrap; the gear takes care of that.
+/// A shaft that turns at constant speed. Its position does not wrap, which is left to the gear.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shaft {
     rpm: f64,
-    /// In steps of the disc at `since`.
+    /// Position at `since`, in disc steps.
     place: f64,
     since: Moment,
 }
@@ -17,7 +17,7 @@ impl Shaft {
         Shaft { rpm, place: f64::from(place), since: Moment::START }
     }
 
-    /// Returns the revolutions per minute; positive clockwise, with a rising position.
+    /// Returns the speed in revolutions per minute, positive for clockwise rotation, which increases the position.
     pub(super) const fn rpm(&self) -> f64 {
         self.rpm
     }
@@ -31,7 +31,7 @@ impl Shaft {
         (self.place, self.since) = (f64::from(place), now);
     }
 
-    /// Returns the shaft position in whole steps, possibly below 0.
+    /// Returns the shaft position in whole steps, which may be negative.
     pub(super) fn place(&self, at: Moment) -> i64 {
         self.exact(at).floor() as i64
     }

@@ -61,7 +61,7 @@ impl Encoder {
         };
     }
 
-    /// Completes a profile that was read for saving with the cam names.
+    /// Adds the cam names to a profile that was read for saving.
     pub(super) fn saved(&mut self, mut profile: InterbusProfile, services: &mut Services) {
         let programs: Vec<_> = profile.image.known().map(|(number, own)| (number, *own)).collect();
         self.staged.refresh_parameters(profile.image.parameters);
@@ -73,7 +73,7 @@ impl Encoder {
         self.session.write_read(Body::new(profile), edits, Vec::new(), services);
     }
 
-    /// Automatically reads the next part of a virtual encoder; returns `false` if nothing is left to read.
+    /// Automatically reads the next part of a virtual encoder, or returns `false` if nothing is left to read.
     pub(super) fn read_on(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
             return false;

@@ -22,14 +22,14 @@ pub enum InterbusAction {
     Plan(Box<Change>),
     /// Returns the encoder to its earlier mode, regardless of who changed it.
     LeadBack,
-    /// Asks the user for a cam table; rows without a program belong to the given one.
+    /// Asks the user for a cam table. Rows that do not specify a program belong to the given one.
     AskTable(ProgramNumber),
     OpenTable(PathBuf),
     /// Imports the cams of a pasted table.
     PasteTable(ProgramNumber, String),
-    /// Applies the imported table to the edits, or discards it.
+    /// Applies the imported table to the edits if true, or else discards it.
     TakeTable(bool),
-    /// Ask where to write the cams as a table, with a decimal comma or a point.
+    /// Asks where to save the cams as a table, with a decimal comma or point.
     AskSaveTable {
         decimal_comma: bool,
     },
@@ -38,7 +38,7 @@ pub enum InterbusAction {
         decimal_comma: bool,
     },
     SetScale(Scale),
-    /// Turn the virtual encoder's shaft, in revolutions per minute.
+    /// Turns the shaft of the virtual encoder at the given speed in revolutions per minute.
     Turn(f64),
     Save(PathBuf),
 }

@@ -24,7 +24,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 pub struct Chart {
     pub program: ProgramNumber,
     pub range: u32,
-    /// Its cams, the first at 0.
+    /// Lanes of the cams, indexed by cam number.
     pub lanes: [Lane; Program::CAMS],
 }
 
@@ -33,15 +33,15 @@ pub struct Lane {
     pub cam: CamNumber,
     pub name: Option<String>,
     pub on: bool,
-    /// Its edges; `None` if the profile does not contain them.
+    /// Edges of the cam, or `None` if the profile does not contain them.
     pub edges: Option<Cam>,
     pub edited: bool,
     pub beyond: bool,
-    /// It is active and overlaps another pulse of its track.
+    /// Whether the cam is active and overlaps another pulse on its track.
     pub clashes: bool,
 }
 
-/// Positions without a gap, both ends with it.
+/// A contiguous range of positions that includes both ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stretch {
     pub first: u32,
@@ -56,17 +56,17 @@ pub struct VisibleRange {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutputState {
-    /// Output by the edited program; `None`: the position or the program is not known.
+    /// Output of the edited program, or `None` if the position or the program is unknown.
     pub simulated: Option<bool>,
-    /// Output reported by the encoder; `None`: not reported.
+    /// Output reported by the encoder, or `None` if not reported.
     pub own: Option<bool>,
 }
 
-/// The least that a view shows, in steps.
+/// Minimum span of a view, in steps.
 const LEAST_SPAN: f64 = 8.0;
 
 impl Chart {
-    /// Creates the chart of an edited program; `None`: it is not known.
+    /// Creates the chart of an edited program, or returns `None` if the program is unknown.
     pub fn of(staged: &Staged, program: ProgramNumber) -> Option<Self> {
         let wanted = staged.wanted()?;
         wanted.image.program(program)?;
@@ -93,7 +93,7 @@ impl Chart {
         self.lanes.get(usize::from(cam.get()))
     }
 
-    /// Returns the same with a cam at another place: shown during a drag.
+    /// Returns the chart with one cam moved, as shown during a drag.
     #[must_use]
     pub fn with(&self, cam: CamNumber, to: Cam) -> Self {
         let mut chart = self.clone();
@@ -104,7 +104,7 @@ impl Chart {
         chart
     }
 
-    /// Returns an inactive cam to draw a new one with; `None` if all are active.
+    /// Returns an inactive cam for drawing a new one, or `None` if all cams are active.
     pub fn free(&self) -> Option<CamNumber> {
         self.lanes.iter().find(|lane| !lane.on).map(|lane| lane.cam)
     }
@@ -113,39 +113,40 @@ impl Chart {
         self.range.saturating_sub(1)
     }
 
-    /// Returns the outputs at a position: bit i for cam i, as far as their edges are known.
+    /// Returns the outputs at a position, with bit i for cam i, as far as the edges of the cams are known.
     pub fn outputs(&self, position: u32) -> u8 {
         let on = |lane: &&Lane| lane.on && lane.edges.is_some_and(|cam| cam.is_on(Value::of_word(position)));
         self.lanes.iter().filter(on).fold(0, |outputs, lane| outputs | 1 << lane.cam.get())
     }
 
-    /// Returns the outputs as indicators: those of this program at a position, and the encoder's own.
+    /// Returns the output indicators: the outputs of this program at a position, and those reported by the encoder.
     pub fn lamps(&self, position: Option<u32>, own: Option<u8>) -> [OutputState; Program::CAMS] {
         let simulated = position.filter(|position| *position < self.range).map(|position| self.outputs(position));
         let bit = |outputs: Option<u8>, cam: CamNumber| outputs.map(|outputs| outputs >> cam.get() & 1 == 1);
         CamNumber::EACH.map(|cam| OutputState { simulated: bit(simulated, cam), own: bit(own, cam) })
     }
 
-    /// Returns a cam's edge; `None` if the cam has none.
+    /// Returns an edge of a cam, or `None` if the cam has no edges.
     pub fn edge(&self, cam: CamNumber, edge: Edge) -> Option<u32> {
         Some(of_edge(self.lane(cam)?.edges?, edge).get())
     }
 }
 
 impl Lane {
-    /// Returns its active sections within the measuring range: two if it runs over the end.
+    /// Returns the active sections of the cam within the measuring range. There are two if the cam wraps around the
+    /// end.
     pub fn stretches(&self, range: u32) -> Vec<Stretch> {
         self.edges.map(|cam| stretches(cam, range)).unwrap_or_default()
     }
 }
 
 impl OutputState {
-    /// Returns whether the encoder reports another state than this program gives.
+    /// Returns whether the encoder reports a state that differs from the program's output.
     pub fn differs(self) -> bool {
         self.simulated.zip(self.own).is_some_and(|(simulated, own)| simulated != own)
     }
 
-    /// Returns the state of the output: the encoder's own if known.
+    /// Returns the state of the output, which is that reported by the encoder if known.
     pub const fn lit(self) -> Option<bool> {
         match self.own {
             Some(own) => Some(own),
@@ -159,7 +160,7 @@ impl VisibleRange {
         VisibleRange { first: 0.0, span: f64::from(range.max(1)) }
     }
 
-    /// Returns the first visible position, with its fraction.
+    /// Returns the first visible position, including its fraction.
     pub const fn first(&self) -> f64 {
         self.first
     }
@@ -172,7 +173,7 @@ impl VisibleRange {
         self.span >= f64::from(range)
     }
 
-    /// Returns the place of a position in the view: 0 at its left end, 1 at its right end.
+    /// Returns the relative location of a position in the view, from 0 at the left end to 1 at the right end.
     pub fn part(&self, position: f64) -> f64 {
         (position - self.first) / self.span
     }
@@ -181,7 +182,7 @@ impl VisibleRange {
         self.first + part * self.span
     }
 
-    /// Returns the view zoomed by this factor, around a position that stays in place.
+    /// Returns the view zoomed by the given factor around a position that stays at the same location.
     #[must_use]
     pub fn zoomed(&self, times: f64, around: f64, range: u32) -> Self {
         let most = f64::from(range.max(1));
@@ -196,7 +197,7 @@ impl VisibleRange {
         VisibleRange { first: self.first + by, ..*self }.within(range)
     }
 
-    /// Returns the same for another range, which may be shorter by now.
+    /// Returns the view fitted to another range, which may be shorter.
     #[must_use]
     pub fn within(&self, range: u32) -> Self {
         let most = f64::from(range.max(1));

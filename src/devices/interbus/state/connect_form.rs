@@ -12,7 +12,7 @@ use crate::parameter::{Entry, Parameters as _};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InterbusLinkKind {
-    /// Virtual encoder within the program, behind a virtual gateway.
+    /// Virtual encoder inside the program, behind a virtual gateway.
     #[default]
     Virtual,
     Gateway,
@@ -25,18 +25,18 @@ pub enum InterbusLinkKind {
 pub struct InterbusForm {
     pub kind: InterbusLinkKind,
     pub host: String,
-    /// TCP port; 502 if empty.
+    /// TCP port, which is 502 if empty.
     pub tcp_port: String,
     pub file: String,
-    /// Entered values of the other parameters.
+    /// Entered values of the remaining parameters.
     pub typed: Typed,
-    /// Whether the low word of a pair comes first.
+    /// Whether the low word comes first in a pair of registers.
     pub low_first: bool,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
 }
 
-/// Link parameter for the word order, with the value for the unusual order.
+/// Link parameter for the word order, with the value for the less usual order.
 const LOW_FIRST: (&str, &str) = ("order", "low-first");
 const PORT: &str = "502";
 
@@ -88,7 +88,7 @@ impl InterbusForm {
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Returns the entries for the location of the words in the gateway, followed by the rarely needed ones.
+    /// Returns the entries that locate the words in the gateway, followed by the rarely needed entries.
     pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| ["unit", "input", "output"].contains(&own.key))
     }
@@ -97,7 +97,7 @@ impl InterbusForm {
         Config::entries()
     }
 
-    /// Fills in the entry for a parameter; returns `false` if the form has no entry that can show the value.
+    /// Fills in the entry for a parameter, or returns `false` if the form has no entry that can show the value.
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_low_first = (name, value) == LOW_FIRST;
         self.low_first |= is_low_first;

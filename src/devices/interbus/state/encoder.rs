@@ -31,21 +31,21 @@ pub struct Encoder {
     pub staged: Staged,
     pub read_outs: BTreeMap<u16, Value>,
     pub record: Record,
-    /// Comparison of the reported cam outputs with the cam programs.
+    /// Comparison of the reported cam outputs with those of the cam programs.
     pub preview: Preview,
     /// Words of the last handshakes, newest last.
     pub handshake: VecDeque<Handshake>,
     pub motor: Option<Motor>,
-    /// A table of cams that was read and is not taken yet.
+    /// Cam table that was read but has not been applied yet.
     pub import: Option<Import>,
     pub scale: Scale,
-    /// Reason for which the last edit was refused.
+    /// Reason why the last edit was refused.
     pub refusal: Option<Text>,
     /// Whether the user has confirmed that the machine stands still.
     stopped: bool,
-    /// Program for those rows of the table being opened that name none.
+    /// Program for the rows of a table being opened that do not specify one.
     pub(super) table_program: ProgramNumber,
-    /// Programs that were written, to be read again.
+    /// Programs that were written and must be read again.
     pub(super) read_after: Vec<ProgramNumber>,
     pub(super) trace: Meaning,
 }
@@ -143,7 +143,7 @@ impl Encoder {
         self.stopped || self.session.is_virtual()
     }
 
-    /// Returns whether the user must confirm that the machine stands still before going on.
+    /// Returns whether the user must confirm that the machine stands still before continuing.
     pub fn needs_standstill(&self) -> bool {
         self.session.phase != Phase::Offline && !self.session.is_virtual()
     }
@@ -152,7 +152,7 @@ impl Encoder {
         self.stopped = stopped;
     }
 
-    /// Returns the steps of the measuring range, as edited.
+    /// Returns the number of steps in the measuring range, including edits.
     pub fn range(&self) -> u32 {
         self.staged.wanted().map_or(0, EditedValues::range)
     }
@@ -170,7 +170,7 @@ impl Encoder {
         self.staged.device().map_or(0, |image| image.known().count())
     }
 
-    /// Returns the memory's write cycle count as recorded on this computer, not including uncountable stores.
+    /// Returns the memory's write cycle count as recorded on this computer, excluding stores that cannot be counted.
     pub fn stores(&self) -> Option<u64> {
         self.session.cycles
     }
@@ -187,7 +187,7 @@ impl Encoder {
         self.staged.is_dirty()
     }
 
-    /// Takes over the results of a survey. Edits are kept unless they belong to another encoder.
+    /// Adopts the results of a survey. Edits are kept unless they belong to another encoder.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
             self.replaced_by(&survey.identity.serial_number, services);
@@ -208,7 +208,7 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// Returns whether the identity belongs to a different encoder from the one last read.
+    /// Returns whether the identity belongs to an encoder other than the one last read.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         self.identity().is_some_and(|known| known.serial_number != identity.serial_number)
     }
@@ -223,7 +223,7 @@ impl Encoder {
         services.note(Severity::Note, vec![fact], Some(&self.session.name()));
     }
 
-    pub(super) fn shake(&mut self, step: Handshake) {
+    pub(super) fn show_handshake_step(&mut self, step: Handshake) {
         self.handshake.push_back(step);
         let surplus = self.handshake.len().saturating_sub(STEPS);
         self.handshake.drain(..surplus);

@@ -20,7 +20,8 @@ use crate::worker::{OpenError, Session};
 
 impl Kind for Interbus {
     const KIND: &'static str = KIND;
-    /// Parameters and position share one word, which a control system may be reading, so live polling starts disabled.
+    /// Whether live polling starts enabled. It does not, since parameters and position share a word that a control
+    /// system may be reading.
     const STARTS_LIVE: bool = false;
     type Edits = Edits;
     type SessionHandle = Option<Motor>;
@@ -88,7 +89,7 @@ impl SessionEvents for Encoder {
     }
 
     fn message_received(&mut self, DeviceMessage::Handshake(step): DeviceMessage, _: &mut Services) {
-        self.shake(step);
+        self.show_handshake_step(step);
     }
 
     fn finished(&mut self, output: InterbusOutput, services: &mut Services) {
@@ -139,7 +140,7 @@ impl SessionEvents for Encoder {
         words::is_silence(error)
     }
 
-    /// Forgets the review, and that the machine was confirmed to stand still.
+    /// Discards the review and the confirmation that the machine stands still.
     fn forget_requests(&mut self) {
         self.say_stopped(false);
         self.forget_plan();

@@ -22,7 +22,7 @@ use crate::devices::interbus::procedures::{AwaitedWord, Error, Implausible, Left
 use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
 use crate::link::LinkError;
 
-/// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
+/// Returns the texts for a job that ended early: one or more sentences, each of which may be on its own line.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
@@ -34,7 +34,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// Returns why the connection failed, if nothing more can be requested over it.
+/// Returns why the connection failed, if it can no longer be used for requests.
 pub fn loss(error: &JobError) -> Option<Text> {
     lost(error.device()?).map(link)
 }

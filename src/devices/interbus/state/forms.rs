@@ -8,7 +8,7 @@ use crate::devices::interbus::profile::{Parameters, Scale, Unit};
 use crate::devices::interbus::protocol::{Parameter, Value};
 use crate::devices::interbus::state::TEXTS;
 
-/// Parses a whole number; blanks or apostrophes may separate its digits.
+/// Parses a whole number. Its digits may be separated by blanks or apostrophes.
 pub fn number(text: &str) -> Result<u32, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
@@ -18,7 +18,8 @@ pub fn number(text: &str) -> Result<u32, Text> {
     number.ok_or_else(|| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
-/// Parses an entered parameter into an edit. Whether the value fits the others is checked when the edit is applied.
+/// Parses an entered parameter into an edit. Whether the value is compatible with the other parameters is checked when
+/// the edit is applied.
 ///
 /// # Errors
 /// The entry is not a number.
@@ -35,7 +36,7 @@ pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<E
     })
 }
 
-/// Parses the preset to set; an empty entry means the stored preset.
+/// Parses the preset to set. An empty entry means the stored preset.
 ///
 /// # Errors
 /// The entry is not a number or is beyond the measuring range.
@@ -46,16 +47,16 @@ pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
     within(Parameter::Preset, number(text)?, now)
 }
 
-/// Parses how far a program is shifted, later or earlier.
+/// Parses the number of steps by which a program is shifted later or earlier.
 ///
 /// # Errors
-/// Not a number.
+/// The entry is not a number.
 pub fn offset(text: &str) -> Result<i64, Text> {
     let entry = text.trim().replace('\u{2212}', "-");
     entry.parse::<i32>().map(i64::from).map_err(|_| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
-/// Returns a position as an entry, in the units of the machine.
+/// Formats a position as an entry in machine units.
 pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
     match scale.unit() {
         Unit::Steps if scale.zero() == 0 => step.to_string(),

@@ -42,7 +42,7 @@ pub use staged::{Edit, EditError, EditedValues, Mark, Staged, ValueId};
 pub use table::Import;
 
 pub enum Done {
-    /// A table of cams was read, or not.
+    /// The outcome of reading a cam table file.
     Read(PathBuf, Result<String, FileError>),
     Written(PathBuf, Result<(), FileError>),
 }

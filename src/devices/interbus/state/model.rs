@@ -33,7 +33,7 @@ impl DeviceModel for Encoder {
                 self.read_table(explain::plain(name), text, self.table_program);
             }
             Done::Written(path, Ok(())) => {
-                services.log.settle_file(&path);
+                services.log.remove_file_notices(&path);
                 let text = Text::new("session.saved").with("path", path.display());
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
             }

@@ -35,14 +35,15 @@ impl Preview {
         Preview { programs, compiled, same: 0, other: 0, last: None }
     }
 
-    /// Takes the encoder's programs; the comparison restarts if they have changed.
+    /// Adopts the encoder's programs. The comparison restarts if they have changed.
     pub(super) fn follow(&mut self, programs: &[Option<Program>; ProgramNumber::COUNT]) {
         if self.programs != *programs {
             *self = Preview::of(*programs);
         }
     }
 
-    /// Compares the outputs in a word with those of its program, provided that outputs, program and position are known.
+    /// Compares the outputs in a word with those of its program, provided that the outputs, program and position are
+    /// known.
     pub(super) fn compare(&mut self, reading: &WordReading) {
         let Some(StartupMode::Cams(program)) = reading.mode else { return };
         let at = usize::from(program.get() - 1);
@@ -66,7 +67,7 @@ mod tests {
     use crate::devices::interbus::protocol::{Cam, Gear, WindowShift};
     use crate::units::Moment;
 
-    /// Cam 3 from 15 to 213 (reference 7), in program 2.
+    /// Cam 3 of program 2 is on from 15 to 213 (reference 7).
     #[test]
     fn outputs_are_compared_with_their_program() {
         let mut program = Program { mask: 8, ..Program::default() };

@@ -5,7 +5,7 @@ use crate::app::Text;
 use crate::devices::interbus::protocol::{Mode, ReadOut, Single, WindowShift};
 use crate::devices::interbus::state::TEXTS;
 
-/// Direction of a word and class of the encoder.
+/// Direction of a word and encoder class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordSource {
     /// From a K3 encoder.
@@ -13,7 +13,7 @@ pub enum WordSource {
     In,
     /// To a K3 encoder.
     Out,
-    /// From a K1 encoder, 16 bits.
+    /// 16-bit word from a K1 encoder.
     K1,
     /// From a K2 encoder.
     K2,
@@ -68,7 +68,7 @@ pub struct DecodedWord {
 }
 
 impl Reading {
-    /// Decodes words separated by blanks or commas, optionally written with `0x` or `h`.
+    /// Decodes words separated by blanks or commas, which may be written with `0x` or `h`.
     pub fn lines(&self, text: &str) -> Vec<DecodedWord> {
         let words = text.split([' ', ',', ';', '\n', '\r', '\t']).filter(|word| !word.is_empty());
         words.map(|word| self.line(word)).collect()

@@ -31,7 +31,7 @@ impl Record {
         self.track.begin(began);
     }
 
-    /// Adds new readings; `dropped` is the number of readings that came too late to be taken.
+    /// Adds new readings; `dropped` is the number of readings that arrived too late to be recorded.
     pub(super) fn add(&mut self, readings: Vec<WordReading>, dropped: u64) {
         self.track.note_dropped(dropped);
         for reading in readings {
@@ -87,7 +87,7 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Forgets the recording of the previous encoder.
+    /// Discards the recording of the previous encoder.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         self.last = None;

@@ -26,7 +26,7 @@ use crate::app::{SteppedEdits, SteppedParts};
 use crate::devices::interbus::profile::{Image, Names, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
 
-/// All values that can be edited, in their edited state.
+/// All editable values in their edited state.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct EditedValues {
     pub image: Image,
@@ -35,21 +35,21 @@ pub struct EditedValues {
     pub names: Names,
 }
 
-/// The values that the edits are compared with.
+/// Source of the values with which the edits are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum BaseSource {
-    /// Encoder: a value that was not read is not known.
+    /// Encoder, for which a value that was not read is unknown.
     #[default]
     Encoder,
-    /// Profile: a missing value is not in the profile.
+    /// Profile, for which a missing value is not in the profile.
     Profile,
 }
 
-/// The base, the edited values, and the steps of undo and redo.
+/// The base values, the edited values, and the undo and redo steps.
 #[derive(Clone, Debug, Default)]
 pub struct Staged {
     base_source: BaseSource,
-    /// The values of the encoder or the profile; both or none.
+    /// Values of the encoder or the profile.
     base: Option<EditedValues>,
     wanted: Option<EditedValues>,
     history: History<EditedValues>,
@@ -63,12 +63,12 @@ impl EditedValues {
         EditedValues { image, names: Names::default() }
     }
 
-    /// Returns the steps of the measuring range; positions are below.
+    /// Returns the number of steps in the measuring range. All positions are below it.
     pub const fn range(&self) -> u32 {
         self.image.parameters.steps
     }
 
-    /// Returns a cam's edges; `None`: they are not known.
+    /// Returns the edges of a cam, or `None` if they are unknown.
     pub fn cam(&self, program: ProgramNumber, cam: CamNumber) -> Option<Cam> {
         self.image.program(program)?.cams.get(usize::from(cam.get())).copied().flatten()
     }
@@ -83,14 +83,14 @@ impl EditedValues {
 }
 
 impl Staged {
-    /// Creates the edits of a profile, which can also gain values that it does not have.
+    /// Creates the edits of a profile, to which missing values can also be added.
     pub fn of_profile(image: Image, names: Names) -> Self {
         let base = EditedValues { image, names };
         Staged { base_source: BaseSource::Profile, wanted: Some(base.clone()), base: Some(base), ..Staged::default() }
     }
 
-    /// Takes the new content of the profile. If it equals the edited values, it was saved, and the undo steps stay;
-    /// otherwise others have written it, and only the values edited here keep their edits.
+    /// Adopts the new content of the profile. If it equals the edited values, it was saved, and the undo steps are
+    /// kept. Otherwise another program has written it, and only the values edited here keep their edits.
     pub fn saved(&mut self, image: Image, names: Names) {
         let now = EditedValues { image, names };
         if self.wanted.as_ref() == Some(&now) {
@@ -104,7 +104,7 @@ impl Staged {
         self.take_draft(edits);
     }
 
-    /// Takes a reading of the encoder. Values missing in it stay, and so do edits and their undo steps.
+    /// Adopts a reading of the encoder. Values missing in the reading are kept, as are edits and their undo steps.
     pub fn refresh(&mut self, read: Image) {
         let known = self.base.take();
         let (names, image) = match &known {
@@ -119,7 +119,7 @@ impl Staged {
         self.refresh(Image::of(parameters));
     }
 
-    /// Takes a reading of cam programs, with the shift of the window. Does nothing before the parameters were read.
+    /// Adopts a reading of cam programs and the window shift. Does nothing before the parameters have been read.
     pub fn refresh_programs(&mut self, programs: &[(ProgramNumber, Program)], shift: Option<WindowShift>) {
         let Some(base) = &self.base else { return };
         let mut image = Image { shift, ..Image::of(base.image.parameters) };
@@ -135,7 +135,7 @@ impl Staged {
         matches!(self.base_source, BaseSource::Encoder)
     }
 
-    /// Takes new values of the encoder or the profile.
+    /// Adopts new values of the encoder or the profile.
     fn rebase(&mut self, now: EditedValues) {
         match (&self.base, &mut self.wanted) {
             (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| merge::rebase(own, before, &now)),
@@ -146,44 +146,44 @@ impl Staged {
         self.take_draft(waiting);
     }
 
-    /// Discards everything, for another encoder.
+    /// Discards all values and edits before another encoder is used.
     pub fn clear(&mut self) {
         *self = Staged { base_source: self.base_source, ..Staged::default() };
     }
 
-    /// Returns the values of the encoder or the profile; `None` if nothing was read.
+    /// Returns the values of the encoder or the profile, or `None` if nothing was read.
     pub fn base(&self) -> Option<&EditedValues> {
         self.base.as_ref()
     }
 
-    /// Returns the values of the encoder or the profile; `None` if nothing was read.
+    /// Returns the values of the encoder or the profile, or `None` if nothing was read.
     pub fn device(&self) -> Option<&Image> {
         self.base.as_ref().map(|base| &base.image)
     }
 
-    /// Returns the edited values; `None` if nothing was read.
+    /// Returns the edited values, or `None` if nothing was read.
     pub fn wanted(&self) -> Option<&EditedValues> {
         self.wanted.as_ref()
     }
 
-    /// Returns a program as edited; `None`: it was not read, or is not in the profile.
+    /// Returns a program with its edits, or `None` if it was not read or is not in the profile.
     pub fn program(&self, number: ProgramNumber) -> Option<&Program> {
         self.wanted.as_ref()?.image.program(number)
     }
 
-    /// Makes an edit, as one step that can be undone. Returns whether anything changed.
+    /// Makes an edit as a single undo step, and returns whether anything changed.
     ///
     /// # Errors
-    /// Why it is not possible; nothing is changed then.
+    /// The reason why the edit is not possible; nothing is changed.
     pub fn edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
         let after = self.tried(edit)?;
         Ok(self.step(after))
     }
 
-    /// Returns the values after an edit without making it: for the picture during a drag.
+    /// Returns the values that an edit would result in, without making it, for display during a drag.
     ///
     /// # Errors
-    /// Why it is not possible.
+    /// The reason why the edit is not possible.
     pub fn tried(&self, edit: &Edit) -> Result<EditedValues, EditError> {
         let wanted = self.wanted.as_ref().ok_or(EditError::NothingRead)?;
         edit::edited(wanted, edit, self.base_source)

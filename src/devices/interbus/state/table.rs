@@ -12,14 +12,14 @@ use crate::devices::interbus::profile::{CamTable, TableOptions, emit_table};
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::store::{read_file, write_atomically};
 
-/// A table that was read and is not taken yet.
+/// A table that was read but has not been applied yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
     pub origin: Text,
-    /// Table content, in the present units of the machine.
+    /// Table content in the present machine units.
     pub table: CamTable,
     text: String,
-    /// Program for rows that name none.
+    /// Program for rows that do not specify one.
     program: ProgramNumber,
 }
 
@@ -51,8 +51,8 @@ impl Encoder {
         }
     }
 
-    /// Applies the imported table to the edits, or discards it. A table with problems stays open with the reason, since
-    /// omitting a line would switch its cam off.
+    /// Applies the imported table to the edits, or discards it. A table with problems stays open with the reason shown,
+    /// since omitting a line would switch its cam off.
     pub(super) fn take_table(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
         if take && !import.table.problems.is_empty() {

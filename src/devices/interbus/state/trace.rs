@@ -29,7 +29,7 @@ impl Meaning {
         self.mode = mode;
     }
 
-    /// Explains a frame; the explanation of an intact frame without a word is empty.
+    /// Explains a frame. The explanation of an intact frame without a word is empty.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
         if entry.direction == Direction::Sent {
@@ -45,7 +45,7 @@ impl Meaning {
         }
     }
 
-    /// Decodes a reply; an error word in the reply counts as reported by the encoder.
+    /// Decodes a reply. An error word in the reply counts as reported by the encoder.
     fn received(&mut self, bytes: &[u8]) -> Explained {
         let meaning = self.meanings(Direction::Received, bytes);
         let is_error = match carried_word(false, bytes, self.order) {
@@ -99,8 +99,8 @@ mod tests {
     use crate::bits::{MaskedBytes, parse_hex};
     use crate::units::Moment;
 
-    /// Issue 22.11: replies of a gateway (Modbus application protocol 1.1b3, 6.4 and 7) that are damaged by hand, refusals,
-    /// and those with an error word of the encoder (reference 2), have a meaning and a mark.
+    /// Issue 22.11: damaged gateway replies (Modbus application protocol 1.1b3, 6.4 and 7), refusals, and replies with
+    /// an error word of the encoder (reference 2) are explained and marked.
     #[test]
     fn damaged_replies_are_explained_and_marked() {
         let request = "00 07 00 00 00 06 01 04 00 00 00 02";

@@ -18,14 +18,14 @@ pub struct WordContext {
 }
 
 impl WordContext {
-    /// Returns the facts about the encoder that a command is meant for.
+    /// Returns the facts about an encoder for which a command is intended.
     pub fn of(command: Command, shift: Option<WindowShift>) -> Self {
         let read_out = if let Command::ReadOut(what) = command { Some(what) } else { None };
         WordContext { mode: mode_of_command(command), read_out, shift }
     }
 }
 
-/// Describes an OUT word in the given mode, including whether the word is illegal there.
+/// Describes an OUT word in the given mode, including whether the word is illegal in that mode.
 pub fn out(word: u32, mode: Mode) -> Text {
     match Command::in_mode(word, mode) {
         Ok(command) => command_text(command),
@@ -154,7 +154,7 @@ mod tests {
         WordContext { mode, read_out: None, shift: WindowShift::new(0) }
     }
 
-    /// Words of reference 3, 5 and 7.
+    /// The words are from references 3, 5 and 7.
     #[test]
     fn words_are_decoded_in_their_mode() {
         let english = |text: Text| text.words(Language::English);

@@ -17,7 +17,7 @@ use crate::profile::{Body, ProfileError};
 impl Encoder {
     /// Returns the edited values. Only edited programs are included, since planning selects each included program to
     /// read it. If the measuring range shrinks, all known programs are included, because their cams must stay within
-    /// it.
+    /// the new range.
     fn edited_image(&self) -> Option<Image> {
         let (wanted, device) = (&self.staged.wanted()?.image, self.staged.device()?);
         let mut edited = Image::of(wanted.parameters);

@@ -49,7 +49,7 @@ pub(super) fn page_ui(
     }
     ui.add_space(theme.space.between);
     let Some(chart) = Chart::of(&encoder.staged, program) else {
-        unread(ui, theme, encoder, program, actions);
+        unread_ui(ui, theme, encoder, program, actions);
         return;
     };
     chart::card_ui(ui, theme, encoder, &chart, &mut view.chart, actions);
@@ -66,7 +66,7 @@ pub(super) fn page_ui(
 }
 
 /// Draws a placeholder for a program that has not been read, with a button to read it.
-fn unread(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
+fn unread_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_cams.title"), |ui| {
         let id = encoder.session.id;
         if encoder.staged.wanted().is_none() {

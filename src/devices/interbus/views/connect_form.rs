@@ -45,16 +45,16 @@ impl TypedConnectForm for InterbusConnectForm {
                     (&mut form.host, "192.168.1.10"),
                     (&mut form.tcp_port, "502"),
                 );
-                registers(ui, theme, form);
+                registers_ui(ui, theme, form);
             }
             InterbusLinkKind::Replay => {
                 recording(ui, theme, &mut form.file, actions);
-                order(ui, theme, form);
+                order_ui(ui, theme, form);
             }
         }
         if form.kind != InterbusLinkKind::Replay && expandable_ui(ui, theme, more) {
             if form.kind == InterbusLinkKind::Virtual {
-                registers(ui, theme, form);
+                registers_ui(ui, theme, form);
             }
             let (_, rest) = InterbusForm::of_the_link();
             typed(ui, theme, say, rest, &mut form.typed);
@@ -62,14 +62,14 @@ impl TypedConnectForm for InterbusConnectForm {
     }
 }
 
-/// Draws the settings for the location of the words in the gateway.
-fn registers(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
+/// Draws the settings that locate the words in the gateway.
+fn registers_ui(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
     let (registers, _) = InterbusForm::of_the_link();
     typed(ui, theme, say, registers, &mut form.typed);
-    order(ui, theme, form);
+    order_ui(ui, theme, form);
 }
 
-fn order(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
+fn order_ui(ui: &mut Ui, theme: &Theme, form: &mut InterbusForm) {
     let word = say(theme, "connect.word_order");
     entry(ui, theme, &word, |ui| {
         let orders = [(false, "connect.high_first"), (true, "connect.low_first")];

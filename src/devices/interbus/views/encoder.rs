@@ -19,11 +19,11 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         theme,
         &mut *actions,
         is_profile,
-        (|ui, actions| identity(ui, theme, encoder, actions), |ui, actions| check(ui, theme, encoder, actions)),
+        (|ui, actions| identity(ui, theme, encoder, actions), |ui, actions| check_ui(ui, theme, encoder, actions)),
         (
-            |ui| wiring(ui, theme),
+            |ui| wiring_ui(ui, theme),
             |ui, actions| {
-                sends(ui, theme, encoder, actions);
+                sends_ui(ui, theme, encoder, actions);
                 if let Some(motor) = &encoder.motor {
                     theme.gap(ui);
                     motor::card_ui(ui, theme, motor.rpm(), |rpm| {
@@ -35,7 +35,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
     );
     if !is_profile {
         theme.gap(ui);
-        wiring(ui, theme);
+        wiring_ui(ui, theme);
     }
 }
 
@@ -77,7 +77,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
     });
 }
 
-fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {
@@ -89,8 +89,8 @@ fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action
     });
 }
 
-/// Draws the present word and its content: position, speed or program outputs.
-fn sends(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+/// Draws the present word and its content: position, speed or cam outputs.
+fn sends_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_sends.title"), |ui| {
         match encoder.record.last() {
             None => {
@@ -138,7 +138,7 @@ fn sends(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action
 const WIRING: [&str; 5] =
     ["ib_wiring.bus", "ib_wiring.supply", "ib_wiring.place", "ib_wiring.gateway", "ib_wiring.manual"];
 
-fn wiring(ui: &mut Ui, theme: &Theme) {
+fn wiring_ui(ui: &mut Ui, theme: &Theme) {
     folding_card(ui, theme, "wiring.title", |ui| {
         for note in WIRING {
             paragraph(ui, theme.label(say(theme, note)));
@@ -152,8 +152,8 @@ mod tests {
     use crate::devices::interbus::state::TEXTS;
     use crate::ui::wiring::check_notes;
 
-    /// Issue 22.23: INTERBUS manual, 3.1 and 3.2 (9-pin round connectors, in: male, out: female; no addresses; shield to
-    /// the housing, Loop: housing to PE), 6.1 (10 to 30 V DC absolute, 3.5 W, 500 kBaud or 2 MBaud).
+    /// Issue 22.23: INTERBUS manual, 3.1 and 3.2 (9-pin round connectors, in: male, out: female; no addresses; shield
+    /// to the housing, Loop: housing to PE) and 6.1 (10 to 30 V DC absolute, 3.5 W, 500 kBaud or 2 MBaud).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         check_notes(

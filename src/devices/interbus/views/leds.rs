@@ -24,10 +24,10 @@ const LAMP: f32 = 92.0;
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     let none: Vec<Action> = Vec::new();
-    two_columns(ui, theme, (view, none), |ui, (view, _)| lamps(ui, theme, view), |ui, _| codes(ui, theme));
+    two_columns(ui, theme, (view, none), |ui, (view, _)| lamps_ui(ui, theme, view), |ui, _| codes(ui, theme));
 }
 
-fn lamps(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
+fn lamps_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     folding_card(ui, theme, TEXTS.text("ib_leds.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "ib_leds.words")));
         ui.horizontal_wrapped(|ui| {
@@ -52,7 +52,7 @@ fn lamps(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     });
 }
 
-/// Draws a clickable LED; each click switches from dark to lit and, if possible, to blinking.
+/// Draws a clickable LED. Each click switches from dark to lit and, if possible, to blinking.
 fn lamp_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut LedState, blinks: bool) {
     let palette = theme.palette;
     let (id, ink) = match lamp {

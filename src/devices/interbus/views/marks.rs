@@ -8,13 +8,13 @@ use crate::devices::interbus::state::Encoder;
 use crate::ui::controls::{paragraph, problem};
 use crate::ui::{Theme, icons, page};
 
-/// Draws the marks, with those of the shown program first, and the reason why the last edit was refused.
+/// Draws the marks, starting with those of the shown program, and the reason why the last edit was refused.
 pub(super) fn marks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, shown: Option<ProgramNumber>) {
     let marks = encoder.visible_marks(shown);
     if marks.is_empty() && encoder.refusal.is_none() {
         return;
     }
-    let around = page::sides(ui, theme);
+    let around = page::side_margin(ui, theme);
     let frame = egui::Frame::NONE.inner_margin(egui::Margin { left: around, right: around, top: 8, bottom: 4 });
     let id = egui::Id::unique(encoder.session.id).with("interbus_marks");
     egui::Panel::bottom(id).frame(frame).show_separator_line(false).show(ui, |ui| {

@@ -23,7 +23,7 @@ use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 pub(crate) enum Page {
     #[default]
     Encoder,
-    /// Position parameters, and the words that set them.
+    /// Position parameters, and the words with which they are set.
     Parameters,
     Cams,
     Diagnosis,
@@ -100,7 +100,7 @@ impl TypedDeviceView for InterbusView {
     ) {
         if page.has_edit_bar() {
             // Fixed while the rest scrolls.
-            let around = page::sides(ui, theme);
+            let around = page::side_margin(ui, theme);
             let margin = egui::Margin { left: around, right: around, top: 0, bottom: 8 };
             egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
                 .frame(egui::Frame::NONE.inner_margin(margin))
@@ -134,7 +134,7 @@ impl TypedDeviceView for InterbusView {
     }
 }
 
-/// Returns a message from the INTERBUS or the common catalogue, in the window's language.
+/// Returns a message from the INTERBUS catalogue or the common one, in the language of the window.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -44,24 +44,24 @@ pub(super) fn page_ui(
         theme,
         (actions, view),
         |ui, (actions, view)| {
-            table(ui, theme, encoder, view, actions);
+            table_ui(ui, theme, encoder, view, actions);
         },
         |ui, (actions, view)| {
             if is_profile {
                 return;
             }
-            preset(ui, theme, encoder, view, actions);
+            preset_ui(ui, theme, encoder, view, actions);
             theme.gap(ui);
-            wear(ui, theme, encoder);
+            wear_ui(ui, theme, encoder);
         },
     );
     if !is_profile {
         theme.gap(ui);
-        handshake(ui, theme, encoder);
+        handshake_ui(ui, theme, encoder);
     }
 }
 
-fn table(
+fn table_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -135,7 +135,7 @@ fn table(
     });
 }
 
-fn preset(
+fn preset_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -174,7 +174,7 @@ fn preset(
 }
 
 /// Draws the number of EEPROM stores counted on this computer.
-fn wear(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
+fn wear_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_wear.title"), |ui| {
         let Some(stores) = encoder.stores() else {
             paragraph(ui, theme.label(say(theme, "ib_wear.unknown")));
@@ -196,7 +196,7 @@ fn wear(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     });
 }
 
-fn handshake(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
+fn handshake_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_handshake.title"), |ui| {
         if encoder.handshake.is_empty() {
             paragraph(ui, theme.label(say(theme, "ib_handshake.nothing")));

@@ -48,17 +48,17 @@ Beside the frame: name, family (whose times count), direction: \"ccw\", preset: 
 pub(crate) struct SsiDecode {
     #[command(flatten)]
     pub(crate) layout: SsiLayout,
-    /// Frame as bits in clock order (0b1010… or 1010…), or as 0x…, right-justified; repeatable. @FILE: the frames of a file,
-    /// as `ssi find` reads it. -: the same from standard input.
+    /// Frame as bits in clock order (0b1010… or 1010…), or as 0x…, right-justified; repeatable. @FILE: the frames of a
+    /// file, as `ssi find` reads it. -: the same from standard input.
     #[arg(required = true, value_name = "FRAME")]
     pub(crate) frames: Vec<String>,
 }
 
 #[derive(Args)]
 pub(crate) struct SsiFind {
-    /// File with one frame per line, in the order of reading: bits in clock order, or 0x…, right-justified. Further columns
-    /// are ignored. Or a table of `position ssi --csv`, or clock and data of a logic analyser: the CSV of Saleae Logic or
-    /// sigrok. -: standard input.
+    /// File with one frame per line, in the order of reading: bits in clock order, or 0x…, right-justified. Further
+    /// columns are ignored. Or a table of `position ssi --csv`, or clock and data of a logic analyser: the CSV of
+    /// Saleae Logic or sigrok. -: standard input.
     #[arg(value_name = "FRAMES.txt")]
     pub(crate) file: PathBuf,
     /// Number of bits of a frame given in hex.
@@ -117,16 +117,17 @@ pub(super) struct LayoutOption {
 
 #[derive(Args)]
 pub(crate) struct SsiLayout {
-    /// Profile of an SSI encoder, or a family with settings, such as ahm36,code=gray,st=12. Settings that are left out have
-    /// the factory value and the largest resolution.
+    /// Profile of an SSI encoder, or a family with settings, such as ahm36,code=gray,st=12. Settings that are left out
+    /// have the factory value and the largest resolution.
     ///
-    /// Families: ahs36 ahm36 afs60 afm60 afs60s afm60s atm60 atm90 ars60 ttk70 kh53. Settings: code=binary|gray|gray-excess|bcd,
-    /// over=position|padded|errors (what Gray goes over), mt= and st= (bits), steps= with turns= or revolutions=25/2,
-    /// clocks=, align=left|right24|right25|tree12_13|tree13_12, shift=0|1, err=none|fix|following, step= (nanometres),
-    /// direction=cw|ccw and preset= (which do not change how a frame is read). Or linuxcnc: followed by a format string of
-    /// LinuxCNC. Or any frame, as printed by ssi find: frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1 with clocks=, mt= and
-    /// st= (or steps= with turns= or revolutions=, or bits= with step=), code=, over=, area=, lead=, between=, shift=,
-    /// inverted=0|1, parity=even@27|odd@27, repeat=25+1, and clocks of further bits: ones= (always 1), err=, unknown=.
+    /// Families: ahs36 ahm36 afs60 afm60 afs60s afm60s atm60 atm90 ars60 ttk70 kh53. Settings:
+    /// code=binary|gray|gray-excess|bcd, over=position|padded|errors (what Gray goes over), mt= and st= (bits), steps=
+    /// with turns= or revolutions=25/2, clocks=, align=left|right24|right25|tree12_13|tree13_12, shift=0|1,
+    /// err=none|fix|following, step= (nanometres), direction=cw|ccw and preset= (which do not change how a frame is
+    /// read). Or linuxcnc: followed by a format string of LinuxCNC. Or any frame, as printed by ssi find:
+    /// frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1 with clocks=, mt= and st= (or steps= with turns= or
+    /// revolutions=, or bits= with step=), code=, over=, area=, lead=, between=, shift=, inverted=0|1,
+    /// parity=even@27|odd@27, repeat=25+1, and clocks of further bits: ones= (always 1), err=, unknown=.
     #[arg(long = "layout", value_name = "FILE|SPEC")]
     pub(crate) spec: String,
 }
@@ -150,7 +151,8 @@ pub(crate) enum SsiFormat {
     Svg,
     /// A timing diagram of a burst; violated limits are named on stderr.
     Timing,
-    /// Structured text for controllers of 32 bits: DWORD in place of LWORD, two of them for a frame of more than 32 clocks.
+    /// Structured text for controllers of 32 bits: DWORD in place of LWORD, two of them for a frame of more than 32
+    /// clocks.
     StDword,
     /// A function block as a source file of TIA Portal, for S7-1200 and S7-1500.
     Scl,

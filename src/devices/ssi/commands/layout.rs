@@ -20,12 +20,12 @@ use crate::store::Store;
 pub(crate) struct Chosen {
     pub(crate) profile: SsiProfile,
     pub(crate) layout: Layout,
-    /// Timing of the layout's family, or `None` without a known family.
+    /// Timing of the layout's family, or `None` if no family is known.
     pub(crate) times: Option<Times>,
     pub(crate) title: String,
 }
 
-/// Returns the layout of `--layout`. Points that the manual leaves open are remarks.
+/// Returns the layout of `--layout`, and prints points that the manual leaves open as remarks.
 pub(crate) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<Chosen> {
     if let Some(format) = spec.strip_prefix("linuxcnc:") {
         let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;

@@ -16,7 +16,7 @@ use crate::devices::ssi::protocol::{FrameFinding, Layout, Location, Meaning, Tal
 use crate::devices::ssi::state::explain as explained;
 use crate::units::Moment;
 
-/// Returns the layout, which only the user knows.
+/// Returns the layout, which must be given by the user.
 fn layout(output: &Output, command: &str, given: &LayoutOption) -> Result<Chosen> {
     let Some(spec) = given.layout.clone() else {
         let why = "ssi needs --layout FILE|SPEC: an SSI encoder does not report the layout of its frame";

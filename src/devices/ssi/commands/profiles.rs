@@ -31,7 +31,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     Ok(Done::Well)
 }
 
-/// Creates the document of a layout. The document contains no time, since the layout was not read from a device.
+/// Creates the document of a layout, without a time because the layout was not read from a device.
 pub(super) fn document(profile: SsiProfile) -> Document {
     Document { saved: None, ..Document::new(String::new(), Body::new(profile)) }
 }

@@ -59,7 +59,7 @@ pub(super) fn named(output: &Output, layout: &Layout, text: &str) -> Result<Vec<
     Ok(frames)
 }
 
-/// The bits of a frame, right-justified.
+/// Parses the bits of a frame, right-justified.
 fn frame(layout: &Layout, text: &str) -> Result<u64> {
     parse_frame(text, layout.clocks()).map_err(|error| match error {
         FrameTextError::Form(_) => Failure::Usage(error.to_string()),

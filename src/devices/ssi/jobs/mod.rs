@@ -24,7 +24,7 @@ pub struct Ssi {
     wire: Box<dyn ByteLink>,
     station: Station,
     motor: Option<Motor>,
-    /// Interval of the words in a stream in microseconds, if too short for single requests.
+    /// Interval between streamed words in microseconds, or `None` if words are requested singly.
     streamed_us: Option<u32>,
 }
 
@@ -105,10 +105,10 @@ impl Device for Ssi {
     type Job = SsiJob;
     type Output = SsiOutput;
     type Error = JobError;
-    /// SSI encoders have no messages apart from their words.
+    /// Uninhabited, because SSI encoders have no messages apart from their words.
     type DeviceMessage = Infallible;
     type Sample = Words;
-    /// SSI encoders have no values to watch apart from their words.
+    /// Uninhabited, because SSI encoders have no values to watch apart from their words.
     type Watch = Infallible;
     type JobStep = JobStep;
 
@@ -135,7 +135,7 @@ impl Device for Ssi {
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
         self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
         if interval.is_none() {
-            self.station.count_anew();
+            self.station.recount();
         }
         if self.streamed_us.is_none()
             && let Err(error) = self.master(context).end_words()

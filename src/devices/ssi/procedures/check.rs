@@ -28,12 +28,12 @@ pub enum CheckStep {
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
     Adapter(String, String),
-    /// The requested and the actual clock in hertz.
+    /// Requested and actual clock frequency in hertz.
     Clock {
         asked: u32,
         got: u32,
     },
-    /// Millivolts requested and measured, and milliamperes.
+    /// Supply voltage requested and measured in millivolts, and current in milliamperes.
     Supply {
         requested: u16,
         measured: u16,
@@ -56,12 +56,12 @@ pub enum CheckFinding {
     Stands {
         /// Last position read.
         position: u64,
-        /// Steps between the lowest and the highest.
+        /// Number of steps between the lowest and the highest position.
         steps: u64,
     },
     /// The shaft turns by at most the given number of steps from one word to the next.
     Turns {
-        /// Distance in steps, in the shorter direction.
+        /// Maximum distance between consecutive positions in steps, in the shorter direction.
         most: u64,
     },
 }
@@ -220,7 +220,7 @@ mod tests {
 
     use Verdict::{Attention, Bad, Good};
 
-    /// Reference section 8: AFS60, 18 bits, binary; ERRDIG, ERRSI and ERRSYNC on the last clocks.
+    /// AFS60 of reference section 8 with 18 binary bits, and ERRDIG, ERRSI and ERRSYNC on the last clocks.
     #[test]
     fn words_are_judged_step_by_step() {
         let layout = layout("afs60");

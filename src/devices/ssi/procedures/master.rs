@@ -16,7 +16,7 @@ use crate::link::Ctx;
 use crate::link::line::SerialLine;
 use crate::units::Moment;
 
-/// Interval of checking for cancellation.
+/// Interval at which cancellation is checked.
 const SLICE: Duration = Duration::from_millis(20);
 
 /// The host's side of an adapter before an SSI encoder.
@@ -240,7 +240,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Notes that the adapter may have been reset and must be configured again. Cancellation is no sign of that.
+    /// Notes that the adapter may have been reset and must be configured again, unless the error is a cancellation.
     fn may_be_reset(&mut self, error: Error) -> Error {
         if error != Error::Cancelled {
             self.station.forget_settings();

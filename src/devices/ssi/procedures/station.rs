@@ -15,7 +15,7 @@ use crate::parameters;
 use crate::units::SupplyVoltage;
 
 parameters! {
-    /// Parameters of the line and the encoder's supply in a link.
+    /// Link parameters for the line and the encoder's supply.
     pub struct LinkParameters: UrlError {
         /// Additional delay allowed for a reply beyond the protocol's worst case, or `None` for the link's default.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
@@ -77,7 +77,7 @@ pub struct Station {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Supply {
     pub millivolt: u16,
-    /// Millivolts and milliamperes measured at switch-on; `None` before that.
+    /// Supply voltage in millivolts and current in milliamperes, measured at switch-on; `None` before that.
     pub measured: Option<(u16, u16)>,
 }
 
@@ -129,7 +129,8 @@ impl Station {
         self.forget_settings();
     }
 
-    /// An adapter that was reset is not set, and has the supply switched off.
+    /// Discards the adapter settings and the supply state, because a reset adapter has lost its settings and switched
+    /// the supply off.
     pub(super) fn forget_settings(&mut self) {
         self.set = None;
         if let Some(supply) = &mut self.supply {
@@ -137,7 +138,7 @@ impl Station {
         }
     }
 
-    pub(crate) fn count_anew(&mut self) {
+    pub(crate) fn recount(&mut self) {
         self.asked = 0;
     }
 

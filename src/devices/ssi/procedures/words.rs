@@ -43,7 +43,7 @@ impl Words {
         }
     }
 
-    /// Returns the words of a packet that was requested at the interval `wished_us`.
+    /// Converts a packet of words that was requested at the interval `wished_us`.
     pub(super) fn run(portion: &Portion, data: &SsiData, asking: Asking, clock_hz: u32, wished_us: u32) -> Self {
         let Portion { first, time, period_ns, lost, .. } = *portion;
         Words {

@@ -12,7 +12,7 @@ pub struct SsiProfile {
     pub name: String,
     /// Key of the family whose times and limits apply, or `None` if unknown.
     pub family: Option<String>,
-    /// Frame. One read from a file has been validated.
+    /// Frame layout, which has been validated if it was read from a file.
     pub descriptor: Descriptor,
     /// Counting direction.
     pub direction: Direction,
@@ -71,7 +71,7 @@ impl SsiProfile {
         }
     }
 
-    /// Returns the reading settings of the frame for checking the timing.
+    /// Returns the parameters for checking the timing of the frame.
     pub fn reads(&self) -> Reads {
         let ReadingSettings { clock_hz, pause_us, cable_metres, synchronous } = self.reading;
         Reads {

@@ -37,7 +37,7 @@ pub const fn gray(word: u64) -> u64 {
 }
 
 /// Converts a Gray code word to binary.
-pub const fn ungray(word: u64) -> u64 {
+pub const fn gray_to_binary(word: u64) -> u64 {
     let word = word ^ word >> 1;
     let word = word ^ word >> 2;
     let word = word ^ word >> 4;
@@ -46,7 +46,7 @@ pub const fn ungray(word: u64) -> u64 {
     word ^ word >> 32
 }
 
-/// A code for the positions from 0 to a last one.
+/// Code for positions from 0 up to a maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Coding {
     code: Code,
@@ -98,7 +98,7 @@ impl Coding {
         self.offset
     }
 
-    /// Returns the code word of a position, or `None` beyond the last one.
+    /// Returns the code word of a position, or `None` if the position is out of range.
     pub fn encode(&self, position: u64) -> Option<u64> {
         if position > self.last {
             return None;
@@ -116,8 +116,8 @@ impl Coding {
     pub fn decode(&self, word: u64) -> Option<u64> {
         let position = match self.code {
             Code::Binary => word,
-            Code::Gray => ungray(word),
-            Code::GrayExcess => ungray(word).checked_sub(self.offset)?,
+            Code::Gray => gray_to_binary(word),
+            Code::GrayExcess => gray_to_binary(word).checked_sub(self.offset)?,
             Code::Bcd => bcd_to_decimal(word)?,
         };
         (position <= self.last).then_some(position)
@@ -176,12 +176,12 @@ mod tests {
             (0xFF_FFFF, 0x80_0000),
         ];
         for (number, word) in pairs {
-            assert_eq!((gray(number), ungray(word)), (word, number), "{number}");
+            assert_eq!((gray(number), gray_to_binary(word)), (word, number), "{number}");
         }
-        assert_eq!(ungray(0xFF_FFFE), 0xAA_AAAB);
+        assert_eq!(gray_to_binary(0xFF_FFFE), 0xAA_AAAB);
     }
 
-    /// The manual's table in 2.4, column Graycode, 0 to 15.
+    /// Column Graycode, 0 to 15, of the table in section 2.4 of the manual.
     #[test]
     fn gray_words_match_the_manual() {
         let table = [0, 1, 3, 2, 6, 7, 5, 4, 12, 13, 15, 14, 10, 11, 9, 8];
@@ -190,7 +190,7 @@ mod tests {
         }
     }
 
-    /// Reference section 2: N, n, code(0), code(1), code(N/2), code(N−1).
+    /// Table of reference section 2 with the columns N, n, code(0), code(1), code(N/2), code(N−1).
     #[test]
     fn gray_excess_matches_the_reference() {
         let table = [
@@ -213,7 +213,7 @@ mod tests {
         }
     }
 
-    /// Reference section 8, "Error cases".
+    /// Error cases of reference section 8.
     #[test]
     fn words_outside_gray_excess_are_refused() {
         let coding = Coding::new(Code::GrayExcess, 9).unwrap();

@@ -15,10 +15,10 @@ pub struct Descriptor {
     pub range: Range,
     /// Position code.
     pub code: Code,
-    /// Extent of the code word.
+    /// Bits that the code word covers.
     pub coded: Coded,
-    /// Number of clocks, from the first on, that contain the position and surrounding zeros. Shifting right moves
-    /// these.
+    /// Number of clocks, starting with the first, that contain the position and surrounding zeros. Shifting right moves
+    /// the bits of these clocks.
     pub area: u8,
     /// Number of zeros before the multiturn, if the range has separate bits for multiturn and singleturn.
     pub lead: u8,
@@ -35,18 +35,18 @@ pub struct Descriptor {
     pub repeat: Option<Repeat>,
     /// Whether the data wires are swapped, which inverts every bit.
     pub inverted: bool,
-    /// Words with a meaning other than a position, at most 4; tested before decoding.
+    /// Words with a meaning other than a position, at most 4. They are tested before decoding.
     pub patterns: Vec<Pattern>,
 }
 
-/// The bits that a Gray code covers; binary and BCD only cover the position.
+/// Bits that a Gray code covers. Binary and BCD codes cover only the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coded {
-    /// The position bits; zeros and error bits are outside the code word.
+    /// The position bits only, without zeros and error bits.
     Position,
-    /// The whole area including zeros (reference section 2: the alternative reading of the manual, `U`).
+    /// The whole area including zeros (alternative reading of the manual in reference section 2, `U`).
     Area,
-    /// The whole area and the following error bits (known from sensors that count them among the data).
+    /// The whole area and the following error bits, as in sensors that count error bits among the data.
     AreaAndErrors,
 }
 
@@ -63,7 +63,7 @@ pub struct ErrorBit {
     /// Whether the bit is active at 0.
     #[serde(default)]
     pub active_low: bool,
-    /// Whether a transfer clears the bit, which then refers to the time since the previous transfer.
+    /// Whether a transfer clears the bit, which therefore covers the time since the previous transfer.
     #[serde(default)]
     pub cleared_by_transfer: bool,
 }
@@ -119,7 +119,7 @@ pub enum Word {
 }
 
 impl Descriptor {
-    /// Creates a frame of binary multiturn and singleturn bits only.
+    /// Creates a frame that contains only binary multiturn and singleturn bits.
     pub const fn plain(multiturn: u8, singleturn: u8) -> Self {
         let bits = multiturn + singleturn;
         Descriptor {

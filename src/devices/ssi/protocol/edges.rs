@@ -2,7 +2,7 @@
 //! reference section 1). The clock idles high, each rising edge outputs a bit, and the host samples at the falling
 //! edge; after the last one the line remains for half a period. Bursts are separated by pauses.
 
-/// Line levels from a point in time on.
+/// Levels of both lines from a point in time onwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levels {
     /// Time in seconds.
@@ -13,14 +13,15 @@ pub struct Levels {
     pub data: bool,
 }
 
-/// The frames of a recording.
+/// Frames extracted from a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bursts {
     /// Number of bits per frame, 1…64.
     pub clocks: u8,
     /// Right-justified frames in recording order.
     pub frames: Vec<u64>,
-    /// Number of bursts with a different number of clocks, which are truncated by an end of the recording or disturbed.
+    /// Number of bursts left out because their number of clocks differs, due to a disturbance or the end of the
+    /// recording.
     pub left_out: usize,
 }
 
@@ -39,7 +40,7 @@ pub enum BurstError {
     /// Bursts are longer than the longest possible frame.
     #[error("bursts have {clocks} clocks, and a frame has at most 64")]
     Long {
-        /// Number of clocks of most bursts.
+        /// Most frequent number of clocks in a burst.
         clocks: usize,
     },
 }
@@ -71,7 +72,7 @@ pub fn bursts(levels: &[Levels]) -> Result<Bursts, BurstError> {
     halves.sort_by(f64::total_cmp);
     let half = *halves.get(halves.len() / 2).ok_or(BurstError::NoClock)?;
     let pause = LEAST_MONOFLOP.max(HALVES * half);
-    let rests_high = rests_high(levels, &edges, pause).ok_or(BurstError::NoPause)?;
+    let rests_high = idles_high(levels, &edges, pause).ok_or(BurstError::NoPause)?;
     let runs: Vec<&[Edge]> = edges.chunk_by(|one, next| next.at - one.at < pause).collect();
     let falls = |edge: &Edge| edge.rises != rests_high;
     // A whole burst falls first and rises last.
@@ -93,7 +94,7 @@ fn edges(levels: &[Levels]) -> Vec<Edge> {
 }
 
 /// Returns whether the clock rests high, judged by the level it holds longest overall; `None` if it never rests.
-fn rests_high(levels: &[Levels], edges: &[Edge], pause: f64) -> Option<bool> {
+fn idles_high(levels: &[Levels], edges: &[Edge], pause: f64) -> Option<bool> {
     let (first, last) = (levels.first()?, levels.last()?);
     let begins = std::iter::once((first.at, first.clock)).chain(edges.iter().map(|edge| (edge.at, edge.rises)));
     let ends = edges.iter().map(|edge| edge.at).chain(std::iter::once(last.at));
@@ -106,7 +107,7 @@ fn rests_high(levels: &[Levels], edges: &[Edge], pause: f64) -> Option<bool> {
     (low + high > 0.0).then_some(high >= low)
 }
 
-/// The number that most have; of several the greatest.
+/// Returns the most frequent number, or the greatest of several equally frequent ones.
 fn usual(numbers: impl Iterator<Item = usize>) -> Option<usize> {
     let mut sorted: Vec<usize> = numbers.collect();
     sorted.sort_unstable();
@@ -132,7 +133,8 @@ fn frame(levels: &[Levels], run: &[Edge], half: f64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Both lines as reference section 1 describes a transfer of these bits, beginning at a time: half periods in µs.
+    /// Appends the levels of both lines during a transfer of the given bits, as in reference section 1. Returns the end
+    /// of the transfer; `half` is the half period in µs.
     fn transfer(levels: &mut Vec<Levels>, begins: f64, bits: &str, half: f64) -> f64 {
         let mut put = |at: f64, clock, data| levels.push(Levels { at: at * 1e-6, clock, data });
         let mut data = true;
@@ -160,7 +162,7 @@ mod tests {
         levels
     }
 
-    /// Reference section 8: AHM36, MT 123h, ST 2A5Bh, in Gray; and with every bit the other way.
+    /// Frame of an AHM36 with MT 123h and ST 2A5Bh in Gray (reference section 8).
     const GRAY: &str = "000110110010011111011101100";
     const INVERSE: &str = "111001001101100000100010011";
 

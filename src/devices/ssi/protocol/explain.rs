@@ -13,13 +13,13 @@ pub enum Role {
     Multiturn(u8),
     /// The given singleturn bit.
     Singleturn(u8),
-    /// The given bit of the code word, if multiturn and singleturn have no separate bits.
+    /// Bit of the code word with the given number, if multiturn and singleturn have no separate bits.
     Position(u8),
-    /// The given error bit of the descriptor.
+    /// Error bit with the given index in the descriptor.
     Error(usize),
     /// The parity bit.
     Parity,
-    /// Repetition of the given clock.
+    /// Repetition of the bit at the given clock.
     Again(u8),
 }
 
@@ -43,7 +43,7 @@ pub enum FrameFinding {
         name: String,
         /// Consequence for the position.
         meaning: Meaning,
-        /// Whether the bit refers to the time since the previous transfer.
+        /// Whether the bit covers the time since the previous transfer.
         cleared_by_transfer: bool,
     },
     /// The frame is a word with a special meaning.
@@ -74,7 +74,7 @@ pub enum FrameFinding {
 }
 
 impl FrameFinding {
-    /// Returns the consequence for the position.
+    /// Returns the consequence of a finding for the position.
     pub const fn meaning(&self) -> Meaning {
         match self {
             FrameFinding::Error { meaning, .. } | FrameFinding::Pattern { meaning, .. } => *meaning,
@@ -131,7 +131,7 @@ impl Layout {
         numbered.map(|(clock, role)| Cell { clock, role, bit: frame >> (clocks - clock) & 1 == 1 }).collect()
     }
 
-    /// Returns the findings about a reading, those that invalidate the position first.
+    /// Returns the findings about a reading, starting with those that invalidate the position.
     pub fn findings(&self, reading: FrameReading) -> Vec<FrameFinding> {
         let descriptor = self.descriptor();
         let flags = reading.flags;

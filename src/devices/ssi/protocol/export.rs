@@ -24,7 +24,7 @@ pub use svg::{frame_picture, timing_picture};
 pub use table::bit_table;
 pub use text::{ExportText, ModuleObstacle, Say, SettingMeaning, english};
 
-/// Returns a name for programs: letters, digits and underscores, no digit first.
+/// Returns a valid identifier that consists of letters, digits and underscores and does not start with a digit.
 fn identifier(name: &str) -> String {
     let word: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();

@@ -25,34 +25,34 @@ use super::timing::Times;
 pub struct Family {
     /// Key on the command line: `ahm36`.
     pub key: String,
-    /// Name given by its maker.
+    /// Product name given by the manufacturer.
     pub name: String,
     /// Source of this description.
     pub source: String,
-    /// Length of a step in nanometres, if the position is a length. None: an angle.
+    /// Length of a step in nanometres for linear encoders, or `None` for rotary ones.
     #[serde(default)]
     pub step_nanometres: Option<u32>,
-    /// Bits of the revolutions: the least, the factory setting, the most. None: singleturn, or a length.
+    /// Minimum, factory and maximum width of the multiturn part in bits; `None` for singleturn and linear encoders.
     #[serde(default)]
     pub multiturn: Option<(u8, u8, u8)>,
-    /// Bits within a revolution, or of a length, likewise.
+    /// Minimum, factory and maximum width in bits of the singleturn part or of a linear position.
     pub singleturn: (u8, u8, u8),
-    /// Most bits of both together, if that is less.
+    /// Maximum total width in bits, if below the sum of both parts.
     #[serde(default)]
     pub together: Option<u8>,
-    /// Numbers of steps that are no power of two.
+    /// Limits for numbers of steps that are not powers of two, if supported.
     #[serde(default)]
     pub steps: Option<StepLimits>,
-    /// Codes that the manual names, the factory setting first; others are accepted with a remark.
+    /// Codes named in the manual, starting with the factory setting. Other codes are accepted with a remark.
     pub codes: Vec<Code>,
-    /// The possible alignments; the factory setting is the first with enough room.
+    /// Possible alignments. The factory setting is the first one with enough room for the position.
     pub align: Vec<Align>,
-    /// The whole frame can come one clock later.
+    /// Whether the whole frame can be delayed by one clock.
     #[serde(default)]
     pub shift: bool,
-    /// Frames by resolution: the first with room for the position counts.
+    /// Frames by resolution. The first one with room for the position applies.
     pub frames: Vec<Frame>,
-    /// Words with a meaning of their own.
+    /// Words with a special meaning.
     #[serde(default)]
     pub patterns: Vec<Pattern>,
     /// The allowed times.
@@ -63,12 +63,12 @@ pub struct Family {
     /// Further notes for engineers, a sentence each.
     #[serde(default)]
     pub notes: Vec<String>,
-    /// Source and notes in German, by the English words.
+    /// German translations of the source and the notes, keyed by the English text.
     #[serde(default)]
     pub german: BTreeMap<String, String>,
 }
 
-/// Limits of steps that are no power of two.
+/// Limits for numbers of steps that are not powers of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepLimits {
@@ -76,27 +76,27 @@ pub struct StepLimits {
     pub per_turn: u32,
     /// Altogether.
     pub total: u32,
-    /// Number of turns of a round axis, as numerator and denominator; none: no round axis.
+    /// Number of turns of a round axis as numerator and denominator, or `None` without a round axis.
     #[serde(default)]
     pub revolutions: Option<(u32, u32)>,
 }
 
-/// A frame of a family.
+/// Frame that a family sends.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Frame {
-    /// Largest number of bits of the position.
+    /// Maximum width in bits of a position that fits into the frame.
     pub up_to: u8,
-    /// Clocks of the position and its zeros; none: as many as the position has bits.
+    /// Number of clocks for the position and its zeros, or `None` for exactly as many as the position has bits.
     #[serde(default)]
     pub area: Option<u8>,
-    /// Error bits in their order; `clock` of the first is their fixed place.
+    /// Error bits in order. The `clock` of the first one is their fixed location.
     #[serde(default)]
     pub errors: Vec<ErrorBit>,
-    /// The possible places of error bits, the factory setting first.
+    /// Possible locations of the error bits, starting with the factory setting.
     #[serde(default)]
     pub place: Vec<ErrorPlace>,
-    /// Most clocks of a burst; none: as many as the frame has bits.
+    /// Maximum number of clocks in a burst, or `None` for exactly as many as the frame has bits.
     #[serde(default)]
     pub most_clocks: Option<u8>,
 }
@@ -105,29 +105,30 @@ pub struct Frame {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Align {
-    /// Its first bit on clock 1.
+    /// The first position bit is on clock 1.
     Left,
-    /// Its last bit on clock 24.
+    /// The last position bit is on clock 24.
     Right24,
-    /// Its last bit on clock 25.
+    /// The last position bit is on clock 25.
     Right25,
-    /// Turns end on clock 12, steps begin on 13: zeros before and after ("Tannenbaum").
+    /// Tree format ("Tannenbaum") with turns ending on clock 12 and steps beginning on clock 13, and zeros on both
+    /// sides.
     #[serde(rename = "tree12_13")]
     Tree12,
-    /// Turns end on clock 13, steps begin on 14.
+    /// Tree format with turns ending on clock 13 and steps beginning on clock 14.
     #[serde(rename = "tree13_12")]
     Tree13,
 }
 
-/// The place of error bits.
+/// Location of the error bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorPlace {
-    /// Not sent, or not clocked in.
+    /// Error bits are not sent, or not clocked in.
     None,
-    /// On their own clocks, with any resolution.
+    /// Error bits are on fixed clocks at any resolution.
     Fix,
-    /// Immediately after the position's last bit.
+    /// Error bits directly follow the last position bit.
     Following,
 }
 
@@ -135,24 +136,24 @@ pub enum ErrorPlace {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Signal {
-    /// `sine/cosine 0.5 Vpp`, `TTL`, `HTL`.
+    /// Name of the signal, such as `sine/cosine 0.5 Vpp`, `TTL` or `HTL`.
     pub name: String,
-    /// Volts peak to peak: least and most.
+    /// Minimum and maximum peak-to-peak amplitude in volts.
     #[serde(default)]
     pub amplitude_volts: Option<(f64, f64)>,
-    /// Mean level in volts: least and most.
+    /// Minimum and maximum mean level in volts.
     #[serde(default)]
     pub offset_volts: Option<(f64, f64)>,
-    /// Supply in volts: least and most.
+    /// Minimum and maximum supply voltage in volts.
     #[serde(default)]
     pub supply_volts: Option<(f64, f64)>,
 }
 
-/// A family that is invalid, and the position of the error.
+/// Error in a family file, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}, line {line}, column {column}: {problem}")]
 pub struct FamilyError {
-    /// The file's name as given.
+    /// File name as given by the caller.
     pub file: String,
     /// Line, counted from 1.
     pub line: usize,
@@ -165,16 +166,16 @@ pub struct FamilyError {
 /// The reason why a family is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FamilyProblem {
-    /// Not the RON expected, with the parser's message.
+    /// The file is not valid RON or lacks the expected structure, with the parser's message.
     #[error("{0}")]
     Parser(String),
-    /// A key that is not possible on the command line.
+    /// The key cannot be used on the command line.
     #[error("the key {0:?} may contain only lower-case letters, digits, - and _")]
     Key(String),
-    /// German text for neither the source nor a note.
+    /// A German text translates neither the source nor a note.
     #[error("german: {0:?} is neither the source nor a note")]
     German(String),
-    /// A frame as delivered that cannot work.
+    /// The frame with factory settings is invalid.
     #[error("factory setting: {0}")]
     Delivered(SettingsError),
 }
@@ -184,11 +185,11 @@ pub enum FamilyProblem {
 pub struct Families(Vec<Family>);
 
 impl Family {
-    /// Parses a family. `file` is its name for errors.
+    /// Parses a family. `file` is the name used in errors.
     ///
     /// # Errors
-    /// Returns line and column: text that is not RON, unknown or missing keys; a key that is not possible on the command
-    /// line, and a family whose frame with factory settings is not possible.
+    /// Invalid RON, unknown or missing keys, a key that cannot be used on the command line, or an invalid frame with
+    /// factory settings. The error contains line and column.
     pub fn parse(file: &str, text: &str) -> Result<Self, FamilyError> {
         let error = |line, column, what| FamilyError { file: file.to_owned(), line, column, problem: what };
         let family: Family = ron::from_str(text).map_err(|wrong| {
@@ -213,12 +214,12 @@ impl Family {
         }
     }
 
-    /// Returns the German of its source or a note; the English if the file has none.
+    /// Returns the German translation of the family's source or a note, or the English text if there is none.
     pub fn german<'f>(&'f self, english: &'f str) -> &'f str {
         self.german.get(english).map_or(english, String::as_str)
     }
 
-    /// Returns the code as delivered.
+    /// Returns the factory setting of the code.
     pub fn code(&self) -> Code {
         self.codes.first().copied().unwrap_or(Code::Binary)
     }
@@ -235,7 +236,7 @@ fn place(text: &str, entry: &str) -> (usize, usize) {
 }
 
 impl Families {
-    /// The families that ship with the program, with their files' names.
+    /// Built-in families, with their file names.
     pub const BUILT_IN: [(&'static str, &'static str); 11] = [
         ("ahs36.ron", include_str!("../../../../assets/devices/ssi/ahs36.ron")),
         ("ahm36.ron", include_str!("../../../../assets/devices/ssi/ahm36.ron")),
@@ -250,7 +251,7 @@ impl Families {
         ("kh53.ron", include_str!("../../../../assets/devices/ssi/kh53.ron")),
     ];
 
-    /// Reads files; returns the reason for each that cannot be used, which does not affect the others.
+    /// Reads families from files, and returns an error for each unusable file. The other files are not affected.
     pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<FamilyError>) {
         let mut errors = Vec::new();
         let mut read = Vec::new();
@@ -269,7 +270,7 @@ impl Families {
         Self::read(Self::BUILT_IN).0
     }
 
-    /// Returns these families with those of `others`, which replace those with the same key.
+    /// Returns these families combined with `others`, which replace families with the same key.
     #[must_use]
     pub fn overlaid_with(self, others: Families) -> Self {
         let mut all = others.0;

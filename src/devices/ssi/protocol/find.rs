@@ -27,73 +27,75 @@ use reading::{Read, readings};
 use super::family::{Families, Settings};
 use super::layout::Layout;
 
-/// Largest number of frames that are analysed: the newest.
+/// Maximum number of frames analysed, counted from the newest.
 const MOST_FRAMES: usize = 4_000;
-/// Least number of different frames: with fewer, the shaft stands still, or trembles.
+/// Minimum number of distinct frames. With fewer, the shaft is considered to stand still or jitter.
 const LEAST_DIFFERENT: usize = 32;
 const CLASSES: usize = 6;
-/// Penalty for a class that is less usual by one setting, in bits of all frames.
+/// Penalty in bits, over all frames, for each setting that makes a class less usual.
 const WEIGHT_BITS: f64 = 8.0;
-/// Classes less probable than the first by this much are left out.
+/// Weight beyond that of the most probable member of a class at which other members are left out.
 const IMPROBABLE: f64 = 8.0;
-/// Of a thousand frames, those in which two readings have to agree to be the same.
+/// Minimum number of frames per thousand in which two readings must agree to be considered the same.
 const SAME_PERMILLE: usize = 995;
-/// Families are searched for readings that need no more bits than this beyond the best, for all frames.
+/// Maximum excess in bits over the best reading, for all frames, for families to be searched for a reading.
 const NEAR_BITS: f64 = 300.0;
 
-/// The result of the search.
+/// Result of a search for layouts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
     /// Number of frames.
     pub frames: usize,
     /// Number of different frames.
     pub different: usize,
-    /// The reason why the first class is not certain; `None`: it is the only one, and every bit is explained.
+    /// Reason why the first class is uncertain, or `None` if it is the only one and every bit is explained.
     pub doubt: Option<Uncertainty>,
     /// The possible classes, the best first; may be empty.
     pub classes: Vec<Class>,
 }
 
-/// The reason why the result is not certain.
+/// Reason why the result of a search is uncertain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Uncertainty {
-    /// The shaft was at standstill, or hardly moved.
+    /// The shaft stood still or hardly moved.
     Standing,
-    /// Every bit is 0 or 1 in all frames.
+    /// Every bit is 0, or every bit is 1, in all frames.
     Stuck {
         /// Whether it is 1.
         high: bool,
     },
-    /// No reading makes the motion even: not SSI, a disturbed line, or a shaft that turns too fast.
+    /// No reading yields an even motion, because the data are not SSI, the line is disturbed, or the shaft turns too
+    /// fast.
     Nothing,
-    /// Two classes fit as well.
+    /// Two classes fit equally well.
     Close,
-    /// One class remains, but not every bit of it is explained.
+    /// Only one class remains, but some of its bits are unexplained.
     Open,
 }
 
-/// Layouts that these frames cannot distinguish.
+/// Class of layouts that the recorded frames cannot distinguish.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Class {
-    /// The most probable first: factory settings before changed ones, usual widths before others.
+    /// Members, most probable first: factory settings before changed ones, usual widths before unusual ones.
     pub members: Vec<Proposal>,
     /// The evidence.
     pub evidence: Evidence,
-    /// Motions that would separate the members, or prove them.
+    /// Motions that would distinguish or confirm the members.
     pub open: Vec<Open>,
 }
 
 /// A layout that fits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposal {
-    /// The family's key with its settings; `None`: any other encoder. Exchanged data wires are only in the layout.
+    /// Family key and settings, or `None` for an encoder of no family. Swapped data wires appear only in the layout.
     pub family: Option<(String, Settings)>,
     /// The frame.
     pub layout: Layout,
 }
 
 impl Proposal {
-    /// Returns the layout in one word, as for the command line: a family with as few settings as possible, or any frame.
+    /// Returns the layout as one word for the command line: a family with as few settings as possible, or else a
+    /// complete frame specification.
     pub fn spec(&self, families: &Families) -> String {
         let descriptor = self.layout.descriptor();
         let named = self.family.as_ref().and_then(|(key, _)| {
@@ -107,66 +109,66 @@ impl Proposal {
 /// The evidence for a layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// 0…1: the quality of its explanation of the frames, and how usual it is.
+    /// Score from 0 to 1 for how well the layout explains the frames and how usual it is.
     pub score: f64,
     /// Frames that follow from their neighbours.
     pub explained: usize,
-    /// Steps of the lowest bit between two frames, in the middle.
+    /// Median number of steps of the lowest bit between two frames.
     pub steps_a_frame: i64,
-    /// Information in a frame beyond the previous ones, in bits.
+    /// Information per frame that the previous frames do not provide, in bits.
     pub bits_a_frame: f64,
-    /// Frames that jump from the one before.
+    /// Number of frames that jump from the previous one.
     pub jumps: usize,
-    /// Frames with another value for a constant bit, or an invalid code word.
+    /// Number of frames with a deviating constant bit or an invalid code word.
     pub misfits: usize,
     /// Bits from the highest that moved to the lowest.
     pub bits_seen: u8,
 }
 
-/// An open question: how to separate the members of a class, or an unexplained bit.
+/// Open question about the members of a class or an unexplained bit, with the motion that answers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Open {
-    /// The boundary of turns and steps: turn exactly once, and note the increase of the position.
+    /// Boundary between turns and steps: turn exactly once, and note the increase of the position.
     TurnOnce,
-    /// The meaning of clocks that never changed: turn until they do, or the position starts again.
+    /// Meaning of clocks that never changed: turn until they change or the position wraps.
     TurnFarther {
         /// The first of them.
         from: u8,
         /// The last of them.
         to: u8,
     },
-    /// The end of the range: turn until the position starts again.
+    /// End of the range: turn until the position wraps.
     PassAnEnd,
-    /// Exchanged wires or reversed counting: turn clockwise, and check whether the position increases.
+    /// Swapped wires or reversed counting: turn clockwise, and check whether the position increases.
     Direction,
-    /// The lowest bit: turn at another speed, unevenly.
+    /// Lowest bit: turn at another, uneven speed.
     OtherSpeed,
-    /// The number of steps: turn slowly across the end of the range.
+    /// Number of steps: turn slowly across the end of the range.
     PassTheEnd {
         /// The least.
         least: u32,
         /// The most.
         most: u32,
     },
-    /// This clock moves, and nothing explains it.
+    /// A clock moves without an explanation.
     Unexplained {
         /// The first such clock.
         clock: u8,
     },
-    /// The error bits: cause one (turn too fast, exchange the supply).
+    /// Error bits: cause an error (turn too fast, replace the supply).
     SeeAnError,
     /// The family, if two send the same: check the type label.
     TypeLabel,
 }
 
-/// A reading of the frames with all layouts that result in it.
+/// Reading of the frames, with all layouts that yield this reading.
 struct Group {
     read: Read,
     members: Vec<Member>,
     bits: f64,
 }
 
-/// Reads frames of `clocks` bits, right-justified, taken one after the other at even intervals.
+/// Finds the layouts that fit frames of `clocks` bits, right-justified and sampled consecutively at equal intervals.
 pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     let newest = frames.get(frames.len().saturating_sub(MOST_FRAMES)..).unwrap_or_default();
     let seen = FrameSet::new(newest, clocks);
@@ -225,7 +227,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     search(doubt, verdict::classes(&words, groups))
 }
 
-/// Returns whether two layouts result in the same motion: forwards or backwards, in the same steps or in halved ones.
+/// Returns whether two layouts yield the same motion, possibly reversed or with steps of half the size.
 fn same(one: &Motion, other: &Motion) -> bool {
     let halvings = |motion: &Motion| {
         let steps =

@@ -11,7 +11,7 @@ pub enum FrameTextError {
     Bits {
         /// Given string.
         text: String,
-        /// Number of bits given, or required by the number.
+        /// Number of bits in the string, or required by the number.
         bits: u32,
         /// Number of clocks in the layout.
         clocks: u8,
@@ -20,8 +20,8 @@ pub enum FrameTextError {
     },
 }
 
-/// Parses a frame of `clocks` clocks: `0b1010…` or only 0 and 1 in clock order, one for each clock; or `0x…`
-/// right-justified. Blanks and underscores between bits are ignored.
+/// Parses a frame of `clocks` clocks, given either as bits in clock order (`0b1010…` or only 0 and 1) or as a
+/// right-justified number (`0x…`). Blanks and underscores between bits are ignored.
 ///
 /// # Errors
 /// [`FrameTextError`] with the valid formats.

@@ -9,7 +9,7 @@ pub use check::{ClockUse, LayoutError, RepeatedPart, WordOperation};
 #[cfg(test)]
 pub(crate) use tests::layouts as any_layouts;
 
-use super::code::{Coding, gray, ones, ungray};
+use super::code::{Coding, gray, gray_to_binary, ones};
 use super::descriptor::{Coded, Descriptor};
 
 /// A checked [`Descriptor`], with its shifts and masks. A *word* is a frame without its repetition, right-justified.
@@ -17,21 +17,21 @@ use super::descriptor::{Coded, Descriptor};
 pub struct Layout {
     pub(super) descriptor: Descriptor,
     pub(super) coding: Coding,
-    /// The higher and the lower part of the code word.
+    /// Upper and lower part of the code word.
     pub(super) parts: [Part; 2],
-    /// The code word's lowest bit is pushed out.
+    /// Whether the lowest bit of the code word is shifted out.
     pub(super) lost: bool,
-    /// Bits of a word after the area.
+    /// Number of bits in a word after the area.
     pub(super) behind_area: u8,
-    /// Number of bits that are Gray as a whole, and of those after them; none: 0 bits.
+    /// Number of bits that are Gray coded as a whole, and number of bits after them; 0 if there are none.
     pub(super) gray: (u8, u8),
-    /// Bits of a word that are always 0.
+    /// Mask of the bits in a word that are always 0.
     pub(super) zeros: u64,
-    /// Each error bit in a word.
+    /// Mask of each error bit in a word.
     pub(super) errors: Vec<u64>,
-    /// Error bits that are active at 0.
+    /// Mask of the error bits that are active at 0.
     pub(super) low: u64,
-    /// The parity bit in a word and those before it; 0 without one.
+    /// Masks of the parity bit in a word and of the bits before it; 0 without parity.
     pub(super) parity: (u64, u64),
     pub(super) patterns: Vec<u64>,
     pub(super) invalid: Flags,
@@ -39,9 +39,9 @@ pub struct Layout {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Part {
-    /// Bits of the word after it.
+    /// Number of bits in the word after the part.
     pub(super) in_word: u8,
-    /// Bits of the code word after it.
+    /// Number of bits in the code word after the part.
     pub(super) in_code: u8,
     pub(super) mask: u64,
 }
@@ -49,22 +49,22 @@ pub(super) struct Part {
 /// A decoded frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameReading {
-    /// The position; 0 if [`Flags::CODE`] is set, because there is none.
+    /// Position, or 0 if [`Flags::CODE`] is set and there is no position.
     pub position: u64,
-    /// The flags besides the position.
+    /// Flags in addition to the position.
     pub flags: Flags,
 }
 
-/// The flags of a frame besides its position: error bits, patterns, and inconsistencies.
+/// Flags of a frame in addition to its position: error bits, patterns, and inconsistencies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Flags(pub(super) u32);
 
 impl Flags {
     /// Nothing.
     pub const NONE: Flags = Flags(0);
-    /// The code word is invalid: digits above 9, or outside of gray excess.
+    /// Invalid code word, with digits above 9 or outside of Gray excess.
     pub const CODE: Flags = Flags(1 << 16);
-    /// A bit that is always 0 is 1: another layout, a wrong number of clocks, a disturbed line.
+    /// A bit that should be 0 is 1, due to another layout, a wrong number of clocks, or a disturbed line.
     pub const PADDING: Flags = Flags(1 << 17);
     /// The parity is wrong.
     pub const PARITY: Flags = Flags(1 << 18);
@@ -85,17 +85,17 @@ impl Flags {
         if index < 4 { Flags(1 << (8 + index)) } else { Flags::NONE }
     }
 
-    /// Returns whether all of `other` are set.
+    /// Returns whether all flags of `other` are set.
     pub const fn has(self, other: Flags) -> bool {
         other.0 != 0 && self.0 & other.0 == other.0
     }
 
-    /// Returns whether any of `other` is set.
+    /// Returns whether any flag of `other` is set.
     pub const fn any(self, other: Flags) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Returns the union of both.
+    /// Returns the union of both sets of flags.
     #[must_use]
     pub const fn with(self, other: Flags) -> Flags {
         Flags(self.0 | other.0)
@@ -127,20 +127,20 @@ impl Default for Layout {
 }
 
 impl Layout {
-    /// Checks a frame.
+    /// Creates the layout of a frame.
     ///
     /// # Errors
-    /// [`LayoutError`] with the reason why it cannot work.
+    /// [`LayoutError`] with the reason why the frame is impossible.
     pub fn new(descriptor: Descriptor) -> Result<Self, LayoutError> {
         check::layout(descriptor)
     }
 
-    /// Returns the frame as it was designed.
+    /// Returns the descriptor from which the layout was created.
     pub const fn descriptor(&self) -> &Descriptor {
         &self.descriptor
     }
 
-    /// Returns the code of the positions; binary if the Gray code covers more than them.
+    /// Returns the coding of the positions, which is binary if the Gray code covers more than the position.
     pub const fn coding(&self) -> &Coding {
         &self.coding
     }
@@ -160,8 +160,8 @@ impl Layout {
         self.invalid
     }
 
-    /// Returns the frame of a position, with the error bits active that `flags` has; right-justified, the first clock's bit
-    /// the highest. `None` after the last position.
+    /// Returns the frame for a position, with the error bits in `flags` active, or `None` beyond the last position. The
+    /// frame is right-justified, with the bit of the first clock as the highest.
     pub fn encode(&self, position: u64, flags: Flags) -> Option<u64> {
         let code = self.coding.encode(position)?;
         let mut word =
@@ -186,7 +186,7 @@ impl Layout {
         Some(if self.descriptor.inverted { !frame & ones(self.clocks()) } else { frame })
     }
 
-    /// Decodes a frame. Bits above its clocks are ignored.
+    /// Decodes a frame, ignoring bits above its clocks.
     #[inline]
     pub fn decode(&self, frame: u64) -> FrameReading {
         let all = ones(self.clocks());
@@ -204,7 +204,8 @@ impl Layout {
         let ones_in_all = (sent & (bit | before)).count_ones();
         flags = flags.with(Flags::PARITY.when(bit != 0 && ones_in_all.is_multiple_of(2) != self.even()));
 
-        let mut word = if self.descriptor.coded == Coded::AreaAndErrors { self.over(sent, ungray) } else { sent };
+        let mut word =
+            if self.descriptor.coded == Coded::AreaAndErrors { self.over(sent, gray_to_binary) } else { sent };
         for (index, bit) in self.errors.iter().enumerate() {
             flags = flags.with(Flags::error(index).when((word ^ self.low) & bit != 0));
         }
@@ -215,7 +216,7 @@ impl Layout {
             word = word & ones(self.behind_area) | back << self.behind_area;
         }
         if self.descriptor.coded == Coded::Area {
-            word = self.over(word, ungray);
+            word = self.over(word, gray_to_binary);
             if self.descriptor.shift_right {
                 word &= !(1 << self.behind_area);
             }
@@ -229,7 +230,7 @@ impl Layout {
         }
     }
 
-    /// Decodes frames in order, as many as the shorter of both has.
+    /// Decodes frames in order, up to the length of the shorter slice.
     pub fn decode_all(&self, frames: &[u64], readings: &mut [FrameReading]) {
         for (frame, reading) in frames.iter().zip(readings) {
             *reading = self.decode(*frame);
@@ -251,7 +252,7 @@ impl Layout {
         first | self.descriptor.repeat.map_or(0, |repeat| first >> (repeat.word + repeat.gap))
     }
 
-    /// Compares the repetition after the word with the word.
+    /// Compares a word with its repetition in the frame.
     fn repetition(&self, frame: u64, word: u64) -> Flags {
         let differs = frame ^ self.repeated(word);
         let again = self.repeated(ones(self.descriptor.word()));

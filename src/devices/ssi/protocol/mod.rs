@@ -23,7 +23,7 @@ mod timing;
 /// Keyword for this kind of device on the command line, in profiles and in stored data.
 pub const KIND: &str = "ssi";
 
-pub use code::{Code, CodeError, Coding, gray, ungray};
+pub use code::{Code, CodeError, Coding, gray, gray_to_binary};
 pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
 pub use edges::{BurstError, Bursts, Levels, bursts};
 pub use explain::{Cell, FrameFinding, Role};

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use super::code::{bits_of, ones};
 use crate::expected::Expected;
 
-/// The positions from 0 to a last one.
+/// Range of positions from 0 up to a maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
     /// Separate bit fields for whole turns and steps within a turn. Singleturn encoders have no multiturn bits.
@@ -23,8 +23,7 @@ pub enum Range {
         /// Number of turns, at least 1.
         turns: u32,
     },
-    /// Steps distributed evenly over a fractional number of turns, after which the position starts again (endless
-    /// shaft).
+    /// Steps distributed evenly over a fractional number of turns of an endless shaft, after which positions wrap.
     RoundAxis {
         /// Total number of steps, at least 2.
         steps: u32,
@@ -63,7 +62,7 @@ pub enum Direction {
 /// The reason why a range is impossible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RangeError {
-    /// A field is too wide.
+    /// A field exceeds the maximum width.
     #[error("{field} must have at most {limit} bits, not {bits}")]
     Wide {
         /// `multiturn`, `singleturn` or `position`.
@@ -73,7 +72,7 @@ pub enum RangeError {
         /// Maximum width in bits.
         limit: u8,
     },
-    /// There is only one position.
+    /// The range has only one position.
     #[error("the range has only a single position: specify bits or steps")]
     Empty,
     /// The numerator or denominator is zero.
@@ -135,7 +134,7 @@ impl Range {
         }
     }
 
-    /// Returns the location of a position, which may be beyond the last one: it is not wrapped.
+    /// Returns the location of a position. A position beyond the last one is not wrapped.
     pub fn place(&self, position: u64) -> Location {
         match *self {
             Range::Bits { singleturn, .. } => {
@@ -224,7 +223,7 @@ impl Range {
         u64::try_from(around * steps / round).unwrap_or(last)
     }
 
-    /// Returns the width of the multiturn field, if it is separate.
+    /// Returns the width of the multiturn field, or 0 if it is not separate.
     pub const fn multiturn_bits(&self) -> u8 {
         match self {
             Range::Bits { multiturn, .. } => *multiturn,
@@ -254,7 +253,7 @@ impl fmt::Display for Fraction {
 impl FromStr for Fraction {
     type Err = Expected;
 
-    /// Parses a direction; the error has the allowed values.
+    /// Parses a direction. The error lists the allowed values.
     fn from_str(text: &str) -> Result<Self, Expected> {
         let (above, below) = text.split_once('/').unwrap_or((text, "1"));
         let part = |text: &str| text.trim().parse().map_err(|_| Expected::Fraction);
@@ -274,7 +273,7 @@ fn angle(steps: u64, per_turn: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Reference section 5: 100 steps over 12.5 turns of 8192, and 3600 over one.
+    /// Reference section 5: 100 steps over 12.5 turns of 8192 steps, and 3600 steps over one turn.
     #[test]
     fn positions_convert_to_turns_and_degrees() {
         let axis = Range::RoundAxis { steps: 100, revolutions: Fraction { numerator: 25, denominator: 2 } };
@@ -291,7 +290,7 @@ mod tests {
         assert_eq!(most.of_shaft(u64::MAX, 1 << 32), u64::MAX);
     }
 
-    /// Worked out by hand: 360 steps of 4096 of the shaft, and the round axis of the reference.
+    /// Expected values calculated by hand for 360 steps on a shaft with 4096, and for the round axis of the reference.
     #[test]
     fn direction_and_preset_transform_positions() {
         use Direction::{Clockwise, CounterClockwise};

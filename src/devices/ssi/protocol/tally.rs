@@ -13,7 +13,7 @@ pub struct Tally {
     before: (Flags, Vec<usize>),
 }
 
-/// A finding with its count.
+/// Finding with its number of occurrences.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CountedFinding {
     /// The finding.
@@ -89,7 +89,7 @@ impl Tally {
     }
 }
 
-/// Returns whether a finding lasts for one transfer only, so that its return in the next frame is not a new finding.
+/// Returns whether a finding concerns a single transfer, so that the same finding in the next frame counts again.
 fn is_of_one_transfer(finding: &FrameFinding) -> bool {
     matches!(
         finding,
@@ -111,7 +111,8 @@ mod tests {
         Time::from_nanoseconds(milliseconds * 1_000_000)
     }
 
-    /// Returns name, count, first and last frame in milliseconds, and whether it lasts.
+    /// Returns the name, the count, the times of the first and last frame in milliseconds, and whether the finding
+    /// lasts.
     fn rows(tally: &Tally) -> Vec<(String, u64, i64, i64, bool)> {
         let name = |finding: &FrameFinding| match finding {
             FrameFinding::Error { name, .. } | FrameFinding::Pattern { name, .. } => name.clone(),
@@ -124,7 +125,7 @@ mod tests {
         tally.noted().iter().map(row).collect()
     }
 
-    /// AFS60, frames of the reference, section 8: 18 bits of position followed by ERRDIG, ERRSI, ERRSYNC.
+    /// Frames of an AFS60 from reference section 8, with 18 bits of position followed by ERRDIG, ERRSI and ERRSYNC.
     #[test]
     fn cleared_errors_count_per_frame_and_static_ones_once() {
         let layout = layout("afs60");

@@ -8,43 +8,44 @@ use std::time::Duration;
 
 use serde::Deserialize;
 
-/// A family's times, in microseconds.
+/// Timing of an encoder family, in microseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Times {
-    /// tm: how long the data line stays low after the last clock, least and most. For this time the value is kept.
+    /// Minimum and maximum monoflop time tm, during which the data line stays low after the last clock and the value is
+    /// kept.
     pub monoflop: (f64, f64),
     /// Highest clock, in hertz.
     pub most_hz: u32,
-    /// Times of asynchronous operation, if positions are made independently of transfers; none: not known.
+    /// Times of asynchronous operation, in which positions are generated independently of transfers; `None` if unknown.
     #[serde(default)]
     pub asynchronous: Option<Asynchronous>,
-    /// Positions are made when the host clocks.
+    /// Times of synchronous operation, in which positions are generated when the host clocks.
     #[serde(default)]
     pub synchronous: Option<Synchronous>,
-    /// Both, if the number of steps is no power of two.
+    /// Times of both modes if the number of steps is not a power of two.
     #[serde(default)]
     pub any_steps: Option<AnySteps>,
 }
 
-/// Positions are made on their own.
+/// Times of asynchronous operation, in which positions are generated independently of transfers.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Asynchronous {
     /// Time from one position to the next.
     pub update: f64,
-    /// Least age of a position when it is read.
+    /// Minimum age of a position when it is read, in microseconds.
     #[serde(default)]
     pub least_age: f64,
-    /// The longest pause between bursts.
+    /// Maximum pause between bursts in microseconds, if limited.
     #[serde(default)]
     pub most_pause: Option<f64>,
-    /// Variation of the pauses, in percent.
+    /// Variation of the pauses in percent, if specified.
     #[serde(default)]
     pub pause_varies: Option<f64>,
 }
 
-/// Positions are made when the host clocks.
+/// Timing of synchronous operation, in which the encoder determines its position when the host clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Synchronous {
@@ -55,7 +56,7 @@ pub struct Synchronous {
     pub monoflop: Option<f64>,
     /// The shortest pause.
     pub least_pause: f64,
-    /// Highest clock in this mode, in hertz.
+    /// Maximum clock frequency in synchronous mode, in hertz, if different.
     #[serde(default)]
     pub most_hz: Option<u32>,
 }
@@ -64,14 +65,14 @@ pub struct Synchronous {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Taken {
-    /// This long after the last clock, and ready this long after that.
+    /// The position is taken some time after the last clock, and is ready some time later.
     Behind {
-        /// Time from the last clock.
+        /// Time from the last clock until the position is taken, in microseconds.
         starts: f64,
         /// Time from the start.
         ready: f64,
     },
-    /// With the first falling edge; it is sent with the burst after that.
+    /// The position is taken at the first falling edge, and sent with the next burst.
     FirstEdge,
 }
 
@@ -79,13 +80,13 @@ pub enum Taken {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AnySteps {
-    /// Asynchronous: time from one position to the next.
+    /// Time from one position to the next in asynchronous mode, in microseconds.
     pub update: f64,
-    /// Synchronous: tm and the shortest pause.
+    /// Monoflop time tm and minimum pause in synchronous mode, in microseconds.
     pub monoflop: f64,
 }
 
-/// The timing of reading frames.
+/// Conditions under which frames are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reads {
     /// Bits of a burst.
@@ -96,9 +97,9 @@ pub struct Reads {
     pub pause: Duration,
     /// Cable in metres.
     pub cable_metres: Option<f64>,
-    /// Positions are made when the host clocks.
+    /// Whether the encoder takes a position when the host clocks.
     pub synchronous: bool,
-    /// The number of steps is no power of two.
+    /// Whether the number of steps is not a power of two.
     pub any_steps: bool,
 }
 
@@ -109,43 +110,43 @@ pub struct Timing {
     pub period: Duration,
     /// Duration of all clocks of a burst.
     pub burst: Duration,
-    /// Time from burst to burst.
+    /// Time from the start of one burst to the start of the next.
     pub cycle: Duration,
     /// tm, least and most.
     pub monoflop: (Duration, Duration),
     /// The shortest pause that is safe.
     pub least_pause: Duration,
-    /// Bursts a second with the shortest pause.
+    /// Number of bursts per second at the shortest pause.
     pub most_reads_hz: f64,
-    /// Least and greatest age of a position when its last bit has arrived; `None` if not known.
+    /// Minimum and maximum age of a position when its last bit arrives, or `None` if unknown.
     pub age: Option<(Duration, Duration)>,
-    /// The highest clock for this cable, in hertz; `None`: longer than any cable in the manual.
+    /// Maximum clock frequency for this cable in hertz, or `None` if the cable is longer than any in the manual.
     pub cable_hz: Option<u32>,
     /// The violated limits.
     pub warnings: Vec<Warning>,
 }
 
-/// A violated limit, with both values.
+/// Violated timing limit, with its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
-    /// The encoder does not bear this clock.
+    /// The clock is too fast for the encoder.
     EncoderClock {
         /// Highest, in hertz.
         most_hz: u32,
     },
-    /// This cable does not bear this clock.
+    /// The clock is too fast for the cable length.
     CableClock {
         /// Highest, in hertz.
         most_hz: u32,
     },
-    /// The manual has no cable of this length.
+    /// The cable is longer than any listed in the manual.
     CableLong,
-    /// A clock level lasts longer than tm: the encoder takes that for the end of the burst.
+    /// A clock level lasts longer than tm, which the encoder interprets as the end of the burst.
     ClockSlow {
         /// Lowest clock, in hertz.
         least_hz: f64,
     },
-    /// The pause is shorter than the encoder needs: bits of the old position continue, or it is not ready.
+    /// The pause is shorter than the encoder needs, so that it continues the old position or is not ready.
     PauseShort {
         /// Shortest.
         least: Duration,
@@ -155,7 +156,7 @@ pub enum Warning {
         /// Longest.
         most: Duration,
     },
-    /// Reading is faster than positions are made: the same position is repeated, and the host has to accept that.
+    /// Frames are read faster than positions are generated, so that positions repeat and the host must accept that.
     Repeats {
         /// Time from one position to the next.
         update: Duration,
@@ -166,12 +167,12 @@ pub enum Warning {
     SynchronousUnknown,
 }
 
-/// The manual's table of cables (2.7): length below this number of metres, highest clock in hertz.
+/// Cable table of the manual (2.7), with upper length limits in metres and maximum clock frequencies in hertz.
 const CABLES: [(f64, u32); 4] = [(50.0, 400_000), (100.0, 300_000), (200.0, 200_000), (400.0, 100_000)];
 
 impl Times {
-    /// What the manual says of SSI as such (SICK SSI description 2.2; reference section 1), for an encoder of no family. How
-    /// often it makes positions is not known.
+    /// General SSI times for an encoder of no family (SICK SSI description 2.2; reference section 1). The interval
+    /// between positions is unknown.
     pub const GENERAL: Self =
         Times { monoflop: (15.0, 25.0), most_hz: 2_000_000, asynchronous: None, synchronous: None, any_steps: None };
 
@@ -184,7 +185,7 @@ impl Times {
         timing
     }
 
-    /// Calculates the times of reading like this.
+    /// Calculates the timing that results from the given conditions.
     pub fn reckon(&self, reads: &Reads) -> Timing {
         let mut warnings = Vec::new();
         let clock = reads.clock_hz.max(1.0);
@@ -256,7 +257,7 @@ impl Times {
 }
 
 impl Synchronous {
-    /// Returns the age, which varies only if the pause does.
+    /// Returns the minimum and maximum age of a position, which differ only if the pause varies.
     fn age(&self, burst: Duration, pause: Duration) -> (Duration, Duration) {
         let age = match self.taken {
             Taken::Behind { starts, .. } => pause.saturating_sub(micros(starts)) + burst,

@@ -17,8 +17,8 @@ parameters! {
         encoder: Option<Encoder> = None,
             "ssi" => Maybe(Checked(Expected::Family, Encoder::named)),
             "connect.ssi_layout" like "atm60,code=gray";
-        /// Active error bits, and words sent instead of the frame (`ERRSYNC:0.5,ERRSI:4`, `safety-fault`), each with
-        /// its interval in seconds.
+        /// Active error bits, and words sent instead of the frame, each with its interval in seconds
+        /// (`ERRSYNC:0.5,ERRSI:4`, `safety-fault`).
         troubles: String = String::new(), "ssi-error" => ANY;
     }
 }
@@ -30,7 +30,7 @@ pub struct AtAdapter {
 }
 
 impl AtAdapter {
-    /// Encoder with factory settings, used if the settings name no other.
+    /// Adapter for an encoder with factory settings, unless the settings specify another one.
     pub const DELIVERED: AtAdapter = AtAdapter { encoder: None };
 
     /// Creates an adapter that uses the given encoder unless the settings name another.

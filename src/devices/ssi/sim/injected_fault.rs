@@ -72,7 +72,7 @@ impl InjectedFault {
         }
     }
 
-    /// Returns the active error bit.
+    /// Returns the error bit that is set, if any.
     pub(super) const fn flag(&self) -> Flags {
         match self.shows {
             FaultIndication::Bit { index, .. } => Flags::error(index),

@@ -20,7 +20,8 @@ fn read(query: &str) -> Result<(), ConfigError> {
     AtAdapter::DELIVERED.attach_device(&pairs(query)).map(|_| ())
 }
 
-/// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of those within a turn.
+/// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of those within a
+/// turn.
 #[test]
 fn words_follow_code_preset_and_direction() {
     let natural = 0x234 << 13 | 0x1800;

@@ -17,10 +17,10 @@ pub enum SsiAction {
     AddErrorBit,
     RemoveErrorBit(usize),
     Try(Try),
-    /// Sets the number of clocks per word during a search; `None` restores that of the layout.
+    /// Sets the number of clocks per word for a search, or restores that of the layout with `None`.
     SetClocks(Option<u8>),
     Find,
-    /// Asks for a file with frames whose layout is to be found.
+    /// Asks for a file with frames in order to find their layout.
     AskFrames,
     FindIn(PathBuf),
     ForgetSearch,
@@ -32,14 +32,14 @@ pub enum SsiAction {
     AskSaveFrames,
     SaveFrames(PathBuf),
     SendLayout,
-    /// Turn the virtual encoder's shaft, in revolutions per minute.
+    /// Turns the virtual encoder's shaft at the given speed in revolutions per minute.
     Turn(f64),
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Try {
     Position(u64),
-    /// Frame for a turn and a step within that turn.
+    /// Sets the frame for a turn and a step within that turn.
     Place(u64, u64),
     Bits(String),
     /// Inverts the bit at the given clock, counted from 1.

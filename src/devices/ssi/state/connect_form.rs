@@ -32,10 +32,10 @@ pub struct SsiForm {
     pub host: String,
     pub tcp_port: String,
     pub file: String,
-    /// The adapter leaves the encoder's supply on at the end.
+    /// Whether the adapter leaves the encoder's supply on at the end.
     pub leave_supply: bool,
     pub typed: Typed,
-    /// Parameters of the link that have no entry.
+    /// Link parameters without an entry in the form.
     pub rest: Vec<(String, String)>,
 }
 
@@ -83,7 +83,7 @@ impl FormModel for SsiForm {
 }
 
 impl SsiForm {
-    /// Returns the parameters to enter: those of the link, and those of the virtual encoder if one is selected.
+    /// Returns the entries of the form for a link, including those of a selected virtual encoder.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == SsiLinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()

@@ -34,7 +34,7 @@ pub struct Design {
 pub enum Edit {
     /// Switches to a family's factory layout, given the family key.
     Family(String),
-    /// Leaves the family. The frame stays, and every part of it becomes editable.
+    /// Detaches the frame from its family, so that every part of it becomes editable.
     Free,
     /// Changes the family settings.
     Settings(Box<Settings>),
@@ -42,7 +42,7 @@ pub enum Edit {
     /// Changes the positions or the code; the frame grows or shrinks accordingly.
     Position(Range, Code),
     Direction(Direction),
-    /// The position at the shaft's zero.
+    /// Sets the position at the shaft's zero.
     Preset(u64),
     Reading(ReadingSettings),
     Name(String),
@@ -97,7 +97,7 @@ impl Designer {
         Designer { families, now, saved, history: History::default(), problem: None }
     }
 
-    /// Creates the design of a family's layout as delivered.
+    /// Creates the design of a family's factory layout.
     pub(super) fn delivered(families: Arc<Families>) -> Self {
         let profile = parse_profile(TO_BEGIN_WITH, &families);
         Designer::with(profile, families)
@@ -111,8 +111,8 @@ impl Designer {
         Designer::with(profile, families)
     }
 
-    /// Returns the reading settings for a new link to the same encoder. Parameters that differ between the links are
-    /// taken from the new one; settings made by the user stay.
+    /// Returns the reading settings after the link to the encoder was replaced. Parameters that differ between the
+    /// links are taken from the new one, and settings made by the user are kept.
     pub(super) fn reading_after_link_change(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
         reading_for_link(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }

@@ -95,14 +95,14 @@ impl Drafted for Encoder {
         self.session.take_document(file, document);
     }
 
-    fn written_beside(&mut self, document: Document) {
+    fn note_profile_saved(&mut self, document: Document) {
         if let Ok(profile) = document.body.into_profile() {
             self.designer.mark_saved(profile);
         }
     }
 }
 
-/// Returns a layout as a profile of no file.
+/// Creates a document for a layout that is not stored in a file.
 fn document_of(profile: &SsiProfile) -> Document {
     Document { saved: None, ..Document::new(String::new(), Body::new(profile.clone())) }
 }

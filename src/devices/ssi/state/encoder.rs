@@ -146,7 +146,7 @@ impl Encoder {
         })
     }
 
-    /// Returns whether this is a profile stored in a file, or to be stored in one.
+    /// Returns whether this is a profile that is or will be stored in a file.
     pub fn is_profile(&self) -> bool {
         !matches!(self.session.source, Source::Link(_))
     }
@@ -158,7 +158,7 @@ impl Encoder {
 }
 
 impl Designer {
-    /// Returns the applicable times: those of the family, otherwise the general SSI times from the manual.
+    /// Returns the times of the family, or else the general SSI times from the manual.
     pub fn applicable_times(&self) -> Times {
         self.times().copied().unwrap_or(Times::GENERAL)
     }

@@ -67,7 +67,7 @@ impl Encoder {
         }
     }
 
-    /// Reads a word to display, unless words are being polled anyway.
+    /// Reads a single word for display, unless words are already being polled.
     fn see_a_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(SsiJob::Read, services);

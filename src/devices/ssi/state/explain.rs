@@ -21,7 +21,7 @@ pub use export::export;
 pub use family::{note, store};
 pub use refused::{bursts, entry, format, frame_text, layout, settings, wide};
 
-/// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
+/// Returns one or more texts that explain why a job ended early, each of which may be shown on its own line.
 pub fn job(error: &JobError) -> Vec<Text> {
     vec![match error {
         JobError::Link(error) => link(error),
@@ -30,7 +30,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }]
 }
 
-/// Returns why the connection failed, if nothing more can be requested over it.
+/// Returns the reason for a lost connection, or `None` if requests are still possible.
 pub fn loss(error: &JobError) -> Option<Text> {
     match error {
         JobError::Link(error) => Some(link(error)),
@@ -63,7 +63,7 @@ pub fn finding(finding: &FrameFinding) -> Text {
     }
 }
 
-/// Returns the text about a layout that is accepted although the manual does not describe it.
+/// Returns the text about an accepted setting that the manual does not describe.
 pub fn advice(advice: &Advice) -> Text {
     match advice {
         Advice::Code(code) => TEXTS.text("ssi.other_code").with("code", code),
@@ -71,7 +71,7 @@ pub fn advice(advice: &Advice) -> Text {
     }
 }
 
-/// Returns the text for a time of a transfer that does not fit.
+/// Returns the text about a violated timing limit.
 pub fn timing(warning: &Warning) -> Text {
     let micros = |time: &std::time::Duration| time.as_secs_f64() * 1e6;
     let kilohertz = |hz: f64| hz / 1000.0;
@@ -92,7 +92,7 @@ pub fn timing(warning: &Warning) -> Text {
     }
 }
 
-/// Returns a frame in one line: its clocks, its positions, its code, its error bits.
+/// Returns a one-line description of a frame with its clocks, positions, code and error bits.
 pub fn frame(layout: &Layout) -> Text {
     let descriptor = layout.descriptor();
     let range = match descriptor.range {
@@ -165,7 +165,7 @@ pub fn open(open: Open) -> Text {
     }
 }
 
-/// Returns whether the first layout found is certain, or why not.
+/// Returns the text that states whether the first layout found is certain and, if not, why.
 pub fn doubt(doubt: Option<Uncertainty>) -> Text {
     TEXTS.text(match doubt {
         None => "ssi_find.sure",

@@ -8,7 +8,7 @@ use crate::devices::ssi::protocol::{
 };
 use crate::devices::ssi::state::explain as words;
 
-/// Export format of a layout, other than a profile.
+/// Export format of a layout; profiles are exported separately.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
     C,

@@ -51,7 +51,7 @@ pub enum Field {
     Multiturn,
     /// Bits within a turn.
     Singleturn,
-    /// Steps in a turn, or altogether.
+    /// Number of steps per turn or in total.
     Steps,
     /// Number of turns in a range with a fixed number of steps per turn.
     Turns,
@@ -62,7 +62,7 @@ pub enum Field {
     /// Length of a step in nanometres.
     StepLength,
     Code,
-    /// The bits that a Gray code covers.
+    /// Bits that a Gray code covers.
     Over,
     Align,
     Shift,
@@ -115,9 +115,9 @@ impl Group {
         self.rows.iter().any(|row| row.field == Field::Lead)
     }
 
-    /// Returns whether the group describes the encoder's configuration (counting direction, preset) and not the frame.
-    pub fn is_counting(&self) -> bool {
-        self.rows.iter().any(|row| row.field == Field::Direction)
+    /// Returns whether the group folds in a low window: all but the position, which is used most, and the error bits.
+    pub fn folds(&self) -> bool {
+        matches!(self.title, "ssi_form.frame" | "ssi_form.counting")
     }
 }
 
@@ -345,7 +345,7 @@ pub fn whole(text: &str) -> Result<u64, Text> {
     number.ok().filter(|_| !signed).ok_or_else(|| TEXTS.text("ssi_form.whole").with("text", text.trim()))
 }
 
-/// Returns a number that a byte holds.
+/// Converts a number to a byte, or returns `None` if the number is too large.
 fn byte(number: u64) -> Option<u8> {
     u8::try_from(number).ok()
 }

@@ -49,7 +49,7 @@ impl DeviceModel for Encoder {
                 }
             }
             Done::Written(path, Ok(())) => {
-                services.log.settle_file(&path);
+                services.log.remove_file_notices(&path);
                 let text = Text::new("session.saved").with("path", path.display());
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
             }
@@ -61,7 +61,7 @@ impl DeviceModel for Encoder {
         Some(Body::new(self.wanted_profile()))
     }
 
-    fn take_over(&mut self, body: Body, _services: &mut Services) -> Result<(), ProfileError> {
+    fn adopt_body(&mut self, body: Body, _services: &mut Services) -> Result<(), ProfileError> {
         self.edit(Edit::Whole(Box::new(body.into_profile()?)));
         Ok(())
     }

@@ -57,7 +57,7 @@ impl Streamed {
         1e9 / self.period_ns.max(1) as f64
     }
 
-    /// Returns whether words cannot follow each other as closely as requested.
+    /// Returns whether the requested interval between words is shorter than possible.
     pub const fn is_limited(&self) -> bool {
         self.is_limited
     }
@@ -161,7 +161,7 @@ impl Record {
         }
         self.meaning = meaning(layout);
         self.tally.reset();
-        self.track.begin_again(self.held);
+        self.track.restart_line(self.held);
         let kept = std::mem::take(&mut self.kept);
         let (lost, stream) = (self.lost, self.stream);
         for run in &kept {
@@ -183,7 +183,7 @@ impl Record {
         self.runs(clocks).map(|run| run.words.len()).sum()
     }
 
-    /// Iterates over contiguous runs from the newest to the oldest; each run continues where its predecessor ends.
+    /// Iterates over adjoining runs from the newest to the oldest.
     fn runs(&self, clocks: u8) -> impl Iterator<Item = &Words> {
         let mut later: Option<&Words> = None;
         self.kept.iter().rev().take_while(move |run| {
@@ -250,7 +250,7 @@ fn without_names(layout: &Layout) -> Descriptor {
     descriptor
 }
 
-/// Returns how to interpret a layout's positions.
+/// Returns the interpretation of a layout's positions.
 fn meaning(layout: &Layout) -> Meaning {
     let range = layout.descriptor().range;
     let all = range.last().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));

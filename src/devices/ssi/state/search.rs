@@ -13,7 +13,7 @@ use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 use crate::store::{FileError, FileProblem, read_file};
 
-/// Maximum number of frames searched: the newest.
+/// Maximum number of frames searched, counted from the newest.
 pub(super) const MOST: usize = 8_000;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub enum Origin {
     File(String),
 }
 
-/// Frames that follow each other.
+/// Consecutive frames with their origin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames {
     pub origin: Origin,
@@ -30,9 +30,9 @@ pub struct Frames {
     pub clocks: u8,
     /// The frames, right-justified.
     pub frames: Vec<u64>,
-    /// Bursts of a logic analyser that are not complete.
+    /// Number of incomplete bursts in a logic analyser recording.
     pub left_out: usize,
-    /// The frames are numbers, which do not tell how many bits come before the highest 1.
+    /// Whether the frames are given as numbers, which do not reveal the number of leading zeros.
     pub are_numbers: bool,
 }
 
@@ -45,42 +45,41 @@ pub enum SearchState {
         origin: Origin,
         /// Bits of each.
         clocks: u8,
-        /// Bursts of a logic analyser that are not complete.
+        /// Number of incomplete bursts in a logic analyser recording.
         left_out: usize,
         frames: Vec<u64>,
         search: Box<Search>,
     },
-    /// There were no frames: why, and what to do.
+    /// The search failed because there were no frames, with the reason and a remedy.
     Failed(Text),
 }
 
-/// Returns a number of clocks as people write one.
+/// Parses a number of clocks.
 ///
 /// # Errors
-/// Not a whole number, or one that a frame cannot have.
+/// The text is not a whole number, or no frame can have this number of clocks.
 pub fn read_clocks(text: &str) -> Result<u8, Text> {
     let number = whole(text)?;
     let clocks = u8::try_from(number).ok().filter(|clocks| (1..=64).contains(clocks));
     clocks.ok_or_else(|| TEXTS.text("ssi_find.clocks_range").with("clocks", number))
 }
 
-/// Reads frames from a file, one per line: bits in the order of the clocks or 0x and hex digits, in the first column that
-/// looks like a frame; others are ignored. Empty lines, a heading and lines that begin with # are skipped. Hexadecimal
-/// frames have `clocks` bits. Or the file is a table of `position ssi --csv`, or the export of a logic analyser, whose edges
-/// are decoded.
+/// Reads frames from a text file, from a table of `position ssi --csv`, or from the edges in a logic analyser export. A
+/// text file has one frame per line, as bits in clock order or as 0x and hex digits, in the first column that looks
+/// like a frame. Hexadecimal frames have `clocks` bits; empty lines, a heading and lines that begin with # are skipped.
 ///
 /// # Errors
-/// The file cannot be read, or a line is not a frame: which, and why.
+/// The file cannot be read, or a line is not a frame. The message names the line and the reason.
 pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
     let text = read_file(path).map_err(|error| file(&error))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     frames_of(&text, name, clocks)
 }
 
-/// Reads frames from the text of a file, or of another origin of this name, as [`read_frames`] does.
+/// Parses frames like [`read_frames`], from text whose origin is called `name`.
 ///
 /// # Errors
-/// A line is no frame: which, and why.
+/// A line is not a frame. The message names the line and the reason.
 pub fn frames_of(text: &str, name: String, clocks: u8) -> Result<Frames, Text> {
     let read = match capture::levels(text) {
         Some(levels) => of_bursts(bursts(&levels?).map_err(words::bursts)?),
@@ -108,7 +107,8 @@ fn numbered_text(line: usize, why: Text) -> Text {
     TEXTS.text("ssi_find.line").with("line", line).with_text("why", why)
 }
 
-/// The table of `position ssi --csv`: its frames are decimal numbers. `None`: it is another text.
+/// Parses a table of `position ssi --csv`, in which frames are decimal numbers, or returns `None` if the text is not
+/// such a table.
 fn table(text: &str, clocks: u8) -> Option<Result<Frames, Text>> {
     const HEADING: &str = "t_s,raw,";
     let rows = (1..).zip(text.lines()).map(|(number, line)| (number, line.trim().trim_start_matches('\u{feff}')));
@@ -177,8 +177,8 @@ fn parse_frames(text: &str, clocks: u8) -> Result<Frames, Text> {
     }
 }
 
-/// Splits a line into columns: separated by commas, semicolons, tabs, or blanks; but bits may be written in groups of at
-/// most a byte.
+/// Splits a line into columns at commas, semicolons, tabs or blanks. Blanks within groups of bits, of at most a byte
+/// each, do not separate columns.
 fn columns(line: &str) -> Vec<&str> {
     let first = line.split_whitespace().next().unwrap_or_default();
     let parted = line.contains([',', ';', '\t']);
@@ -191,13 +191,13 @@ fn columns(line: &str) -> Vec<&str> {
     columns.into_iter().map(|column| column.trim().trim_matches('"')).collect()
 }
 
-/// Returns whether a column looks like a frame: bits of more than a nibble, or hex digits after 0x.
+/// Returns whether a column looks like a frame, that is, consists of more than four bits or of 0x and hex digits.
 fn is_frame(column: &str) -> bool {
     let hex = column.strip_prefix("0x").or(column.strip_prefix("0X"));
     hex.is_some() || bits_of(column).is_some_and(|bits| bits >= 4)
 }
 
-/// Returns the number of bits in a column; `None` if it does not hold bits.
+/// Returns the number of bits in a column, or `None` if the column does not consist of bits.
 fn bits_of(column: &str) -> Option<u8> {
     let bits = column.strip_prefix("0b").or(column.strip_prefix("0B")).unwrap_or(column);
     let mut bits = bits.chars().filter(|bit| *bit != '_' && !bit.is_whitespace()).peekable();

@@ -11,7 +11,7 @@ pub use words::{bare, cell, clocks, field, handle, hint, name, reach, short, val
 
 use crate::devices::ssi::protocol::{Coded, Flags, Layout, Meaning, Range, Role, Word};
 
-/// A frame in cells and fields.
+/// Frame divided into cells and fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strip {
     layout: Layout,
@@ -25,7 +25,7 @@ pub struct Cell {
     /// Counted from 1.
     pub clock: u8,
     pub role: Role,
-    /// Index of its field in the strip.
+    /// Index in the strip of the field that the cell belongs to.
     pub field: usize,
 }
 
@@ -42,7 +42,7 @@ pub struct Field {
 pub enum Kind {
     /// Nothing, before the position.
     Before,
-    /// Nothing, between turns and steps.
+    /// Zeros between turns and steps.
     Between,
     /// Zeros after the position.
     Behind,
@@ -51,29 +51,30 @@ pub enum Kind {
     After,
     Turns,
     Steps,
-    /// Bits of a position without separate turns and steps.
+    /// Bits of a position that is not divided into turns and steps.
     Position,
     Error(usize),
     Parity,
     Again,
 }
 
-/// A movable part. A boundary is after a clock, 0 at the start; a bit and the position are on one.
+/// Movable part of a frame. A boundary is located after a clock (0 at the start), whereas a bit and the position are
+/// located on one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Handle {
-    /// The start of the position: moving it exchanges bits of the turns with the zeros before it.
+    /// Start of the position. Moving it exchanges bits of the turns with the zeros before them.
     LeadEnd,
-    /// Between turns and steps: bits move from one to the other. There are no zeros between.
+    /// Boundary between adjoining turns and steps. Moving it transfers bits from one to the other.
     Split,
     /// The end of the turns, followed by zeros before the steps.
     TurnsEnd,
-    /// The start of the steps after zeros.
+    /// Start of the steps after zeros.
     BetweenEnd,
-    /// The end of the position: moving it exchanges bits of the steps with the free bits after it.
+    /// End of the position. Moving it exchanges bits of the steps with the free bits after them.
     StepsEnd,
     /// The last clock that is coded or shifted together with the position.
     AreaEnd,
-    /// The end of the first of two equal words.
+    /// End of the first of two identical words.
     WordEnd,
     GapEnd,
     FrameEnd,
@@ -85,7 +86,7 @@ pub enum Handle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellState {
     pub bit: bool,
-    /// The meaning for the position: an active error bit, or a bit that should be 0 and is not.
+    /// Consequence for the position of an active error bit, or of a bit that should be 0 but is 1.
     pub tells: Option<Meaning>,
 }
 
@@ -146,17 +147,17 @@ impl Strip {
         &self.fields
     }
 
-    /// Returns the movable parts, from the first clock to the last.
+    /// Returns the movable parts in clock order.
     pub fn handles(&self) -> &[Handle] {
         &self.handles
     }
 
-    /// Returns the clock of a part, 0 to 64; `None` if the frame does not have it.
+    /// Returns the clock of a part, 0 to 64, or `None` if the frame lacks the part.
     pub fn clock(&self, handle: Handle) -> Option<u8> {
         moving::clock(&self.layout, handle)
     }
 
-    /// Returns the frame after a move to this clock, as far as possible; see [`moved`].
+    /// Returns the strip after a part is moved to the given clock, or as close to it as possible; see [`moved`].
     pub fn moved(&self, handle: Handle, to: u8, following: bool) -> Strip {
         Strip::of(&moved(&self.layout, handle, to, following))
     }
@@ -212,36 +213,36 @@ impl Field {
         matches!(self.kind, Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After)
     }
 
-    /// Returns whether the field is a single bit, however many stand beside it.
+    /// Returns whether the field is an error or parity bit, which forms a field of its own even beside other such bits.
     pub const fn is_single(&self) -> bool {
         matches!(self.kind, Kind::Error(_) | Kind::Parity)
     }
 }
 
 impl Handle {
-    /// Returns whether it is on a clock pulse rather than between two.
+    /// Returns whether the handle is on a clock rather than between two clocks.
     pub const fn is_cell(self) -> bool {
         matches!(self, Handle::Error(_) | Handle::Parity | Handle::Position)
     }
 }
 
-/// Returns whether error and parity bits directly after the position follow it, judged by the frame.
+/// Returns whether any error or parity bits directly follow the position, and therefore move with it.
 pub fn follows(layout: &Layout) -> bool {
     !moving::chain(layout).is_empty()
 }
 
-/// Returns whether the frame has patterns, whose words are bits of the frame and would change with its length.
+/// Returns whether the frame has patterns given as bits, which would change with the length of the frame.
 fn has_words(layout: &Layout) -> bool {
     layout.descriptor().patterns.iter().any(|pattern| matches!(pattern.word, Word::Bits(_)))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Parts {
-    /// Bits of the turns and of the steps, both more than none.
+    /// Numbers of turn bits and step bits, both above zero.
     Both(u8, u8),
-    /// Bits of one kind, as many as one likes.
+    /// Number of bits if there is only one kind of bits, of any width.
     One(u8),
-    /// The number of bits required for its steps.
+    /// Number of bits required for the given number of steps.
     Whole(u8),
 }
 

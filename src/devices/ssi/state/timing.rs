@@ -9,7 +9,7 @@ use crate::app::Text;
 use crate::devices::ssi::protocol::{Layout, Reads, Taken, Times, Timing};
 use crate::devices::ssi::state::TEXTS;
 
-/// Burst and the time after it, until the next one has begun.
+/// Timing diagram of a burst and the time until the next burst has begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagram {
     strip: Strip,
@@ -19,7 +19,7 @@ pub struct Diagram {
     marks: Vec<TimingMark>,
 }
 
-/// Section of time that is drawn. Between two of them the axis is broken.
+/// Section of time that is drawn. The axis is broken between two sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     /// Start in seconds.
@@ -44,7 +44,7 @@ pub enum Lasting {
     Period,
     Burst,
     Pause,
-    /// The data line stays low.
+    /// Monoflop time, during which the data line stays low.
     Monoflop,
     LeastPause,
     Making,
@@ -60,7 +60,7 @@ pub struct TimingMark {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TimingEvent {
     Latched,
-    /// A position is taken, which the next burst sends.
+    /// A position is taken, which is sent with the next burst.
     Taken,
     Started,
     Ready,
@@ -69,7 +69,7 @@ pub enum TimingEvent {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bit {
-    /// The clock that brings it, counted from 1.
+    /// Number of the clock that transmits the bit, counted from 1.
     pub clock: u8,
     /// Start, in seconds.
     pub from: f64,
@@ -77,11 +77,11 @@ pub struct Bit {
     pub to: f64,
 }
 
-/// Number of bursts without an event after which the axis is broken,
+/// Duration without an event after which the axis is broken, in bursts.
 const LONG: f64 = 1.5;
-/// and the part of a burst that is kept on either side.
+/// Duration that is kept at either side of a break, in bursts.
 const KEPT: f64 = 0.4;
-/// Clocks of the next burst that are drawn.
+/// Number of clocks of the next burst that are drawn.
 const NEXT: f64 = 2.5;
 
 impl Diagram {
@@ -124,7 +124,7 @@ impl Diagram {
         &self.strip
     }
 
-    /// Returns the drawn pieces of the time axis, from start to end.
+    /// Returns the drawn sections of the time axis in order.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
@@ -143,7 +143,7 @@ impl Diagram {
         &self.marks
     }
 
-    /// Returns the times of the edges of the clock line in seconds; it rests high, so the first is a falling edge.
+    /// Returns the times of the clock edges in seconds. The clock idles high, so that the first edge is a falling one.
     pub fn edges(&self) -> Vec<f64> {
         let (half, cycle) = (self.timing.period.as_secs_f64() / 2.0, self.timing.cycle.as_secs_f64());
         let own = (0..2 * u32::from(self.clocks())).map(|edge| f64::from(edge) * half);
@@ -151,7 +151,7 @@ impl Diagram {
         own.chain(next).collect()
     }
 
-    /// Returns the bits on the data line: each starts with a rising edge.
+    /// Returns the bits on the data line, each of which starts at a rising clock edge.
     pub fn bits(&self) -> Vec<Bit> {
         let period = self.timing.period.as_secs_f64();
         let comes = |clock: u8| (f64::from(clock) - 0.5) * period;
@@ -166,15 +166,15 @@ impl Diagram {
         (comes(field.first), comes(field.last + 1).min(self.timing.burst.as_secs_f64()))
     }
 
-    /// Returns when the data line goes low after the bits, and the range of times in which it rises again, in seconds.
-    /// It rises with the next burst at the latest.
+    /// Returns the time at which the data line goes low after the bits, and the earliest and latest time at which it
+    /// rises again, in seconds. The line rises with the next burst at the latest.
     pub fn low(&self) -> (f64, f64, f64) {
         let (burst, cycle) = (self.timing.burst.as_secs_f64(), self.timing.cycle.as_secs_f64());
         let (least, most) = self.timing.monoflop;
         (burst, (burst + least.as_secs_f64()).min(cycle), (burst + most.as_secs_f64()).min(cycle))
     }
 
-    /// Returns when the next bits come, in seconds.
+    /// Returns the time at which the bits of the next burst begin, in seconds.
     pub fn next(&self) -> f64 {
         self.timing.cycle.as_secs_f64() + self.timing.period.as_secs_f64() / 2.0
     }
@@ -183,7 +183,7 @@ impl Diagram {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
 
-    /// Returns the state at a moment: the time, and the clock with its content, or what the lines wait for.
+    /// Returns texts for a moment: the time, and either the clock with its content or what the lines are waiting for.
     pub fn state_at(&self, at: f64) -> Vec<Text> {
         let mut texts = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
@@ -229,11 +229,11 @@ impl TimingEvent {
     }
 }
 
-pub fn left_out(seconds: f64) -> Text {
+pub fn skipped_operations(seconds: f64) -> Text {
     TEXTS.text("ssi.timing_break").with_text("time", time(seconds))
 }
 
-/// Returns a time with four figures at most, in the unit that suits it.
+/// Formats a time with up to four significant figures in a suitable unit.
 pub fn time(seconds: f64) -> Text {
     const UNITS: [(&str, f64); 4] =
         [("ssi.time_ns", 1e-9), ("ssi.time_us", 1e-6), ("ssi.time_ms", 1e-3), ("ssi.time_s", 1.0)];
@@ -248,7 +248,7 @@ pub fn time(seconds: f64) -> Text {
     TEXTS.text(id).with_number("value", value, decimals)
 }
 
-/// A frequency in the unit that suits it, with three decimals at most: 2 MHz, 10.811 kHz.
+/// Formats a frequency with up to three decimals in a suitable unit, such as 2 MHz or 10.811 kHz.
 pub fn frequency(hertz: f64) -> Text {
     const UNITS: [(&str, f64); 3] = [("ssi.hertz", 1.0), ("ssi.kilohertz", 1e3), ("ssi.megahertz", 1e6)];
     // A value that rounds to a thousand of a unit is one of the next.
@@ -260,10 +260,10 @@ pub fn frequency(hertz: f64) -> Text {
     TEXTS.text(id).with_number("value", value, decimals)
 }
 
-/// Reads a frequency as people write one: 400000, 400 kHz, 1.5 MHz; a comma is a decimal sign, too.
+/// Parses a frequency such as 400000, 400 kHz or 1.5 MHz; a decimal comma is also accepted.
 ///
 /// # Errors
-/// In words.
+/// The reason in words.
 pub fn read_frequency(text: &str) -> Result<u32, Text> {
     let wrong = || TEXTS.text("ssi_form.frequency").with("text", text.trim());
     let plain: String = text.chars().filter(|c| !c.is_whitespace()).collect::<String>().to_ascii_lowercase();
@@ -278,7 +278,7 @@ pub fn read_frequency(text: &str) -> Result<u32, Text> {
     if (0.0..=f64::from(u32::MAX)).contains(&hertz) { Ok(hertz as u32) } else { Err(wrong()) }
 }
 
-/// The the sections of the time axis: the whole burst, and after it everything near an event.
+/// Returns the sections of the time axis, which are the whole burst and everything near an event after it.
 fn pieces(burst: f64, end: f64, spans: &[Span], marks: &[TimingMark]) -> Vec<Piece> {
     let ends = spans.iter().flat_map(|span| [span.from, span.least, span.to]);
     let mut moments: Vec<f64> = ends.chain(marks.iter().map(|mark| mark.at)).filter(|at| *at > burst).collect();

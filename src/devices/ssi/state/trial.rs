@@ -19,7 +19,7 @@ pub struct Decoded {
     /// Position and its location on the shaft or scale, if the bits represent a valid position.
     pub place: Option<(u64, Location)>,
     pub findings: Vec<FrameFinding>,
-    /// The position may be used.
+    /// Whether the position may be used.
     pub is_valid: bool,
 }
 
@@ -97,7 +97,7 @@ impl Trial {
     }
 }
 
-/// Returns only the flags of error bits, which can be encoded.
+/// Returns only those flags that refer to error bits, which can be encoded.
 fn error_bits(layout: &Layout, flags: Flags) -> Flags {
     let all = (0..layout.descriptor().errors.len()).map(Flags::error);
     all.filter(|error| flags.has(*error)).fold(Flags::NONE, Flags::with)

@@ -18,7 +18,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
         theme,
         &mut *actions,
         |ui, actions| {
-            adapter(ui, theme, encoder, actions);
+            adapter_ui(ui, theme, encoder, actions);
             if let Some(motor) = &encoder.motor {
                 theme.gap(ui);
                 motor::card_ui(ui, theme, motor.rpm(), |rpm| {
@@ -27,16 +27,16 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
             }
         },
         |ui, actions| {
-            errors(ui, theme, encoder, actions);
+            errors_ui(ui, theme, encoder, actions);
             theme.gap(ui);
-            check(ui, theme, encoder, actions);
+            check_ui(ui, theme, encoder, actions);
         },
     );
     theme.gap(ui);
     wiring::card_ui(ui, theme, encoder.designer.family());
 }
 
-fn adapter(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn adapter_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let is_readable = encoder.session.is_readable() && !encoder.is_profile();
     let read = |ui: &mut Ui| {
@@ -78,7 +78,7 @@ fn adapter(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Acti
 }
 
 /// Draws the findings such as error bits and patterns, including those from frames that were not displayed.
-fn errors(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn errors_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let noted = encoder.record.tally().noted();
     let id = encoder.session.id;
     let forget = |ui: &mut Ui| {
@@ -109,7 +109,7 @@ fn errors(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Actio
     });
 }
 
-fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn check_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let run = |ui: &mut Ui| {
         let ready = encoder.session.is_ready();
         if enabled_button(ui, ready, icons::LIST_CHECKS, &theme.say("check_card.run")).clicked() {

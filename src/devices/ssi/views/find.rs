@@ -50,7 +50,7 @@ pub(super) fn page_ui(
             });
         }
         SearchState::Found { origin, clocks, left_out, frames, search } => {
-            found(ui, theme, encoder, view, (origin, *clocks, search), actions);
+            found_ui(ui, theme, encoder, view, (origin, *clocks, search), actions);
             if *left_out > 0 {
                 let text = TEXTS.text("ssi_capture.left_out").with("count", left_out);
                 ui.add_space(theme.space.between);
@@ -104,7 +104,7 @@ fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
     });
 }
 
-fn found(
+fn found_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -139,7 +139,7 @@ fn found(
     }
 }
 
-/// Draws a class: layouts that the recorded frames cannot tell apart.
+/// Draws a class, which consists of layouts that the recorded frames cannot tell apart.
 fn class_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -166,7 +166,7 @@ fn class_ui(
                 }
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing.y = theme.space.inside;
-                    title(ui, theme, encoder, proposal);
+                    title_ui(ui, theme, encoder, proposal);
                     ui.add(egui::Label::new(theme.caption(theme.words(&words::frame(&proposal.layout)))).wrap());
                 });
             });
@@ -188,7 +188,7 @@ fn class_ui(
     });
 }
 
-fn title(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &Proposal) {
+fn title_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &Proposal) {
     let Some((key, settings)) = &proposal.family else {
         ui.label(say(theme, "ssi_find.any"));
         return;

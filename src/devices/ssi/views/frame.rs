@@ -229,7 +229,7 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
             }
         };
         let title = TEXTS.text(group.title);
-        if group.is_counting() {
+        if group.folds() {
             folding_card(ui, theme, title, content);
         } else {
             card_with(ui, theme, title, aside, content);
@@ -256,7 +256,7 @@ fn buttons_ui(
             if primary(ui, theme, true, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
                 actions.push(Action::Save(device.id()));
             }
-            adopt_for_device(ui, theme, studio, device, actions);
+            adopt_for_device_ui(ui, theme, studio, device, actions);
             if is_dirty {
                 let words = RichText::new(say(theme, "ssi_layout.unsaved")).color(theme.palette.staged);
                 ui.add(egui::Label::new(words).truncate());
@@ -265,8 +265,8 @@ fn buttons_ui(
     });
 }
 
-/// Draws the choice of the layout for a connected encoder.
-fn adopt_for_device(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
+/// Draws the selection of a connected encoder for which to adopt the layout.
+fn adopt_for_device_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && other.is_connected() && other.id() != device.id();
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();
     if targets.is_empty() {

@@ -11,7 +11,7 @@ use crate::ui::controls::{card, paragraph};
 
 const ROWS: f32 = 12.0;
 
-/// Draws the list of frames. Clicking a frame tries the layout on it.
+/// Draws the list of frames. Clicking a frame decodes it with the layout.
 pub(super) fn card_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -71,7 +71,7 @@ fn decoded_summary(theme: &Theme, number: usize, decoded: &Decoded, digits: usiz
     }
 }
 
-/// Columns of fixed widths, numbers to the right.
+/// Formats a row with columns of fixed width and right-aligned numbers.
 fn row([number, frame, position, turns, steps]: &[&str; 5], digits: usize) -> String {
     let width = (digits + 2).max(8);
     format!("{number:>5}  {frame:<width$} {position:>10} {turns:>11} {steps:>9}")

@@ -24,7 +24,7 @@ use crate::ui::{NamedAction, Theme, icons, page};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// Frame layout editor, with a trial frame.
+    /// Tab with the frame layout editor and a trial frame.
     #[default]
     Frame,
     Timing,
@@ -92,7 +92,7 @@ impl TypedDeviceView for SsiView {
         });
     }
 
-    /// A transfer is over at once.
+    /// Draws nothing, because a transfer completes immediately.
     fn running_ui(_: &mut Ui, _: &Theme, _: &AnyDevice, _: &Encoder, _: Page, _: &mut Vec<Action>) {}
 
     fn empty_ui(ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {

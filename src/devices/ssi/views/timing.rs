@@ -39,7 +39,7 @@ pub(super) fn page_ui(
         },
         |ui, _| {
             card(ui, theme, TEXTS.text("ssi_timing.result"), |ui| {
-                result(ui, theme, &timing);
+                result_ui(ui, theme, &timing);
                 if designer.family().is_none() {
                     paragraph(ui, theme.caption(say(theme, "ssi_timing.general")));
                 }
@@ -48,7 +48,7 @@ pub(super) fn page_ui(
     );
 }
 
-fn result(ui: &mut Ui, theme: &Theme, timing: &Timing) {
+fn result_ui(ui: &mut Ui, theme: &Theme, timing: &Timing) {
     let micros = |time: std::time::Duration| theme.number(time.as_secs_f64() * 1e6, 2);
     let hertz = |hertz: f64| theme.words(&frequency(hertz));
     let mut value_row = |id: &'static str, words: String| row(ui, theme, &say(theme, id), theme.mono(words));

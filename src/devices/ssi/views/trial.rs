@@ -23,7 +23,7 @@ pub(super) struct TrialUiState {
 }
 
 impl TrialUiState {
-    /// Returns whether the user is typing, rather than an entry that was refused.
+    /// Returns whether the user is typing, as opposed to a refused entry being shown.
     fn is_typed_in(&self) -> bool {
         let numbers = [&self.position, &self.turns, &self.steps];
         self.bits.is_some() || numbers.into_iter().flatten().any(|(_, problem)| problem.is_none())
@@ -55,9 +55,9 @@ pub(super) fn card_ui(
     };
     card_with(ui, theme, TEXTS.text("ssi_trial.title"), live, |ui| {
         numbers(ui, theme, encoder, &shown, view, &mut |with| actions.push(Action::device(id, Ssi::Try(with))));
-        bits(ui, theme, encoder, &shown, view, actions);
+        bits_ui(ui, theme, encoder, &shown, view, actions);
         problem_below(ui, theme, encoder.trial.problem());
-        findings(ui, theme, &shown);
+        findings_ui(ui, theme, &shown);
     });
     actions.extend(action.map(|with| Action::device(id, Ssi::Try(with))));
     view.held = view.is_typed_in().then_some(shown);
@@ -80,7 +80,7 @@ fn numbers(
             put(Try::Position(whole(text)?));
             Ok(())
         });
-        refused(ui, theme, view.position.as_ref());
+        refused_ui(ui, theme, view.position.as_ref());
     });
     match shown.place {
         Some((_, Location::Shaft { turns, steps, degrees })) => {
@@ -90,14 +90,14 @@ fn numbers(
                     put(Try::Place(whole(text)?, steps));
                     Ok(())
                 });
-                refused(ui, theme, view.turns.as_ref());
+                refused_ui(ui, theme, view.turns.as_ref());
             });
             entry(ui, theme, &own_steps, |ui| {
                 committed_entry(ui, &mut view.steps, &steps.to_string(), NUMBER, &own_steps, |text| {
                     put(Try::Place(turns, whole(text)?));
                     Ok(())
                 });
-                refused(ui, theme, view.steps.as_ref());
+                refused_ui(ui, theme, view.steps.as_ref());
             });
             row(ui, theme, &say(theme, "ssi_trial.angle"), theme.mono(format!("{} °", theme.number(degrees, 4))));
         }
@@ -108,11 +108,11 @@ fn numbers(
     }
 }
 
-fn refused(ui: &mut Ui, theme: &Theme, draft: Option<&(String, Option<Text>)>) {
+fn refused_ui(ui: &mut Ui, theme: &Theme, draft: Option<&(String, Option<Text>)>) {
     problem_beside(ui, theme, draft.and_then(|(_, problem)| problem.as_ref()));
 }
 
-fn bits(
+fn bits_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -144,7 +144,7 @@ fn bits(
     }
 }
 
-fn findings(ui: &mut Ui, theme: &Theme, shown: &Decoded) {
+fn findings_ui(ui: &mut Ui, theme: &Theme, shown: &Decoded) {
     if shown.findings.is_empty() {
         return;
     }

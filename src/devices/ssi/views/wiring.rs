@@ -74,7 +74,8 @@ mod tests {
     use crate::ui::wiring::{check_notes, check_wires};
 
     /// Issue 22.23: SICK SSI description 2.1 (four lines, RS-422 or RS-485, pairs twisted and shielded), figure 2 and
-    /// reference section 1 (clock and data idle high: the plus wires; the minus wires rest low), 2.7 (lengths and rates).
+    /// reference section 1 (clock and data idle high: the plus wires; the minus wires rest low), 2.7 (lengths and
+    /// rates).
     #[test]
     fn the_wiring_card_matches_the_manual() {
         check_wires(

@@ -15,8 +15,7 @@ pub(super) struct State {
 }
 
 /// Returns the outline of a run, inset by half a gap. Corners are rounded at the ends of the field and square where the
-/// field
-/// continues on another line.
+/// field continues on another line.
 fn shape(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
     let Some(run) = runs.get(number) else { return (Rect::NOTHING, CornerRadius::ZERO) };
     let (begins, ends) = (number == 0, number + 1 == runs.len());
@@ -64,8 +63,7 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
 }
 
 /// Draws the number and icons at the top of a field and the caption below, as far as they fit. In a narrow field, the
-/// icons replace the
-/// caption.
+/// icons replace the caption.
 fn inscribe(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let palette = theme.palette;
     let inside = run.shrink2(Vec2::new(theme.space.between, theme.space.inside + 2.0));

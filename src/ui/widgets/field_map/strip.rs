@@ -21,8 +21,7 @@ impl Strip {
     const STEPS: [f32; 6] = [12.0, 10.0, 8.0, 6.0, 5.0, 4.0];
 
     /// Creates a strip with the largest block size at which `count` blocks fit on two lines, or with the smallest block
-    /// size if none
-    /// fits.
+    /// size if none fits.
     pub(super) fn new(theme: &Theme, room: f32, count: usize) -> Self {
         let (margin, gap) = (theme.space.inside, theme.space.between);
         let columns_of = |width: f32| ((room / width).floor() as usize).max(1);

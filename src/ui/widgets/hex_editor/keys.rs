@@ -16,8 +16,7 @@ struct KeyReaction {
 }
 
 /// Handles the keys of the current frame. This must be called before the widget is announced, because otherwise Tab
-/// cannot leave the
-/// widget.
+/// cannot leave the widget.
 pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let mut reaction = KeyReaction::default();
     ui.input_mut(|input| input.events.retain(|event| !hear(event, model, view, &mut reaction)));

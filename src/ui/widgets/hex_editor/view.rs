@@ -46,7 +46,8 @@ impl HexView {
         self.reveal = true;
     }
 
-    /// Returns the bytes to show as numbers: the selection, or everything from the cursor on if only one byte is selected.
+    /// Returns the bytes to show as numbers: the selection, or everything from the cursor on if only one byte is
+    /// selected.
     pub fn to_read<'a>(&self, bytes: &'a [u8]) -> &'a [u8] {
         let selected = self.selection();
         let range = if selected.len() > 1 { selected } else { self.cursor..bytes.len() };

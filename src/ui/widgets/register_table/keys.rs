@@ -26,8 +26,7 @@ pub(super) fn entry_id(table: Id) -> Id {
 }
 
 /// Holds back everything typed in the current frame after a key that ends an edit. Such a key is Enter, or an up or
-/// down arrow,
-/// which acts as Enter and then moves to another line.
+/// down arrow, which acts as Enter and then moves to another line.
 pub(super) fn defer_keys(ui: &Ui, view: &mut RegisterView) {
     ui.input_mut(|input| {
         let mut ended = false;

@@ -147,8 +147,7 @@ pub(super) fn value_box(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
 }
 
 /// Draws the marks of a register: a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a cost,
-/// a disk for
-/// storage.
+/// a disk for storage.
 fn marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
     let palette = theme.palette;
     let caret = if open { icons::CARET_DOWN } else { icons::CARET_RIGHT };

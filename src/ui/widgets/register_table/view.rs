@@ -94,8 +94,7 @@ impl RegisterView {
     }
 
     /// Adapts to a changed set of registers. The selection and the edit stay with their register, and end if the
-    /// register no
-    /// longer exists.
+    /// register no longer exists.
     pub fn follow(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
             Some(Selected::Row(place)) => now(place).map(Selected::Row),

@@ -42,10 +42,10 @@ fn gauge_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, limits_below:
         (false, None) => (icons::QUESTION, palette.muted),
     };
     ui.horizontal(|ui| {
-        column(ui, ICON, RichText::new(icon).color(ink));
-        column(ui, NAME, theme.label(&gauge.name));
-        column(ui, VALUE, theme.mono(&gauge.shown).color(ink));
-        scale(ui, theme, gauge, width, ink.into());
+        column_ui(ui, ICON, RichText::new(icon).color(ink));
+        column_ui(ui, NAME, theme.label(&gauge.name));
+        column_ui(ui, VALUE, theme.mono(&gauge.shown).color(ink));
+        scale_ui(ui, theme, gauge, width, ink.into());
         if !limits_below {
             ui.label(theme.caption(&gauge.limits));
         }
@@ -58,7 +58,7 @@ fn gauge_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, limits_below:
     }
 }
 
-fn column(ui: &mut Ui, width: f32, words: RichText) {
+fn column_ui(ui: &mut Ui, width: f32, words: RichText) {
     ui.allocate_ui_with_layout(Vec2::new(width, HEIGHT), egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_width(width);
         ui.add(egui::Label::new(words).truncate());
@@ -66,7 +66,7 @@ fn column(ui: &mut Ui, width: f32, words: RichText) {
 }
 
 /// Draws the allowed band with a pointer at the value, or an arrow at the end of the scale if the value lies beyond it.
-fn scale(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
+fn scale_ui(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, HEIGHT), Sense::hover());
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Meter, true, &gauge.name);

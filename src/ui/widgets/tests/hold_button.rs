@@ -29,7 +29,7 @@ fn jog() -> Harness<'static, Jog> {
     })
 }
 
-fn middle(harness: &Harness<'_, Jog>) -> Pos2 {
+fn midpoint(harness: &Harness<'_, Jog>) -> Pos2 {
     harness.get_by_label("Jog up").rect().center()
 }
 
@@ -54,7 +54,7 @@ fn step(harness: &mut Harness<'_, Jog>, events: impl IntoIterator<Item = Event>)
 #[test]
 fn a_hold_lasts_while_the_pointer_is_down() {
     let mut harness = jog();
-    let at = middle(&harness);
+    let at = midpoint(&harness);
     assert_eq!(step(&mut harness, [Event::PointerMoved(at)]), []);
     assert_eq!(step(&mut harness, [button(at, true)]), [Press]);
     for _ in 0..50 {
@@ -68,7 +68,7 @@ fn a_hold_lasts_while_the_pointer_is_down() {
 #[test]
 fn sliding_off_ends_a_hold_until_the_next_press() {
     let mut harness = jog();
-    let at = middle(&harness);
+    let at = midpoint(&harness);
     step(&mut harness, [Event::PointerMoved(at)]);
     assert_eq!(step(&mut harness, [button(at, true)]), [Press]);
     assert_eq!(step(&mut harness, [Event::PointerMoved(at + Vec2::new(0.0, 200.0))]), [Release]);
@@ -81,7 +81,7 @@ fn sliding_off_ends_a_hold_until_the_next_press() {
 #[test]
 fn a_press_that_began_elsewhere_starts_no_hold() {
     let mut harness = jog();
-    let at = middle(&harness);
+    let at = midpoint(&harness);
     let beside = at + Vec2::new(0.0, 200.0);
     step(&mut harness, [Event::PointerMoved(beside), button(beside, true)]);
     assert_eq!(step(&mut harness, [Event::PointerMoved(at)]), []);
@@ -93,7 +93,7 @@ fn disabling_the_button_or_losing_focus_ends_a_hold() {
     // Locked by an error, and the window without the keyboard focus.
     for cause in [0, 1] {
         let mut harness = jog();
-        let at = middle(&harness);
+        let at = midpoint(&harness);
         step(&mut harness, [Event::PointerMoved(at)]);
         assert_eq!(step(&mut harness, [button(at, true)]), [Press]);
         match cause {
@@ -109,7 +109,7 @@ fn disabling_the_button_or_losing_focus_ends_a_hold() {
     }
     // A button that is not drawn reports nothing, which ends the hold.
     let mut harness = jog();
-    let at = middle(&harness);
+    let at = midpoint(&harness);
     step(&mut harness, [Event::PointerMoved(at)]);
     assert_eq!(step(&mut harness, [button(at, true)]), [Press]);
     harness.state_mut().hidden = true;
@@ -197,8 +197,8 @@ fn a_release_requests_the_frame_that_rearms_the_key() {
     }
 }
 
-/// Issue 21.2: the events of the window system when Space is held over a change of the window. What egui reports as a first
-/// press is none.
+/// Issue 21.2: the events of the window system when Space is held over a change of the window. What egui reports as a
+/// first press is none.
 #[test]
 fn a_key_held_during_a_window_change_starts_no_hold() {
     for held_before in [false, true] {
@@ -263,7 +263,7 @@ fn a_key_down_before_the_button_was_enabled_starts_no_hold() {
 #[test]
 fn a_press_under_a_dialog_starts_no_hold() {
     let mut harness = jog();
-    let at = middle(&harness);
+    let at = midpoint(&harness);
     step(&mut harness, [Event::PointerMoved(at)]);
     harness.state_mut().around.covered = true;
     assert_eq!(step(&mut harness, [button(at, true)]), []);
@@ -293,7 +293,7 @@ fn any_other_input_ends_a_pointer_hold() {
     };
     for case in 0..7 {
         let mut harness = jog();
-        let at = middle(&harness);
+        let at = midpoint(&harness);
         step(&mut harness, [Event::PointerMoved(at)]);
         assert_eq!(step(&mut harness, [button(at, true)]), [Press]);
         assert_eq!(step(&mut harness, [Event::ModifiersChanged(Modifiers::NONE)]), [Hold], "nothing has changed");

@@ -276,8 +276,8 @@ fn typed_text_stays_with_its_register_when_lines_change() {
     assert_eq!((typed(&harness), harness.state().view.selected()), (None, None));
 }
 
-/// Issue 26.4: a window that draws slowly gets several keys at once, at 10 ms a key. None is lost, whether the keyboard is
-/// still with the table or goes back to it, and each is heard once.
+/// Issue 26.4: a window that draws slowly gets several keys at once, at 10 ms a key. None is lost, whether the keyboard
+/// is still with the table or goes back to it, and each is heard once.
 #[test]
 fn what_is_typed_in_one_frame_is_typed_whole() {
     let mut harness = table();

@@ -89,8 +89,8 @@ impl Host {
     }
 }
 
-/// Shaft with 35 bits of position, 17 of them within a revolution, and six bits after them; its registers keep the values
-/// written. It is at 270° of turn 1234h, and needs half a second to start.
+/// Shaft with 35 bits of position, 17 of them within a revolution, and six bits after them; its registers keep the
+/// values written. It is at 270° of turn 1234h, and needs half a second to start.
 pub(crate) struct Dial {
     motor: Motor,
     revolutions: f64,

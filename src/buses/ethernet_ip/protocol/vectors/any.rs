@@ -20,7 +20,7 @@ fn read_all(bytes: &[u8]) {
     }
 }
 
-/// Returns valid packets as a basis for invalid ones.
+/// Returns valid packets from which invalid ones are derived.
 fn good() -> Vec<Vec<u8>> {
     let frame = Frame::unconnected(SESSION, [1; 8], open().request().emit());
     let packet = IoPacket { connection: 1, sequence: 2, count: 3, header: Some(RunIdle::RUN), data: vec![0; 16] };

@@ -27,7 +27,7 @@ pub(super) fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Expl
     explained
 }
 
-/// Returns the length of the frame at the beginning of the bytes, according to its header.
+/// Returns the length of the first frame in the bytes, according to its header.
 fn length(bytes: &[u8]) -> usize {
     match bytes {
         [_, _, _, low, high, ..] => usize::from(u16::from_le_bytes([*low, *high])) + Frame::OVERHEAD,

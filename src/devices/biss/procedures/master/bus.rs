@@ -13,13 +13,14 @@ use crate::devices::biss::protocol::{FrameError, RegisterAddress};
 use crate::link::line::LineError;
 use crate::units::Moment;
 
-/// Number of an encoder that is alone on its line.
+/// Slave number of an encoder that is alone on its line.
 const SLAVE: u8 = 0;
-/// Time within which an encoder that replies cannot have restarted, since a restart takes longer (EDS 02:0Eh, 500 ms).
+/// Maximum time since a reply for which the encoder cannot have restarted, because a restart takes longer (EDS 02:0Eh,
+/// 500 ms).
 const BANK_TRUST: Duration = Duration::from_millis(200);
 /// Pause between two attempts, since the adapter reports a missing encoder immediately.
 const PAUSE: Duration = Duration::from_millis(20);
-/// Number of frames with wrong checksums, without a single correct one, that cannot be noise (`U`).
+/// Number of consecutive frames with wrong checksums that rules out noise as the cause (`U`).
 const WRONG_FRAMES: u32 = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,7 +120,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Writes a register and returns the value that it reads back. Not repeated.
+    /// Writes a register without retries and returns the value that it reads back.
     fn register_write(&mut self, address: RegisterAddress, value: u8) -> Attempt<u8> {
         let request = Request::BissRegisterWrite { slave: SLAVE, address: address.address(), value };
         let answered = self.adapter().ask_once(&request);
@@ -134,7 +135,7 @@ impl<'a> Master<'a> {
         Ok(Ok(reads))
     }
 
-    /// Evaluates a reply about a register, and its consequence for the selected bank.
+    /// Evaluates the reply to a register request, and its effect on the selected bank.
     fn register_answer(&mut self, answered: Result<Option<TimedReply>, Failure>) -> Attempt<Reply> {
         let trouble = match answered {
             Ok(Some(answered)) => {
@@ -158,7 +159,7 @@ impl<'a> Master<'a> {
         Ok(Err(trouble))
     }
 
-    /// Notes that the adapter may have been reset and must be configured again. Cancellation is no sign of that.
+    /// Notes that the adapter may have been reset and must be configured again, unless the failure is a cancellation.
     fn may_be_reset(&mut self, failure: &Failure) {
         if matches!(failure, Failure::Line(LineError::Cancelled)) {
             (self.station.bank, self.station.bus) = (None, None);
@@ -209,8 +210,8 @@ impl<'a> Master<'a> {
         Ok(Err(ExchangeError::NoFrame(no_frame)))
     }
 
-    /// Examines more frames after five had wrong checksums and none was ever correct: with noise some are correct, with
-    /// wrong widths none.
+    /// Examines more frames after five had wrong checksums and none was ever correct. With mere noise some frames are
+    /// correct, with wrong widths none.
     pub(super) fn read_more_frames(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
             return Err(failed);
@@ -254,7 +255,7 @@ impl<'a> Master<'a> {
         self.wait(PAUSE)
     }
 
-    /// Returns the maximum duration of an exchange: two attempts.
+    /// Returns the maximum duration of an exchange, which consists of up to two attempts.
     pub(super) fn longest_bus_exchange(&self) -> Duration {
         2 * (REPEAT_AFTER + self.station.line.margin)
     }

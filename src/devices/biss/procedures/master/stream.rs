@@ -12,16 +12,16 @@ use crate::devices::biss::procedures::frames::{FrameRun, frames};
 use crate::devices::biss::procedures::station::Transport;
 use crate::devices::biss::procedures::{Error, Station};
 
-/// Interval of checking for cancellation.
+/// Interval at which cancellation is checked.
 const SLICE: Duration = Duration::from_millis(20);
 
 impl Master<'_> {
-    /// Returns the next frames of a stream with this interval in microseconds, or the shortest that the adapter
+    /// Returns the next frames of a stream with the given interval in microseconds, or the shortest that the adapter
     /// supports; starts the stream if necessary. Returns `None` over the configuration pin, which has no streams.
     ///
     /// # Errors
-    /// At the start as for a [`position`](Self::position); then errors of the adapter, or cancellation, after which the
-    /// stream continues.
+    /// When starting the stream, as for [`position`](Self::position); afterwards errors of the adapter, or
+    /// cancellation, after which the stream continues.
     pub fn frames(&mut self, period_us: u32) -> Result<Option<FrameRun>, Error> {
         if self.station.transport != Transport::Adapter {
             return Ok(None);
@@ -57,7 +57,7 @@ impl Master<'_> {
     /// Ends a running stream, even after cancellation.
     ///
     /// # Errors
-    /// Errors of the adapter; ending is then tried again before the next request.
+    /// Errors of the adapter; the stream is then ended before the next request.
     pub fn end_frames(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
@@ -74,7 +74,7 @@ impl Master<'_> {
         }
     }
 
-    /// Records that a stream has failed; ends it at the adapter as well, if possible.
+    /// Records that a stream has failed, and ends the adapter's side of the stream if possible.
     fn stream_failed(&mut self, error: Error) -> Error {
         if !matches!(error, Error::Cancelled) && self.end_frames().is_err() {
             // Identifying the adapter again sends HELLO, which ends all streams.

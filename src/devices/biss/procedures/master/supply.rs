@@ -12,7 +12,7 @@ use crate::devices::biss::protocol::DeviceMode;
 const SETTLES: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
-    /// Switches the supply on if requested and not done yet.
+    /// Switches the supply on if requested and not yet switched on.
     pub(super) fn switch_on(&mut self) -> Result<(), Error> {
         let Some(Supply { millivolt, measured: None }) = self.station.supply else { return Ok(()) };
         if self.station.adapter.was_supplied_at_start().is_none() {
@@ -25,7 +25,7 @@ impl Master<'_> {
         self.wait(Supply::POWER_UP)
     }
 
-    /// Returns whether the encoder has power: one that sends a frame does, whatever its supply.
+    /// Returns whether the encoder has power. An encoder that sends a frame is powered, whatever its supply.
     fn has_power(&mut self) -> bool {
         let bits = self.station.frame().bits();
         let ones = u64::MAX >> (64 - u32::from(bits.clamp(1, 64)));
@@ -33,8 +33,7 @@ impl Master<'_> {
     }
 
     /// Switches the supply off at the end of a session, unless it was on before or is to remain on. It also remains on
-    /// if a store, a calibration or a restart may be in progress, because cutting the power would then lose data of the
-    /// encoder.
+    /// while a store, a calibration or a restart may be in progress, because cutting the power would lose encoder data.
     ///
     /// # Errors
     /// Errors of the adapter.

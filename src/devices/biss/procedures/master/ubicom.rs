@@ -16,7 +16,7 @@ use crate::devices::biss::protocol::RegisterAddress;
 use crate::link::line::MOST_KEPT;
 use crate::units::Moment;
 
-/// Length of the longest frame in bytes: the reply to 03h.
+/// Length in bytes of the longest frame, which is the reply to 03h.
 const LONGEST_FRAME: usize = PositionWord::BYTES + Frame::OVERHEAD;
 /// Time after the reply time-out after which continuing noise is not a reply in progress.
 const NOISE: Duration = Duration::from_secs(1);

@@ -10,7 +10,7 @@ use crate::devices::biss::protocol::{
     CalibrationCommand, CalibrationStatus, Filter, Procedure, ProcedureKind, Role, Temperature,
 };
 
-/// Expected duration of a calibration run, "about 5 seconds" (manual 6.4).
+/// Expected duration of a calibration run ("about 5 seconds", manual 6.4).
 const EXPECTED: Duration = Duration::from_secs(5);
 /// Time after which a run is considered failed.
 const LIMIT: Duration = Duration::from_secs(20);
@@ -54,7 +54,7 @@ impl Guide<'_, '_> {
         Ok(Outcome::Calibrated(CalibrationReport { celsius, counterclockwise, clockwise }))
     }
 
-    /// Calibrates in one run. Cancellation does not stop the second run halfway, since that would lose the table.
+    /// Performs one calibration run. Cancellation does not interrupt the second run, because that would lose the table.
     fn calibrate_in(&mut self, run: Run, procedure: &Procedure) -> Result<(), Failure> {
         self.step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;
@@ -84,7 +84,7 @@ impl Guide<'_, '_> {
         let ended = self.shielded(|guide| guide.run(&course, procedure, explain));
         // Success saves the table by itself, and failure loses it; only a run that was never started changes nothing.
         if !matches!(ended, Err(Failure::Device(Error::Cancelled | Error::Refused { .. }))) {
-            self.spend();
+            self.count_write_cycle();
         }
         ended
     }

@@ -7,7 +7,7 @@ use crate::profile::OperationError;
 
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// An error of the exchange, the encoder's refusal, or cancellation.
+    /// An exchange failed, the encoder refused a request, or the operation was cancelled.
     #[error(transparent)]
     Device(#[from] Error),
     #[error("the calibration ended with {status}")]
@@ -22,7 +22,7 @@ pub enum Failure {
     /// The active filter is not the balanced one.
     #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
     NotBalanced { code: u8 },
-    /// The device mode that was written does not read back.
+    /// The device mode read back differs from the one written.
     #[error("device mode {wanted} was written and {found} is there")]
     Mode { wanted: DeviceMode, found: DeviceMode },
     /// A status register never reached the required value.

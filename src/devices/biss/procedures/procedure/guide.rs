@@ -22,20 +22,22 @@ const RESTART: Duration = Duration::from_millis(500);
 const RESTART_PATIENCE: Duration = Duration::from_secs(5);
 /// Time during which a calibrating encoder may not reply, about five seconds (manual 6.4).
 pub(super) const SILENCE: Duration = Duration::from_secs(10);
-/// Interval of reading a status register.
+/// Interval at which a status register is polled.
 const GLANCE: Duration = Duration::from_millis(100);
-/// Interval between positions: at 2000 rpm, half a turn takes 15 ms, which must not be missed without a multiturn.
+/// Interval between position readings. At 2000 rpm half a turn takes 15 ms, which must not be missed by an encoder
+/// without a multiturn.
 const SAMPLING: Duration = Duration::from_millis(10);
-/// Interval between measurements while the operator is asked.
+/// Interval between measurements while waiting for the operator.
 const ASKING: Duration = Duration::from_millis(200);
-/// Duration of measuring the speed of a motor, and of checking whether a shaft is at rest.
+/// Duration of a motor speed measurement, and of a check that a shaft is at rest.
 const TURNING: Duration = Duration::from_secs(1);
 const STANDING: Duration = Duration::from_millis(250);
 /// Time after which a device mode is considered not accepted.
 const MODE: Duration = Duration::from_millis(500);
 /// Time after which a status is no longer expected.
 const STATUS: Duration = Duration::from_secs(5);
-/// Silence after which a calibrating encoder is considered started (`U`); a damaged reply takes less.
+/// Duration of silence after which an encoder is considered to have started calibrating (`U`). A damaged reply causes a
+/// shorter silence.
 const BEGUN: Duration = Duration::from_secs(1);
 
 pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
@@ -91,7 +93,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         &self.standing
     }
 
-    /// Returns the persistent writes that were spent, or may have been.
+    /// Returns the number of persistent writes that were, or may have been, performed.
     pub(in crate::devices::biss::procedures) fn cycles(&self) -> u64 {
         self.cycles
     }
@@ -121,7 +123,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.description.with_role(role).map(|register| register.address)
     }
 
-    pub(super) fn spend(&mut self) {
+    pub(super) fn count_write_cycle(&mut self) {
         self.cycles += 1;
     }
 
@@ -164,8 +166,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Sends a command. If it is unknown whether the command was received, the next exchange must reveal it through the
-    /// status or the values written.
+    /// Sends a command. If its reception is uncertain, the next exchange must determine it from the status or the
+    /// written values.
     pub(super) fn command(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         match self.master.write(procedure.command, command) {
             Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
@@ -181,7 +183,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         if let Err(Error::Cancelled | Error::Refused { .. }) = ended {
             self.does(before);
         } else {
-            self.spend();
+            self.count_write_cycle();
         }
         ended
     }
@@ -210,7 +212,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Runs `work`; cancellation is ignored meanwhile.
+    /// Runs `work` with cancellation ignored.
     pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.master.shield(true);
         let result = work(self);
@@ -218,8 +220,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         result
     }
 
-    /// Starts a run and reads the status until the run is complete, reporting the expected duration. `explain`
-    /// interprets any other status. The status from before the command is ignored until another one has been read.
+    /// Starts a run and polls the status until the run is complete, reporting the expected duration. `explain`
+    /// interprets unexpected statuses; the status from before the command is ignored until it changes.
     pub(super) fn run(
         &mut self,
         course: &RunCourse,
@@ -262,7 +264,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         Ok(())
     }
 
-    /// Waits until an encoder that restarts, or may restart, replies again, and reads its state.
+    /// Waits until an encoder that may be restarting replies again, and reads its state.
     pub(super) fn restart(&mut self) -> Result<(), Error> {
         self.step(ProcedureStep::Restart);
         self.standing.may_have_restarted();
@@ -278,7 +280,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         Ok(())
     }
 
-    /// Gives the operator at the motor a task, measures, and continues when the measurement fits and the operator
+    /// Gives the operator a task at the motor, and repeats a measurement until it meets the conditions and the operator
     /// confirms.
     pub(super) fn attend(&mut self, task: Task) -> Result<Attended, Failure> {
         self.step(ProcedureStep::Await(task));

@@ -18,12 +18,12 @@ pub struct LeftState {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
-    /// Nothing that a loss of the link would cut off.
+    /// No activity that a loss of the link would interrupt.
     Nothing,
     Running(Run),
-    /// Values were entered and not saved: leaving the mode, or a loss of power, discards them.
+    /// Values have been entered but not saved, and are discarded when the mode is left or power is lost.
     Entered,
-    /// The flash was written, or was about to be: the old or the new values are stored.
+    /// Flash that was, or may have been, written, so that either the old or the new values are stored.
     Saving,
     Restarting,
 }
@@ -77,11 +77,16 @@ impl LeftState {
         self.mode.is(DeviceMode::OPERATION) && self.password.is(false)
     }
 
-    /// Records that a command was sent that restarts the encoder, and that may not have been received.
+    /// Records that a restart command was sent, which the encoder may not have received.
     pub(super) fn may_have_restarted(&mut self) {
+        self.may_have_lost_power();
+        self.activity = Activity::Restarting;
+    }
+
+    /// Records that the encoder is out of reach: without power it starts again in operation, with the password cleared.
+    pub(in crate::devices::biss::procedures) fn may_have_lost_power(&mut self) {
         self.mode.or(DeviceMode::OPERATION);
         self.password.or(false);
-        self.activity = Activity::Restarting;
     }
 }
 

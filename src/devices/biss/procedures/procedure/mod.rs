@@ -39,7 +39,7 @@ use crate::devices::biss::protocol::{Descriptions, DeviceMode, Filter, PresetVal
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The operator skipped the procedure, or the part after its first run.
+    /// The operator skipped the procedure, or the part of it after the first run.
     Skipped {
         after: Option<Run>,
     },
@@ -52,7 +52,7 @@ pub enum Outcome {
         /// Width of the singleturn in bits.
         singleturn_bits: u8,
     },
-    /// A preset was carried out.
+    /// A preset was performed.
     PresetFired {
         parts: PresetParts,
         from: PositionReading,
@@ -76,7 +76,7 @@ impl Guide<'_, '_> {
                 self.step(ProcedureStep::Write);
                 let ended = self.master.write(*address, *new);
                 if !matches!(ended, Err(Error::Cancelled | Error::Refused { .. })) {
-                    (0..*cycles).for_each(|_| self.spend());
+                    (0..*cycles).for_each(|_| self.count_write_cycle());
                 }
                 ended?;
                 if old.is_some() {
@@ -89,8 +89,8 @@ impl Guide<'_, '_> {
     }
 }
 
-/// Returns an encoder to operation and clears the password, whoever changed the mode: after a lost link, or from
-/// another host. Returns the previous mode. Waits for an encoder that is silent because it is calibrating.
+/// Returns an encoder to operation, clears the password, and returns the previous mode. Works even if the link was lost
+/// or another host changed the mode, and waits for an encoder that is silent because it is calibrating.
 ///
 /// # Errors
 /// Errors of the exchange, or the encoder does not return to operation.

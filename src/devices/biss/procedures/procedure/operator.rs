@@ -9,13 +9,13 @@ use super::Motion;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Run {
     CalibrationCounterclockwise,
-    /// The second run of the calibration, whose failure loses the table.
+    /// Second calibration run, whose failure loses the table.
     CalibrationClockwise,
     WiegandClockwise,
     WiegandCounterclockwise,
 }
 
-/// Speeds in revolutions per minute, both ends included.
+/// Inclusive range of speeds in revolutions per minute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedRange {
     pub least: f64,
@@ -23,7 +23,7 @@ pub struct SpeedRange {
 }
 
 impl SpeedRange {
-    /// Relative accuracy of measuring a speed.
+    /// Relative accuracy of a speed measurement.
     const EXACT: f64 = 0.01;
 
     const fn new(least: f64, greatest: f64) -> Self {
@@ -35,7 +35,7 @@ impl SpeedRange {
         SpeedRange::new(self.least / (1.0 + Self::EXACT), self.greatest / (1.0 - Self::EXACT))
     }
 
-    pub fn middle(self) -> f64 {
+    pub fn midpoint(self) -> f64 {
         f64::midpoint(self.least, self.greatest)
     }
 
@@ -63,13 +63,14 @@ impl Run {
         if self.is_calibration() { SpeedRange::new(498.0, 502.0) } else { self.allowed() }
     }
 
-    /// Returns the allowed speed variation in revolutions per minute (manual 6.4). For the Wiegand test the manual
-    /// requires a constant speed, without a number.
+    /// Returns the allowed speed variation in revolutions per minute (manual 6.4), or `None` for the Wiegand test, for
+    /// which the manual only requires a constant speed.
     pub const fn fluctuation(self) -> Option<f64> {
         if self.is_calibration() { Some(2.0) } else { None }
     }
 
-    /// Returns the speed variation that is considered steady at this speed, as far as it can be measured.
+    /// Returns the speed variation that still counts as steady at the given speed, within the limits of the
+    /// measurement.
     pub fn accepted_fluctuation(self, rpm: f64) -> f64 {
         match self.fluctuation() {
             Some(fluctuation) => fluctuation + rpm.abs() * SpeedRange::EXACT,
@@ -86,7 +87,7 @@ pub enum Task {
     Turn(Run),
     /// Keep the shaft at rest, because data are not accessed while it turns.
     Stand,
-    /// Keep the shaft at rest at the angle that is to get the preset value.
+    /// Keep the shaft at rest at the angle that the preset value will be assigned to.
     StandAtPlace,
 }
 
@@ -98,13 +99,13 @@ pub enum Blocker {
     Standing,
     /// The shaft is turning but must be at rest.
     Turning {
-        /// Revolutions per minute, above 0 clockwise.
+        /// Speed in revolutions per minute, positive clockwise.
         rpm: f64,
     },
     WrongDirection,
     /// The shaft turns too slowly or too fast.
     Speed {
-        /// Revolutions per minute, without direction.
+        /// Speed in revolutions per minute, regardless of direction.
         rpm: f64,
         allowed: SpeedRange,
     },
@@ -121,11 +122,11 @@ pub enum Blocker {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Advice {
-    /// Another speed, or a steadier one, yields a better result.
+    /// A different or steadier speed would yield a better result.
     Speed { recommended: SpeedRange },
     /// If this run fails, the calibration table is lost (manual 6.4).
     TableAtRisk,
-    /// The encoder marks its positions as invalid; the speed is calculated from them regardless.
+    /// The encoder marks its positions as invalid. The speed is calculated from them regardless.
     Marked,
 }
 
@@ -136,7 +137,7 @@ pub struct Demand {
     pub motion: Option<Motion>,
     /// Temperature of the encoder, if the procedure depends on it.
     pub celsius: Option<i16>,
-    /// Conditions that prevent the start; empty if there are none.
+    /// Conditions that currently prevent the start.
     pub blockers: Vec<Blocker>,
     pub advice: Vec<Advice>,
     /// Time since the task was given.
@@ -144,7 +145,7 @@ pub struct Demand {
 }
 
 impl Demand {
-    /// Temperatures allowed for the calibration (manual 6.4).
+    /// Allowed temperature range for the calibration in degrees Celsius (manual 6.4).
     pub const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
     /// Lowest speed considered as turning, in revolutions per minute.
     const SLOWEST: f64 = 1.0;
@@ -202,7 +203,7 @@ impl Demand {
 pub(super) struct Measured {
     pub(super) motion: Option<Motion>,
     pub(super) celsius: Option<i16>,
-    /// Positions are marked as invalid.
+    /// Whether positions are marked as invalid.
     pub(super) marked: bool,
     pub(super) unreadable: bool,
 }
@@ -210,12 +211,12 @@ pub(super) struct Measured {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
     Wait,
-    /// Start. Valid only if nothing prevents the start.
+    /// Start the run. Valid only if no condition prevents the start.
     Go,
-    /// Skip this part of the run and continue with the next.
+    /// Skip this part and continue with the next.
     Skip,
     Cancel,
-    /// End, because no operator will come, with the conditions that prevented the start.
+    /// Give up, with the conditions that prevented the start, because no operator is present.
     GiveUp,
 }
 
@@ -223,11 +224,11 @@ pub trait Operator {
     /// Prepares for a new task by discarding confirmations of earlier ones.
     fn on_task_start(&mut self) {}
 
-    /// Asks repeatedly, a few times per second, each time with a new measurement.
+    /// Asks the operator for an answer. Called a few times per second, each time with a new measurement.
     fn attend(&mut self, demand: &Demand) -> Answer;
 }
 
-/// An absent operator: starts as soon as all conditions are met, for which it waits a limited time.
+/// Stand-in for an absent operator that starts as soon as all conditions are met, and gives up after a time limit.
 #[derive(Clone, Copy, Debug)]
 pub struct Unattended {
     pub patience: Duration,
@@ -253,12 +254,12 @@ impl Operator for Unattended {
     }
 }
 
-/// An operator elsewhere, whose answers arrive through this channel, shared by its clones.
+/// Remote operator whose answers arrive through this channel. Clones share the channel.
 #[derive(Clone, Debug, Default)]
 pub struct OperatorChannel(Arc<Mutex<Option<(Task, Answer)>>>);
 
 impl OperatorChannel {
-    /// Answers the present task; answers to another task, or from before the task was given, are ignored.
+    /// Answers the current task. Answers to another task, or from before the task was given, are ignored.
     pub fn answer(&self, to: Task, answer: Answer) {
         *self.slot() = Some((to, answer));
     }

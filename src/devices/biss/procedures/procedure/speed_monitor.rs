@@ -13,13 +13,13 @@ pub(super) struct SpeedMonitor {
     window: i64,
     unwrap: Option<Unwrap>,
     steps_per_turn: f64,
-    /// Positions of the last window and the one before, oldest first.
+    /// Positions of the current and the previous window, oldest first.
     places: VecDeque<(Time, i64)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
-    /// Mean speed in revolutions per minute, positive clockwise, that is, with rising positions.
+    /// Mean speed in revolutions per minute, positive for clockwise rotation, in which positions increase.
     pub rpm: f64,
     /// Maximum speed deviation of a quarter of the measurement, in revolutions per minute.
     pub spread: f64,
@@ -85,7 +85,7 @@ impl SpeedMonitor {
         Some(Motion { rpm, spread, travel })
     }
 
-    /// Returns the revolutions from the first position of the window; the difference is exact.
+    /// Converts a number of steps since the first position of the window to revolutions.
     fn turns(&self, steps: i64) -> f64 {
         let first = self.places.front().map_or(steps, |(_, first)| *first);
         steps.saturating_sub(first) as f64 / self.steps_per_turn
@@ -148,7 +148,7 @@ mod tests {
         }
     }
 
-    /// From 490 to 510 rpm within the second: the quarters have 492.5, 497.5, 502.5 and 507.5 rpm.
+    /// Speed rising from 490 to 510 rpm within the second, so that the quarters have 492.5, 497.5, 502.5 and 507.5 rpm.
     #[test]
     fn an_accelerating_shaft_is_unsteady() {
         let motion = measured(16, |seconds| {

@@ -10,7 +10,7 @@ use crate::devices::biss::protocol::DeviceMode;
 pub enum ProcedureStep {
     /// Checking conditions that do not depend on the motor: the filter.
     Conditions,
-    /// Waits for the operator at the motor.
+    /// Waiting for the operator at the motor.
     Await(Task),
     Enter(DeviceMode),
     Open,
@@ -18,7 +18,7 @@ pub enum ProcedureStep {
     Run(Run),
     Results,
     Save,
-    /// The preset is carried out.
+    /// Execution of the preset.
     Fire,
     Restart,
     LeadBack,
@@ -48,7 +48,7 @@ pub enum StepDetail {
     Demand(Demand),
 }
 
-/// Returns the steps of an operation. A restart returns the encoder to operation without a further step.
+/// Returns the steps of an operation. A restart needs no separate step to return the encoder to operation.
 pub fn steps_of(op: &Op) -> Vec<ProcedureStep> {
     let entered = |mode, steps: &[ProcedureStep]| {
         let mut all = vec![ProcedureStep::Enter(mode)];

@@ -77,13 +77,14 @@ impl Guide<'_, '_> {
         })
     }
 
-    /// Saves the result. It cannot be read back before a restart: only the status of the encoder confirms it.
+    /// Saves the result. Only the encoder's status confirms this, because the result cannot be read back before a
+    /// restart.
     fn save_result(&mut self, procedure: &Procedure) -> Result<(), Failure> {
         self.step(ProcedureStep::Save);
         self.does(Activity::Saving);
         let ended = self.master.write(procedure.command, WiegandCommand::Save.byte());
         if !matches!(ended, Err(Error::Cancelled | Error::Refused { .. })) {
-            self.spend();
+            self.count_write_cycle();
         }
         if ended.as_ref().err().is_none_or(|error| !error.is_lost()) {
             self.does(Activity::Nothing);

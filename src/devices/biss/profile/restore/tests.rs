@@ -185,8 +185,8 @@ fn another_encoder_keeps_its_mounting() {
     assert_eq!(ops(&plan_data(&wanted, &now).unwrap()), all[..1]);
 }
 
-/// Issue 22.9: another device ID, or a position of another width, is another type, which needs its own permission; another
-/// serial number needs the other one as well.
+/// Issue 22.9: another device ID, or a position of another width, is another type, which needs its own permission;
+/// another serial number needs the other one as well.
 #[test]
 fn another_type_needs_a_separate_permission() {
     let mut wanted = profile("1");

@@ -242,8 +242,8 @@ fn an_aborted_request_leaves_the_host_ready() {
     assert!(host.cycle(false).cdm);
 }
 
-/// A flipped bit of the encoder's answer never results in a wrong value read, and one of the host's never in a wrong value
-/// written.
+/// A flipped bit of the encoder's answer never results in a wrong value read, and one of the host's never in a wrong
+/// value written.
 #[test]
 fn any_single_flipped_bit_is_detected() {
     let read = || Request::read(0, 0x66, 1).unwrap();

@@ -30,7 +30,7 @@ impl Encoder {
         }
         self.wiegand.settle(now, self.shaft.rpm(), self.pulses);
         if self.waits_for_direction() && !waited {
-            self.drive.other_direction();
+            self.drive.reversed_motor();
         }
     }
 

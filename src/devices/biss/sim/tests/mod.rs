@@ -1,5 +1,5 @@
-//! The virtual kit encoder as seen by a host, in virtual time. Expected values are the manual's and the reference's; none
-//! is computed by the code under test.
+//! The virtual kit encoder as seen by a host, in virtual time. Expected values are the manual's and the reference's;
+//! none is computed by the code under test.
 
 mod at_adapter;
 mod modes;

@@ -5,7 +5,7 @@ use crate::app::{Text, explain as general};
 use crate::devices::biss::protocol::{Claim, Flaw, Register};
 use crate::devices::biss::state::TEXTS;
 
-pub(super) fn flaw(flaw: &Flaw) -> Text {
+pub(super) fn description_problem_text(flaw: &Flaw) -> Text {
     match flaw {
         Flaw::Form(words) => general::plain(words),
         Flaw::Direct(address) => TEXTS.text("biss_flaw.direct").with("address", byte(*address)),
@@ -80,7 +80,7 @@ mod tests {
             Flaw::GermanNeedless(name),
         ];
         for own in flaws {
-            in_both_languages(&flaw(&own), &own);
+            in_both_languages(&description_problem_text(&own), &own);
         }
     }
 }

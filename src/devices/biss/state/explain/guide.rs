@@ -64,14 +64,14 @@ pub fn task(task: Task) -> Text {
                 (true, false) => "guide.turn_cw",
                 (false, false) => "guide.turn_ccw",
             };
-            speeds(TEXTS.text(id), run.allowed()).with_number("best", run.recommended_range().middle(), 0)
+            speeds(TEXTS.text(id), run.allowed()).with_number("best", run.recommended_range().midpoint(), 0)
         }
         Task::Stand => TEXTS.text("guide.stand"),
         Task::StandAtPlace => TEXTS.text("guide.stand_at_place"),
     }
 }
 
-pub fn blocker(blocker: Blocker) -> Text {
+pub fn blocker_text(blocker: Blocker) -> Text {
     match blocker {
         Blocker::Measuring => TEXTS.text("guide.measuring"),
         Blocker::NoPosition => TEXTS.text("guide.no_position"),
@@ -100,7 +100,7 @@ pub fn advice(advice: Advice) -> Text {
 pub fn calibration_needs() -> Text {
     let run = Run::CalibrationCounterclockwise;
     let text = speeds(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
-    temperatures(text.with_number("best", run.recommended_range().middle(), 0))
+    temperatures(text.with_number("best", run.recommended_range().midpoint(), 0))
 }
 
 /// Returns what a Wiegand test requires of the motor.
@@ -149,8 +149,8 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
                     .with_text("filter", crate::devices::biss::state::words::filter(*filter)),
             ]
         }
-        Outcome::Calibrated(report) => calibrated(report),
-        Outcome::Tested(report) => tested(report),
+        Outcome::Calibrated(report) => calibration_summary(report),
+        Outcome::Tested(report) => wiegand_summary(report),
     }
 }
 
@@ -179,7 +179,7 @@ fn verdict(lowest: PulseVoltage) -> Severity {
     if lowest > PulseVoltage::LIMIT { Severity::Good } else { Severity::Warning }
 }
 
-fn calibrated(report: &CalibrationReport) -> Vec<Text> {
+fn calibration_summary(report: &CalibrationReport) -> Vec<Text> {
     let mut texts = vec![TEXTS.text("guide.calibrated")];
     texts.extend(report.celsius.map(|celsius| TEXTS.text("guide.at_temperature").with("celsius", celsius)));
     texts.extend(motion("guide.motion_ccw", report.counterclockwise));
@@ -187,7 +187,7 @@ fn calibrated(report: &CalibrationReport) -> Vec<Text> {
     texts
 }
 
-fn tested(report: &WiegandReport) -> Vec<Text> {
+fn wiegand_summary(report: &WiegandReport) -> Vec<Text> {
     let result = report.result;
     let direction = |id, average: PulseVoltage, lowest: PulseVoltage| {
         let verdict = if lowest > PulseVoltage::LIMIT { "guide.above_limit" } else { "guide.below_limit" };

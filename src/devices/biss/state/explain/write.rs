@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::encoder;
-use super::guide::{blocker, mode, speeds, step, task, temperatures};
+use super::guide::{blocker_text, mode, speeds, step, task, temperatures};
 use super::plan::procedure_kind_text;
 use crate::app::explain::plain;
 use crate::app::review::{ChangeTexts, OperationTexts};
@@ -199,7 +199,7 @@ pub fn failure(failure: &Failure) -> Text {
         Failure::NotReady { task: requested, blockers } => {
             let both =
                 |first, second| TEXTS.text("biss_failure.both").with_text("first", first).with_text("second", second);
-            let why = blockers.iter().map(|own| blocker(*own)).reduce(both);
+            let why = blockers.iter().map(|own| blocker_text(*own)).reduce(both);
             let text = TEXTS.text("biss_failure.not_ready").with_text("task", task(*requested));
             text.with_text("why", why.unwrap_or_else(|| plain("")))
         }
@@ -270,9 +270,9 @@ mod tests {
         let lost = || Failure::Device(Error::NeverSilent);
         let cases = [
             (ChangeKind::Restore, "restore the profile again"),
-            (ChangeKind::Bytes, "Other registers keep the written value"),
+            (ChangeKind::Bytes, "Other registers keep the new value"),
             (ChangeKind::Guided, "completed steps do not have to be repeated"),
-            (ChangeKind::WiegandTest, "changes only its saved result"),
+            (ChangeKind::WiegandTest, "changes nothing but its saved result"),
             (ChangeKind::Filter, "status biss"),
             (ChangeKind::Preset, "position biss"),
         ];

@@ -27,15 +27,16 @@ pub struct Connection {
     figures: LinkFigures,
 }
 
-/// Number of intervals without a packet after which nothing moves, and a connection with motion is lost.
+/// Number of intervals without a packet after which no motion may start, and a connection with a moving drive is
+/// lost.
 const LOST: u32 = 3;
 /// Time allowed for the first packet.
 const FIRST: Duration = Duration::from_secs(1);
-/// Length of the header that a target may send before the data; its description would specify it (`U`).
+/// Length of the header that a target may send before the data. The target's description would specify it (`U`).
 const HEADER: usize = 4;
 
 impl Connection {
-    /// Creates the connection at the time it was opened; the first packet is due at once.
+    /// Creates the connection at the time it was opened, with the first packet due immediately.
     pub fn new(opened: &Opened, now: Moment) -> Self {
         // An interval of 0 would loop forever.
         let interval = |interval: Duration| interval.max(Duration::from_millis(1));
@@ -71,15 +72,15 @@ impl Connection {
         self.next
     }
 
-    /// Returns whether nothing has arrived for three intervals, for whatever reason, so that the positions of the
+    /// Returns whether no packet has arrived for three intervals, for whatever reason, so that the positions of the
     /// drives are unknown.
     pub fn is_quiet(&self, now: Moment) -> bool {
         self.began && now.since(self.last_received) > self.come_interval * LOST
     }
 
-    /// Returns how long nothing has arrived, if that is too long. While something moves, the limit is three intervals
-    /// of listening: a busy computer that could not listen cannot tell whether nothing arrived, and packets may still
-    /// be queued. At rest, and as an absolute limit, it is the time that the target itself waits for a packet.
+    /// Returns the time without packets if it is too long. During motion, the limit is three intervals of listening,
+    /// because a busy computer that could not listen may still have packets queued. At rest, and as an absolute limit,
+    /// it is the time that the target itself waits for a packet.
     pub fn silent(&mut self, now: Moment, moves: bool) -> Option<Duration> {
         if now.since(self.next) > self.come_interval {
             self.awake = now;
@@ -91,7 +92,7 @@ impl Connection {
         (moves && self.began && listened > intervals || silence > most).then_some(silence)
     }
 
-    /// Handles a packet; returns its data if the packet is valid and new.
+    /// Handles a packet, and returns its data if the packet is valid and new.
     pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> Option<InImage> {
         let packet = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok();
         let packet = packet.filter(|packet| packet.connection == self.to_originator);
@@ -117,7 +118,7 @@ impl Connection {
         }
     }
 
-    /// Returns the packet that is due. A late call returns a single packet; missed ones are skipped.
+    /// Returns the packet that is due. After a delay, missed packets are skipped and a single one is returned.
     pub fn packet(&mut self, now: Moment, image: &OutImage) -> Vec<u8> {
         self.next = self.next + self.send_interval;
         if self.next <= now {

@@ -26,7 +26,7 @@ struct ControlledDrive {
     received: Option<Actual>,
 }
 
-/// The end of the connection: the drives stop, then are switched off, then nothing more is sent.
+/// Shutdown of the connection: the drives are stopped, then switched off, and then nothing more is sent.
 #[derive(Clone, Copy, Debug)]
 struct Ending {
     since: Moment,
@@ -35,11 +35,11 @@ struct Ending {
 
 /// Duration of the stop ladder, and the time for braking.
 const LADDER: Duration = Duration::from_millis(700);
-/// Number of packets that switch the drives off; more than one, since a packet may be lost.
+/// Number of packets that switch the drives off; more than one is sent, since a packet may be lost.
 const OFF: u32 = 3;
 
 impl Drives {
-    /// Creates the drives at the time the connection was opened. No act up to `spent` moves anything.
+    /// Creates the drives at the time the connection was opened. Requests numbered up to `spent` move nothing.
     pub fn new(opened: &Opened, drives: &[DriveNumber], spent: u64, now: Moment) -> Self {
         let places = opened.layout.topology.drives();
         let placed = drives.iter().filter(|drive| drive.get() <= places);
@@ -84,13 +84,13 @@ impl Drives {
         self.ending.is_some()
     }
 
-    /// Returns whether nothing more is to be sent, so that the connection can be closed.
+    /// Returns whether there is nothing more to send, so that the connection can be closed.
     pub fn is_over(&self) -> bool {
         let off = self.ending.is_some_and(|ending| ending.off >= OFF);
         off || matches!(self.lost, Some(CyclicLost::DoesNotStand(_) | CyclicLost::Port(_)))
     }
 
-    /// Starts the end of the connection: the drives stop, then they are switched off.
+    /// Begins to end the connection. The drives are stopped, then switched off.
     pub fn close(&mut self, now: Moment) {
         if self.ending.is_none() {
             self.ending = Some(Ending { since: now, off: 0 });
@@ -98,7 +98,7 @@ impl Drives {
         }
     }
 
-    /// Records that the connection was lost. The drives are told to stop, since they may still receive packets.
+    /// Records that the connection was lost. The drives are still told to stop, since they may receive packets.
     pub fn connection_lost(&mut self, now: Moment, why: CyclicLost) {
         if self.lost.is_none() && !self.is_over() {
             self.lost = Some(why);
@@ -122,7 +122,7 @@ impl Drives {
         self.connection.poll_at()
     }
 
-    /// Returns the packet that is due now, if any. All packets received until now must have been passed on before.
+    /// Returns the packet that is due now, if any. All packets received so far must have been passed on before.
     pub fn poll(&mut self, now: Moment, intent: &Intent, permit: impl Fn(DriveNumber) -> Permit) -> Option<Vec<u8>> {
         if now < self.poll_at() || self.is_over() {
             return None;

@@ -7,11 +7,11 @@ use crate::link::LinkError;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LinkFigures {
-    /// Interval between packets as agreed by the target, in both directions.
+    /// Interval between packets in both directions, as agreed by the target.
     pub interval: Duration,
     pub sent: u64,
     pub received: u64,
-    /// Number of packets that did not arrive before a later one.
+    /// Number of packets that had not arrived before a later one did.
     pub missed: u64,
     /// Number of packets that were overtaken by a newer one, or received twice.
     pub stale: u64,
@@ -20,7 +20,7 @@ pub struct LinkFigures {
     pub intervals: Histogram,
 }
 
-/// Deviations of the intervals, in buckets.
+/// Histogram of the deviations from the nominal interval.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Histogram {
     counts: [u64; EDGES.len() + 1],
@@ -28,15 +28,15 @@ pub struct Histogram {
     greatest: Option<i64>,
 }
 
-/// Why a cyclic connection ended without being closed.
+/// Reason why a cyclic connection ended without being closed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CyclicLost {
-    /// Nothing has arrived for three intervals.
+    /// No packet has arrived for three intervals.
     #[error("nothing has come for {} ms", after.as_millis())]
     Silent { after: Duration },
     #[error(transparent)]
     Port(#[from] LinkError),
-    /// The drive does not stop, whatever is sent, so the connection was closed to make the target stop it.
+    /// The drive does not stop, whatever is sent, so the connection was closed to make it stop.
     #[error("drive {} did not stop", .0.get())]
     DoesNotStand(DriveNumber),
     /// The session's own TCP connection is lost.
@@ -46,7 +46,7 @@ pub enum CyclicLost {
     Failed,
 }
 
-/// Microseconds off, between the buckets.
+/// Bucket boundaries of the deviation in microseconds.
 const EDGES: [i64; 14] = [-5000, -2000, -1000, -500, -200, -100, -50, 50, 100, 200, 500, 1000, 2000, 5000];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +59,7 @@ pub struct Bucket {
 }
 
 impl Histogram {
-    /// Counts an interval of duration `took` instead of the nominal `wanted`.
+    /// Counts an interval that took `took` instead of the nominal `wanted`.
     pub fn count(&mut self, wanted: Duration, took: Duration) {
         let nanoseconds = |duration: Duration| i64::try_from(duration.as_nanos()).unwrap_or(i64::MAX);
         let off = nanoseconds(took).saturating_sub(nanoseconds(wanted)) / 1000;

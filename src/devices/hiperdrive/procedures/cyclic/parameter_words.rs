@@ -24,7 +24,7 @@ pub type ParameterReadings = BTreeMap<ParameterNumber, ParameterReading>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ParameterReading {
-    /// When the reply arrived, or the time limit ended.
+    /// Time at which the reply arrived or the time limit expired.
     pub at: Moment,
     pub result: ParameterResult,
 }
@@ -39,14 +39,14 @@ pub enum ParameterResult {
 
 #[derive(Clone, Copy, Debug, Default)]
 enum Phase {
-    /// Nothing is requested, but the device has not confirmed this yet.
+    /// Nothing is requested, but the device has not yet confirmed that.
     #[default]
     Clear,
-    /// Nothing is requested since that moment, and a parameter waits to be read.
+    /// Nothing has been requested since the given time, and a parameter waits to be read.
     Clearing {
         since: Moment,
     },
-    /// Nothing is requested, as the device has confirmed.
+    /// Nothing is requested, and the device has confirmed that.
     Ready,
     Reading {
         number: ParameterNumber,
@@ -54,7 +54,7 @@ enum Phase {
     },
 }
 
-/// Time limit for a reply; the manual states none (`U`).
+/// Time limit for a reply, for which the manual gives no value (`U`).
 const LIMIT: Duration = Duration::from_secs(1);
 
 impl ParameterWords {
@@ -120,7 +120,7 @@ fn read(number: ParameterNumber) -> Pkw {
     Pkw::request(Task::Read, number.get(), 0, 0)
 }
 
-/// Returns the result of an answer, or `None` if the answer is not a number. Shorter numbers are in the lower bytes.
+/// Returns the result of an answer, or `None` if the answer is not a number. Shorter numbers are in the low bytes.
 fn result(number: ParameterNumber, words: Pkw, answer: Answer) -> Option<ParameterResult> {
     if let Answer::Refused(why) = answer {
         return Some(ParameterResult::Refused(why));
@@ -152,7 +152,7 @@ mod tests {
     }
 
     const CLEAR: &str = "00 00 00 00 00 00 00 00";
-    /// Reference 9: reading parameter 166, and its value 350.
+    /// Example from reference 9: reading parameter 166, with the value 350.
     const READ_166: &str = "A6 10 00 00 00 00 00 00";
     const IS_350: &str = "A6 10 00 00 5E 01 00 00";
 

@@ -170,8 +170,8 @@ impl Bench {
     }
 }
 
-/// Reference, issue and manual: three intervals without a packet are a loss. The stop word is still sent, since only the
-/// return path may be cut. Then off, then nothing more, whatever arrives.
+/// Reference, issue and manual: three intervals without a packet are a loss. The stop word is still sent, since only
+/// the return path may be cut. Then off, then nothing more, whatever arrives.
 #[test]
 fn a_lost_connection_stops_and_stays_lost() {
     let mut bench = Bench::jogs();
@@ -189,8 +189,8 @@ fn a_lost_connection_stops_and_stays_lost() {
     assert_eq!(bench.cycles(100), Vec::<String>::new());
 }
 
-/// A computer that was busy for 70 ms has not listened, and cannot tell that nothing arrived: received packets are still
-/// queued. After the target's time-out (80 ms here) the drives have stopped by themselves.
+/// A computer that was busy for 70 ms has not listened, and cannot tell that nothing arrived: received packets are
+/// still queued. After the target's time-out (80 ms here) the drives have stopped by themselves.
 #[test]
 fn a_delayed_thread_reads_pending_packets_before_giving_up() {
     for (away, lost) in [(70, false), (100, true)] {
@@ -216,7 +216,8 @@ fn a_delayed_thread_reads_pending_packets_before_giving_up() {
     assert!(bench.drives.lost().is_some(), "listened for 40 ms");
 }
 
-/// Issue 21.13: at rest the connection is kept until the target's own time-out (80 ms here), whatever is missing before.
+/// Issue 21.13: at rest the connection is kept until the target's own time-out (80 ms here), whatever is missing
+/// before.
 #[test]
 fn at_rest_silence_is_tolerated_until_the_targets_timeout() {
     let mut bench = Bench::new();

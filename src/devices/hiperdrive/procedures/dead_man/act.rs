@@ -10,7 +10,7 @@ use crate::units::Moment;
 pub struct Intent {
     pub drive: DriveNumber,
     pub request: MotionRequest,
-    /// Number of the user's act, higher than all previous ones.
+    /// Number of the user's action, higher than all previous numbers.
     pub number: u64,
     /// Time of the last refresh. No motion continues after [`Intent::FRESH`].
     pub refreshed: Moment,
@@ -18,7 +18,7 @@ pub struct Intent {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionRequest {
-    /// No request: a motion stops, and the state of the drive is held.
+    /// No request. A motion stops, and the state of the drive is held.
     Rest,
     Lead(Goal),
     Acknowledge,
@@ -27,7 +27,7 @@ pub enum MotionRequest {
         target: i32,
         effort: Effort,
     },
-    /// A number of scaled steps from the present position, as a positioning job that a stop ends.
+    /// Moves by a number of scaled steps from the present position, as a positioning job that a stop ends.
     Step {
         /// Signed number of steps.
         by: i32,
@@ -35,13 +35,13 @@ pub enum MotionRequest {
     },
     Pause,
     Resume,
-    /// Turns while the button is held, at most to the end of the range.
+    /// Turns while the button is held, at most up to the end of the range.
     Jog {
         direction: Direction,
         /// Speed and torque; limited to [`Effort::JOG`] if `outward` is set.
         effort: Effort,
-        /// Whether the motion may lead further out from outside the limits, which with a wrong reference can be the
-        /// only way back.
+        /// Whether the motion may lead further out from a position outside the limits, which with a wrong reference can
+        /// be the only way back.
         outward: bool,
     },
     Run {
@@ -52,7 +52,7 @@ pub enum MotionRequest {
     Stop,
 }
 
-/// A state that a drive can be led to.
+/// A state to which a drive can be led.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Goal {
     /// Not ready, 0000h.
@@ -61,7 +61,7 @@ pub enum Goal {
     Ready,
     /// Operational, 0401h.
     Operational,
-    /// Enabled and at rest, 0409h.
+    /// The drive is enabled and at rest, 0409h.
     Enabled,
 }
 
@@ -79,22 +79,22 @@ pub struct Permit {
     pub locks: Vec<Lock>,
     /// Whether the drive may run past its limits.
     pub endless: bool,
-    /// Whether the parameters must be read again before a motion starts; a running one continues.
+    /// Whether the parameters must be read again before a motion starts. A running motion continues.
     pub doubted: bool,
-    /// Scaled steps per degree, at least 1: the repeatability of a drive (manual, technical data).
+    /// Scaled steps per degree, at least 1. One degree is the repeatability of a drive (manual, technical data).
     pub degree: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lock {
     Unread,
-    /// Parameter 186 is 255 or not a time: the drive could continue to move after a loss of communication.
+    /// Parameter 186 is 255 or not a time, so the drive could continue to move after a loss of communication.
     NoTimeout,
-    /// The scaling has changed, and the limits with it; the user has not confirmed them yet.
+    /// The scale has changed, and the limits with it, but the user has not confirmed the limits yet.
     LimitsUnconfirmed,
     /// Parameter 152 is not 1.
     NotRequested,
-    /// The parameters were read too long ago: another master may have changed them since.
+    /// The parameters were read too long ago, and another master may have changed them since.
     Outdated,
     /// The device no longer answers explicit messages.
     NoAnswer,
@@ -122,7 +122,7 @@ pub enum MotionKind {
     },
 }
 
-/// A level of the ladder with which a drive is stopped (reference 3, *STOP ladder*).
+/// A level of the escalation with which a drive is stopped (reference 3, *STOP ladder*).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopLevel {
     Mode,
@@ -130,7 +130,7 @@ pub enum StopLevel {
     Operational,
     /// 0000h.
     Off,
-    /// Close the cyclic connection, so that the watchdogs of the drives stop them.
+    /// Closes the cyclic connection, so that the watchdogs of the drives stop them.
     Close,
 }
 
@@ -145,13 +145,13 @@ pub enum Ended {
     Stale,
     Deaf,
     Lost,
-    /// The drive has a fault. Nothing moves until the fault is acknowledged.
+    /// The drive has a fault and cannot move until the fault is acknowledged.
     Fault,
     /// The drive is no longer permitted to move.
     Locked(Lock),
-    /// The request was refused, and nothing was sent for it.
+    /// The request was refused, and nothing was sent.
     Refused(Refusal),
-    /// The drive is in this state and has not followed a word on the way to the requested one.
+    /// The drive remains in this state and has not followed a control word on the way to the requested state.
     NoAnswer(State),
     NotStarted,
     /// The drive has left the state required for a motion.
@@ -162,7 +162,7 @@ pub enum Ended {
         /// In scaled steps.
         position: i32,
     },
-    /// The drive moves away from its target, or against the direction of its run.
+    /// The drive is moving away from its target, or against the direction of its run.
     WrongWay {
         /// In scaled steps.
         position: i32,
@@ -172,7 +172,7 @@ pub enum Ended {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     Locked(Lock),
-    /// 0 % of speed or torque.
+    /// Speed or torque is 0 %.
     NoEffort,
     Outside {
         /// In scaled steps.
@@ -182,7 +182,7 @@ pub enum Refusal {
         /// Parameter 160.
         high: i32,
     },
-    /// The drive is outside its limits, and the motion would lead further out.
+    /// The drive is outside its limits, and the motion would lead further outside.
     Outward {
         /// In scaled steps.
         position: i32,
@@ -191,8 +191,8 @@ pub enum Refusal {
         /// Parameter 160.
         high: i32,
     },
-    /// The drive is outside its limits according to status bit 15, although its position is inside: the direction back
-    /// in is unknown.
+    /// The drive is outside its limits according to status bit 15, although its position is inside, so the direction
+    /// back is unknown.
     Unclear {
         /// In scaled steps.
         position: i32,
@@ -204,7 +204,7 @@ pub enum Refusal {
     Endless,
     /// The drive has a fault, which must be acknowledged first.
     Fault,
-    /// The drive is in the switch-on lock, and must be led out of it first.
+    /// The drive is in the switch-on lock, which it must leave first.
     SwitchOnLock,
     /// No job is running.
     NothingToPause,
@@ -214,7 +214,7 @@ pub enum Refusal {
 }
 
 impl Intent {
-    /// Validity of a refresh, which must be repeated every 100 ms.
+    /// Time for which a refresh is valid. Refreshes must be repeated every 100 ms.
     pub const FRESH: Duration = Duration::from_millis(250);
 
     /// Creates an intent that requests nothing.
@@ -222,14 +222,14 @@ impl Intent {
         Intent { drive, request: MotionRequest::Rest, number, refreshed: now }
     }
 
-    /// Returns whether the request was not refreshed in time.
+    /// Returns whether the request has not been refreshed in time.
     pub fn is_stale(&self, now: Moment) -> bool {
         now.since(self.refreshed) > Intent::FRESH
     }
 }
 
 impl MotionRequest {
-    /// Returns whether the act makes the drive move; a pause does not.
+    /// Returns whether the request makes the drive move. A pause does not.
     pub const fn moves(self) -> bool {
         matches!(
             self,
@@ -241,7 +241,7 @@ impl MotionRequest {
         )
     }
 
-    /// Returns speed and torque; `None` for requests without them, such as a stop.
+    /// Returns speed and torque, or `None` for requests without them, such as a stop.
     pub fn effort(self) -> Option<Effort> {
         match self {
             MotionRequest::Jog { effort, outward: true, .. } => Some(effort.at_most(Effort::JOG)),
@@ -270,7 +270,7 @@ impl Goal {
         }
     }
 
-    /// Returns how far up a state is. A fault and the lock are the lowest.
+    /// Returns the goal that corresponds to a state. Faults and the switch-on lock rank lowest.
     pub(super) const fn of(state: State) -> Goal {
         match state {
             State::NotReady | State::Fault | State::Locked => Goal::Off,
@@ -282,12 +282,12 @@ impl Goal {
 }
 
 impl Effort {
-    /// Zero speed and torque, with which no motion starts.
+    /// Zero speed and torque, which start no motion.
     pub const NONE: Effort = Effort { speed: Percent::NONE, torque: Percent::NONE };
-    /// Speed and torque of a new jog: 10 % and 25 %.
+    /// Default speed and torque of a jog: 10 % and 25 %.
     pub const JOG: Effort = Effort { speed: percent(10), torque: percent(25) };
-    /// Speed and torque of a new move: a quarter of the speed, which leaves time for STOP after a mistyped target, and
-    /// the torque that an axis may require.
+    /// Default speed and torque of a move: a quarter of the speed, which leaves time for STOP after a mistyped target,
+    /// and the torque that an axis may require.
     pub const MOVE: Effort = Effort { speed: percent(25), torque: Percent::FULL };
 
     pub fn at_most(self, other: Effort) -> Self {
@@ -308,19 +308,20 @@ const fn percent(percent: u8) -> Percent {
 }
 
 impl Default for Permit {
-    /// Returns the permit before the parameters of a drive have been read: no motion.
+    /// Returns the permit that applies before a drive's parameters have been read, which allows no motion.
     fn default() -> Self {
         Permit { limits: None, locks: vec![Lock::Unread], endless: false, doubted: false, degree: 1 }
     }
 }
 
 impl Permit {
-    /// Creates a permit for motion within these limits, without locks, with the factory scale of 65536 steps per turn.
+    /// Creates a permit for motion within the given limits, without locks, with the factory scale of 65536 steps per
+    /// turn.
     pub const fn within(low: i32, high: i32) -> Self {
         Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, doubted: false, degree: 183 }
     }
 
-    /// Checks whether a motion may begin or continue. `target` is its end, if it has one.
+    /// Checks whether a motion may begin or continue. `target` is its final position, if it has one.
     ///
     /// # Errors
     /// [`Refusal`].

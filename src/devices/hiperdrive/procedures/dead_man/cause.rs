@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::protocol::{Actual, StatusBit};
 use crate::units::Moment;
 
 impl DeadMan {
-    /// Ends the running act if there is a reason to.
+    /// Ends the running motion if there is a reason to.
     pub(super) fn check_for_end(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
         if self.act.is_none() {
             return;
@@ -21,8 +21,8 @@ impl DeadMan {
         }
     }
 
-    /// Accepts a pause or resume, which continue the job, only as the very next request, because a stop in between may
-    /// have been missed.
+    /// Accepts a pause or resume, which continue the job, only as the next request, because a stop in between may have
+    /// been missed.
     fn follow(&mut self, intent: &Intent, permit: &Permit, now: Moment) {
         let mark = self.mark(now);
         let Some(act) = &mut self.act else { return };
@@ -88,7 +88,7 @@ impl DeadMan {
         }
     }
 
-    /// Returns how the act ends if the intent is no longer for it, or `None` if it still is.
+    /// Returns how the motion ends if the intent no longer requests it, or `None` if it still does.
     fn is_overtaken(&self, number: u64, request: MotionRequest, intent: &Intent, permit: &Permit) -> Option<Ended> {
         let rests = matches!(
             intent.request,

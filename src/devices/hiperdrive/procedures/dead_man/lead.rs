@@ -9,7 +9,7 @@ use crate::units::Moment;
 pub(super) struct Lead {
     goal: Goal,
     acknowledges: bool,
-    /// The word being sent, and since when.
+    /// The control word being sent, and the mark at which sending began.
     word: Option<(ControlWord, Mark)>,
 }
 
@@ -47,7 +47,7 @@ impl Lead {
         Lead { goal, acknowledges: false, word: None }
     }
 
-    /// Leads out of a fault or the lock, to ready.
+    /// Creates a lead out of a fault or the switch-on lock, to the ready state.
     const fn out() -> Self {
         Lead { goal: Goal::Ready, acknowledges: true, word: None }
     }
@@ -56,12 +56,12 @@ impl Lead {
         self.goal
     }
 
-    /// Returns whether the lead only removes torque or leaves it off, so that no refresh is required.
+    /// Returns whether the lead only removes torque or keeps it off, so that no refresh is required.
     pub(super) fn only_downwards(&self, state: State) -> bool {
         self.goal <= Goal::of(state) || self.goal == Goal::Off
     }
 
-    /// Returns the word being sent; zero before the first step.
+    /// Returns the control word being sent, which is zero before the first step.
     pub(super) fn word(&self) -> ControlWord {
         self.word.map_or(ControlWord::OFF, |(word, _)| word)
     }
@@ -141,14 +141,14 @@ impl DeadMan {
         }
     }
 
-    /// Enters the stage whose word allows a motion to begin; nothing begins yet.
+    /// Enters the stage whose control word allows a motion to begin, without starting one.
     fn arm(&mut self, now: Moment, actual: Actual, kind: MotionKind) {
         let acknowledged = actual.status.has(StatusBit::SetpointAcknowledged);
         self.after_run |= matches!(kind, MotionKind::Run { .. });
         self.stage = Stage::Arm { since: self.mark(now), acknowledged };
     }
 
-    /// Holds the present state or a lower one after leading has been abandoned.
+    /// Holds the present state or a lower one after the lead has been abandoned.
     pub(super) fn hold_state(&mut self, state: State) {
         let highest = if self.after_run { Goal::Ready } else { Goal::Enabled };
         self.level = match state {

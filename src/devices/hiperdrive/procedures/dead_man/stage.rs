@@ -10,14 +10,14 @@ use crate::units::Moment;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stage {
     Rest {
-        /// Time since which the drive has been moving although it should rest.
+        /// Time since which the drive has been moving although it should be at rest.
         moves: Option<Moment>,
     },
     Lead(Lead),
-    /// The drive has the setpoints of a motion, and the word from which the motion can start.
+    /// The drive has received the setpoints of a motion and the control word from which the motion can start.
     Arm {
         since: Mark,
-        /// Status bit 12 as reported before.
+        /// Last reported value of status bit 12.
         acknowledged: bool,
     },
     Start {
@@ -27,7 +27,7 @@ pub(super) enum Stage {
     Go {
         since: Mark,
         acknowledged: bool,
-        /// Time since which the drive has been at rest.
+        /// Mark since which the drive has been at rest.
         standing_since: Option<Mark>,
     },
     Paused {
@@ -42,14 +42,14 @@ pub(super) enum Stage {
     },
 }
 
-/// A moment, with the number of reports received until then.
+/// A point in time, with the number of reports received until then.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mark {
     pub(super) at: Moment,
     pub(super) report: u64,
 }
 
-/// Number of reports after a mark, the last of which certainly describes the time after it, once that time has passed.
+/// Number of reports after a mark. The last of them certainly describes the time after the mark.
 const REPORTS: u64 = 2;
 
 impl Mark {
@@ -155,8 +155,8 @@ impl DeadMan {
         }
     }
 
-    /// Reduces the control level while the drive does not stop, and holds its state once it is at rest. After a run
-    /// that state is ready, from which the next motion leads up again.
+    /// Escalates the stop while the drive does not stop, and holds its state once it is at rest. After a run, that
+    /// state is ready, from which the next motion leads up again.
     fn raise_stop_level(&mut self, mark: Mark, actual: Actual) {
         let Stage::Stop { level, since, begun, word } = self.stage else { return };
         if level == StopLevel::Close {
@@ -171,7 +171,7 @@ impl DeadMan {
         }
     }
 
-    /// Supervises a drive at rest: the held level follows it down, and a moving drive is stopped.
+    /// Supervises a drive at rest. The held state follows the drive down, and a moving drive is stopped.
     fn watch(&mut self, now: Moment, actual: Actual, moves: Option<Moment>) {
         match actual.status.state() {
             State::Fault | State::Locked => self.level = self.level.min(Goal::Operational),
@@ -190,7 +190,7 @@ impl DeadMan {
         }
     }
 
-    /// Returns the word of a drive at rest: if enabled, a stop with bit 6 unchanged.
+    /// Returns the control word of a drive at rest. If the drive is enabled, this is a stop with bit 6 unchanged.
     fn rest_word(&self) -> ControlWord {
         let sent = self.sent.control;
         let enabled = Goal::of_word(sent) == Goal::Enabled;

@@ -20,8 +20,8 @@ struct Bench {
     is_connected: bool,
 }
 
-/// Status words: ready; enabled and at rest; enabled and moving, and at rest, with the acknowledgement of a job or a
-/// run.
+/// Status words for ready, enabled and at rest, enabled and moving, and at rest with the acknowledgement of a job or
+/// a run.
 const READY: u16 = 0x2A31;
 const ENABLED: u16 = 0x2A37;
 const MOVING: u16 = 0x1A37;
@@ -58,7 +58,7 @@ impl Bench {
         (0..count).for_each(|_| self.cycle());
     }
 
-    /// Creates a bench whose dead-man is in the given phase of the table.
+    /// Creates a bench whose dead-man is in the given phase of the documented table.
     fn in_phase(name: &str) -> Self {
         let job = MotionRequest::Move { target: 5000, effort: Effort::JOG };
         let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
@@ -103,7 +103,7 @@ impl Bench {
         bench
     }
 
-    fn play(&mut self, event: &str) {
+    fn play_event(&mut self, event: &str) {
         let paused = matches!(self.man.phase(), Phase::Paused { .. });
         match event.split(['(', ',']).next().unwrap_or_default().trim() {
             "released" => self.act(MotionRequest::Stop),
@@ -146,7 +146,7 @@ impl Bench {
     }
 }
 
-/// Returns the rows of the table including its head, as trimmed cells.
+/// Returns the rows of the table, including its header, as trimmed cells.
 fn table() -> Vec<Vec<&'static str>> {
     let lines = DOCUMENT.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
     let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>();
@@ -162,7 +162,7 @@ fn motions_end_as_documented() {
         for (phase, expected) in head.iter().zip(row).skip(1) {
             let mut bench = Bench::in_phase(phase);
             let before = bench.man.ended();
-            bench.play(row[0]);
+            bench.play_event(row[0]);
             bench.cycle();
             let ended = bench.man.ended().filter(|_| bench.man.ended() != before);
             let name = ended.map_or("–".to_owned(), |(_, how)| {

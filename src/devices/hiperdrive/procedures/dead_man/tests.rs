@@ -103,8 +103,8 @@ fn a_standstill_word_starts_no_motion() {
     assert_eq!(standing, 512 + 48 + 32);
 }
 
-/// The trap of reference 3: after a run, no word on the way clears bit 12 while the drive is enabled and bits 4 and 5 are
-/// set, and the drive is below operational before it is enabled again.
+/// The trap of reference 3: after a run, no word on the way clears bit 12 while the drive is enabled and bits 4 and 5
+/// are set, and the drive is below operational before it is enabled again.
 #[test]
 fn leaving_speed_mode_passes_through_ready() {
     let mut man = DeadMan::new(DriveNumber::FIRST, 0);
@@ -195,8 +195,8 @@ impl Looks {
 
 const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FULL, outward: false };
 
-/// Issue 21.3: parameters that are doubted while a drive is still being led up are read before it moves; a running motion
-/// continues, and a paused one does not resume.
+/// Issue 21.3: parameters that are doubted while a drive is still being led up are read before it moves; a running
+/// motion continues, and a paused one does not resume.
 #[test]
 fn doubted_limits_delay_the_start_of_a_motion() {
     let doubted = Ended::Refused(Refusal::Locked(Lock::Outdated));
@@ -226,8 +226,8 @@ fn doubted_limits_delay_the_start_of_a_motion() {
     assert_eq!(looks.man.ended(), Some((2, doubted)));
 }
 
-/// Issue 21.4: limits that another master changes, or a shaft that is pushed, between the last word on the way up and the
-/// first of the motion: a drive that is outside then did not start there, and does not move further out.
+/// Issue 21.4: limits that another master changes, or a shaft that is pushed, between the last word on the way up and
+/// the first of the motion: a drive that is outside then did not start there, and does not move further out.
 #[test]
 fn a_drive_outside_its_limits_before_moving_does_not_start() {
     for (wish, direction) in [
@@ -263,8 +263,8 @@ fn near_both_limits_bit_15_does_not_reveal_the_inward_direction() {
     assert_eq!((at(-151), at(151)), (Some(Outside::At(Side::Below)), Some(Outside::At(Side::Above))));
 }
 
-/// Issue 21.6b: the first packets of a connection contain no position (a hub first queries all its drives), so a step from
-/// there would lead elsewhere. It starts once positions have arrived for 250 ms.
+/// Issue 21.6b: the first packets of a connection contain no position (a hub first queries all its drives), so a step
+/// from there would lead elsewhere. It starts once positions have arrived for 250 ms.
 #[test]
 fn a_step_is_not_counted_from_the_first_packets() {
     let mut looks = Looks::new();

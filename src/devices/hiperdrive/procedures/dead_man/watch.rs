@@ -25,21 +25,21 @@ pub enum Side {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     At(Side),
-    /// Status bit 15 is set, but the position is more than a degree inside both limits, or near both.
+    /// Status bit 15 is set, although the position is more than a degree inside both limits, or near both.
     Unclear,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
-    /// The way in which the drive was outside its limits at the start, or `None` once it has been inside.
+    /// How the drive was outside its limits at the start, or `None` once it has been inside.
     outside: Option<Outside>,
-    /// Minimum distance so far: of a job to its target, of a run in its direction.
+    /// Smallest distance so far: to the target of a job, or in the direction of a run.
     best: i64,
     /// Position of a waiting job after braking.
     waits_at: Option<i32>,
-    /// Whether the user has enabled the direction further out for this press.
+    /// Whether the user has allowed motion further outward while the button is pressed.
     freed: bool,
-    /// Whether a run started at the end of the range to which it leads, so that there may be no travel left.
+    /// Whether a run started at the end of the range towards which it leads, so that there may be no travel left.
     pub(super) at_end: bool,
 }
 
@@ -47,7 +47,7 @@ pub(super) struct Watch {
 const ACCURACY: i64 = 3;
 
 impl Outside {
-    /// Returns whether the direction may lead further out.
+    /// Returns whether the direction may lead further outside.
     pub fn is_outward(self, direction: Direction) -> bool {
         match self {
             Outside::At(side) => side.outward_direction() == direction,
@@ -58,7 +58,7 @@ impl Outside {
 
 impl Permit {
     /// Returns how a drive is outside its limits: by its position, or else by status bit 15, at the limit that is
-    /// within a degree. `None` inside, and if no limits are known.
+    /// within a degree. Returns `None` if the drive is inside, or if no limits are known.
     pub fn outside(&self, actual: Actual) -> Option<Outside> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
@@ -79,7 +79,7 @@ fn side(position: i32, (low, high): (i32, i32)) -> Option<Side> {
 }
 
 impl Side {
-    /// Returns the number of steps beyond the limit on this side, negative inside.
+    /// Returns the number of steps beyond the limit on this side, negative if inside.
     pub fn beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
         match self {
             Side::Above => i64::from(position) - i64::from(high),
@@ -87,8 +87,8 @@ impl Side {
         }
     }
 
-    /// Returns the direction that leads further out. Positions increase clockwise (manual 7.2: the step of parameter
-    /// 170, +4096, is clockwise).
+    /// Returns the direction that leads further outside. Positions increase clockwise (manual 7.2: the step of
+    /// parameter 170, +4096, is clockwise).
     pub const fn outward_direction(self) -> Direction {
         match self {
             Side::Above => Direction::Clockwise,
@@ -104,8 +104,8 @@ impl Motion {
         permit.limits.filter(|_| !endless)
     }
 
-    /// Returns the distance of a job to its target in steps. A run has no target; its value decreases as it moves in
-    /// its direction.
+    /// Returns the distance of a job to its target in steps. For a run, which has no target, returns a value that
+    /// decreases as the drive moves in the direction of the run.
     fn distance(&self, actual: Actual) -> i64 {
         let position = i64::from(actual.position);
         match self.kind {
@@ -132,7 +132,7 @@ impl Watch {
         Watch { outside, best, waits_at: None, freed, at_end }
     }
 
-    /// Compares a report with the limits and the target; returns how the motion must end, if it must.
+    /// Compares a report with the limits and the target, and returns how the motion must end, if it must.
     pub(super) fn check_report(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
         let degree = i64::from(permit.degree);
         let distance = motion.distance(actual);
@@ -148,7 +148,8 @@ impl Watch {
         beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
     }
 
-    /// Detects that a waiting job continues to move, by more than a degree from its position after braking.
+    /// Detects that the drive continues to move during a waiting job, by more than a degree from its position after
+    /// braking.
     fn wait(&mut self, has_braked: bool, actual: Actual, permit: &Permit) -> Option<Ended> {
         if !has_braked {
             self.waits_at = None;
@@ -182,8 +183,8 @@ impl Watch {
 }
 
 impl Permit {
-    /// Checks whether a motion may begin at this position: outside the limits only back in, unless the direction
-    /// further out was enabled for this press.
+    /// Checks whether a motion may begin at this position. From outside the limits it may only lead back in, unless the
+    /// user has allowed motion further outward while the button is pressed.
     ///
     /// # Errors
     /// [`Refusal::Outward`], [`Refusal::Unclear`].

@@ -30,19 +30,19 @@ pub struct Opened {
     pub close: ForwardClose,
 }
 
-/// Vendor ID of this program: an unassigned number (reference 9).
+/// Vendor ID of this program, which is an unassigned number (reference 9).
 const VENDOR: u16 = 0x1234;
-/// Time-out multiplier of eight intervals: a host that is late once loses nothing. Long intervals use four, so that
-/// drives stop soon.
+/// Time-out multiplier for eight intervals, so that a host may be late once. Long intervals use four, so that drives
+/// stop soon.
 const TIMEOUT: u8 = 1;
 const LONG_TIMEOUT: u8 = 0;
-/// Interval from which connections count as long.
+/// Shortest interval that counts as long.
 const LONG: Duration = Duration::from_millis(35);
-/// Factor by which a device may extend the interval, up to the longest that may be requested.
+/// Factor by which a device may extend the requested interval, up to the longest that may be requested.
 const SLOWER: u32 = 2;
 const LONGEST: Duration = Duration::from_millis(100);
 
-/// Status of a device that refuses because the connection is in use.
+/// Status code with which a device refuses a connection that is already in use.
 const CONNECTION_IN_USE: u16 = 0x0100;
 const OWNED: u16 = 0x0106;
 const KIND: u16 = 0x0108;
@@ -85,7 +85,7 @@ impl Master<'_> {
         }
     }
 
-    /// Closes a cyclic connection; one that has already ended counts as closed. Cancellation is ignored.
+    /// Closes a cyclic connection, ignoring cancellation. A connection that has already ended counts as closed.
     ///
     /// # Errors
     /// [`Error::Refused`]; errors of the exchange.
@@ -97,8 +97,7 @@ impl Master<'_> {
         }
     }
 
-    /// Closes a connection that may be open and cannot be used, ignoring errors, because the original error is
-    /// reported.
+    /// Closes an unusable connection that may be open. Errors are ignored, because the original error is reported.
     fn close_without_reply(&mut self, close: &ForwardClose) {
         if let Err(why) = self.shielded(|master| master.forward_close(close)) {
             tracing::warn!("{why}");
@@ -177,7 +176,7 @@ fn is_connection_refusal(refusal: &Refusal) -> bool {
     refusal.status == GeneralStatus::CONNECTION
 }
 
-/// Returns whether a request with this layout and type avoids the refusal.
+/// Returns whether a request with this layout and type would avoid the refusal.
 fn answers(refusal: &Refusal, layout: Layout, kind: NetworkType) -> bool {
     let first = refusal.extended.first().filter(|_| is_connection_refusal(refusal));
     match first {

@@ -42,7 +42,7 @@ impl Master<'_> {
         Ok(Error::Refused { requested, refusal })
     }
 
-    /// Returns whether another parameter of a drive is known to be 0.
+    /// Returns whether another parameter of the drive is known to be 0.
     fn is_zero(&mut self, refused: ParameterNumber, base: u16, drive: DriveNumber) -> Result<bool, Error> {
         let Some(number) = ParameterNumber::of_drive(base, drive).filter(|own| *own != refused) else {
             return Ok(false);
@@ -76,7 +76,7 @@ impl Master<'_> {
     }
 
     /// Returns the present range of a parameter: 160 is above 158, position and reference are between them (reference
-    /// 4), and no limit is farther from 0 than the turns of the drive (5).
+    /// 4), and no limit is farther from 0 than the turns of the drive (reference 5).
     fn range_now(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
         let travel = match number.drive().filter(|_| row.reach.is_some()) {
             Some(drive) => self.travel(drive)?,

@@ -78,8 +78,8 @@ fn a_drive_is_requested_first_and_released_last() {
     assert_eq!(warnings(&plan), [Warning::NotRequested(drive(3))]);
 }
 
-/// Old limits, position, new limits; and which of them the drive accepts first. The rules (reference 4): 160 is above 158,
-/// and the drive between both, at every write.
+/// Old limits, position, new limits; and which of them the drive accepts first. The rules (reference 4): 160 is above
+/// 158, and the drive between both, at every write.
 #[test]
 fn limits_are_written_in_the_order_the_drive_accepts() {
     let cases = [
@@ -187,8 +187,8 @@ fn unwritable_parameters_are_refused_with_a_reason() {
     assert_eq!(error.range, Range::Within(-33_554_432, 33_554_432));
 }
 
-/// Issue 21.10: ±512 turns of an HDA30 in steps of the planned scale: 65536 per turn are 33554432, 400 are 204800. A step
-/// of the drive's own keys is at most its travel of 1024 turns.
+/// Issue 21.10: ±512 turns of an HDA30 in steps of the planned scale: 65536 per turn are 33554432, 400 are 204800. A
+/// step of the drive's own keys is at most its travel of 1024 turns.
 #[test]
 fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
     let jogs = |image: Image| image.with(&image_of(&[(170, 4096), (176, -4096)]));

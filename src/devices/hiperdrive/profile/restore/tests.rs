@@ -124,8 +124,9 @@ fn differences_are_named_by_drive() {
     assert_eq!(comparison.only_right[0], "152 drive 4");
 }
 
-/// Steps per turn are 256 · numerator / denominator (reference 5): 256 · 400 / 256 = 400 of 0.01 mm in 4 mm; 256 · 20 / 256
-/// = 20 of 0.1 mm in 2 mm; 256 · 3600 / 256 = 3600 of 0.1 degree. 511 turns of them are 204400 and 10220; half a turn is
+/// Steps per turn are 256 · numerator / denominator (reference 5): 256 · 400 / 256 = 400 of 0.01 mm in 4 mm; 256 · 20 /
+/// 256 = 20 of 0.1 mm in 2 mm; 256 · 3600 / 256 = 3600 of 0.1 degree. 511 turns of them are 204400 and 10220; half a
+/// turn is
 /// 1800.
 #[test]
 fn ready_made_profiles_plan_the_expected_writes() {

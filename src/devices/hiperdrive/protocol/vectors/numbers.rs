@@ -18,7 +18,7 @@ fn millimetres(hundredths: u64) -> Length {
     Length { nanometres: hundredths * 10_000 }
 }
 
-/// Reference 9: −511 turns are −33488896 = FE010000h.
+/// Reference 9: −511 turns are −33488896 steps, FE010000h.
 #[test]
 fn published_parameter_words_match() {
     let little = ByteOrder::Little;
@@ -56,7 +56,7 @@ fn published_parameter_words_match() {
     assert_eq!(hex(&big.emit(ByteOrder::Big)), "10 A6 00 00 00 00 01 5E");
 }
 
-/// A reply for another parameter or another task is no answer.
+/// A reply for another parameter or another task is not accepted as the answer.
 #[test]
 fn a_reply_matches_only_its_own_request() {
     let read = Pkw::request(Task::Read, 166, 0, 0);
@@ -131,7 +131,7 @@ fn the_parameter_table_matches_the_reference() {
     assert_eq!((factory(176, Hub8, Family::Short), factory(192, Hub8, Family::Short)), (Some(-4096), None));
 }
 
-/// Reference 4: limits, at and beyond them.
+/// Reference 4: values at the limits are accepted, and values beyond the limits are not.
 #[test]
 fn parameter_ranges_are_checked() {
     for (own, good, bad) in [
@@ -168,7 +168,7 @@ fn parameter_ranges_are_checked() {
     assert_eq!(message(15, 3), "parameter 15 (name) is a text and cannot be 3");
 }
 
-/// Reference 7 and 9: 1, 2 or 4 bytes, low byte first; a text with or without its length.
+/// Reference 7 and 9: numbers have 1, 2 or 4 bytes, low byte first; a string may be preceded by its length.
 #[test]
 fn values_have_the_length_of_their_type() {
     for (kind, text, value) in [
@@ -195,7 +195,8 @@ fn values_have_the_length_of_their_type() {
     assert_eq!(Kind::Text.parse(&[]), Ok(Value::Text(String::new())));
 }
 
-/// Manual 6.2, 126 to 129: a string, divided by 10 if preceded by an "A"; one decimal then, even where it is 0.
+/// Manual 6.2, 126 to 129: nominal data are strings, divided by 10 if preceded by an "A". They then have one decimal,
+/// even where it is 0.
 #[test]
 fn nominal_data_may_be_tenths() {
     for (text, number) in [
@@ -211,7 +212,7 @@ fn nominal_data_may_be_tenths() {
     }
 }
 
-/// Reference 5: the table, and the manual's examples.
+/// Reference 5: conversions match the table and the manual's examples.
 #[test]
 fn steps_convert_to_turns_and_millimetres() {
     for (numerator, denominator, steps) in [(256, 1, 65_536), (400, 256, 400), (100, 256, 100), (20, 256, 20)] {

@@ -8,7 +8,7 @@ use super::super::*;
 
 const FILE: &str = include_str!("../../../../../tests/vectors/hiperdrive_parameters.txt");
 
-/// Row of the transcription: number, then range, saved, factory, access, unit, bits, answered.
+/// Row of the transcribed table: number, then range, saved, factory, access, unit, bits, answered.
 struct Typed<'t> {
     number: u16,
     bits: &'t str,
@@ -20,7 +20,7 @@ struct Typed<'t> {
     answered: &'t str,
 }
 
-/// Turns of a family: the travel (9.2), and for each number the range and the factory value.
+/// Turns of a drive family: the travel (9.2) and, for each parameter number, the range and the factory value.
 struct Turns {
     way: i64,
     rows: BTreeMap<u16, (i64, i64, i64)>,
@@ -90,8 +90,8 @@ fn numbers(text: &str) -> Vec<i64> {
     text.split(',').map(|own| own.trim().parse().unwrap()).collect()
 }
 
-/// Returns values that the manual allows and values that it does not: the limits, one beyond each, and the gaps of a
-/// list.
+/// Returns values that the manual allows and values that it does not: the limits, the values next to the limits, and
+/// the gaps of a list.
 fn probe(typed: &Typed<'_>) -> (Vec<i64>, Vec<i64>) {
     let all = || match typed.bits {
         "32" => (0, 4_294_967_295),
@@ -126,7 +126,8 @@ fn probe(typed: &Typed<'_>) -> (Vec<i64>, Vec<i64>) {
     }
 }
 
-/// Issue 21.10: type, access, unit, saved, factory value and allowed values of every row; no row more or less.
+/// Issue 21.10: every row matches in type, access, unit, saving, factory value and allowed values, and no row is
+/// missing or surplus.
 #[test]
 fn every_row_matches_the_manual() {
     let typed = typed();
@@ -174,7 +175,7 @@ fn every_row_matches_the_manual() {
     }
 }
 
-/// Issue 21.8: only the listed values take long to set.
+/// Issue 21.8: only the listed values take long to write.
 #[test]
 fn every_row_is_answered_within_the_manuals_time() {
     for typed in typed() {
@@ -199,8 +200,8 @@ fn every_row_is_answered_within_the_manuals_time() {
     }
 }
 
-/// Issue 21.10: for each family, in steps of each scale. Turns · 256 · numerator / denominator, rounded towards 0,
-/// within 32 bits.
+/// Issue 21.10: for each family and scale, limit ranges are turns · 256 · numerator / denominator steps, rounded
+/// towards 0 and within 32 bits.
 #[test]
 fn limit_ranges_are_the_familys_turns_in_scaled_units() {
     let names = [("HDA 30, HDA 45", Family::Short), ("HDA 70", Family::Long), ("PSE441", Family::Pse441)];

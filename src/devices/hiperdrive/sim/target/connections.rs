@@ -22,7 +22,7 @@ use crate::units::Moment;
 pub(super) struct Connections {
     pub(super) cyclic: Option<Cyclic>,
     explicit: Vec<Explicit>,
-    /// Number of connections so far; no number is used twice.
+    /// Number of connections opened so far. No connection number is used twice.
     opened: u32,
 }
 
@@ -36,7 +36,7 @@ struct Explicit {
     heard: Moment,
 }
 
-/// Reason why a connection is not opened: the first extended status word.
+/// Reason why a connection is refused, as the first extended status word.
 type Refusal = u16;
 
 const IN_USE: Refusal = 0x0100;
@@ -61,7 +61,7 @@ const ASSEMBLY_CLASS: u16 = 0x04;
 const MESSAGE_ROUTER: u16 = 0x02;
 
 impl Connections {
-    /// Creates the state without connections that follows the loss of the supply.
+    /// Creates the state after a loss of the supply, without connections.
     pub(super) fn after(lost: &Connections) -> Self {
         Connections { opened: lost.opened, ..Connections::default() }
     }
@@ -70,7 +70,7 @@ impl Connections {
         self.cyclic.is_some()
     }
 
-    /// Returns when the next packet must be sent.
+    /// Returns the time at which the next packet must be sent.
     pub(super) fn due(&self) -> Option<Moment> {
         self.cyclic.as_ref().map(Cyclic::due)
     }
@@ -83,7 +83,7 @@ impl Connections {
         self.explicit.retain(|explicit| now.since(explicit.heard) < explicit.timeout);
     }
 
-    /// Handles a message over an explicit connection; returns the data for its reply.
+    /// Handles a message over an explicit connection and returns the data for its reply.
     pub(super) fn message(&mut self, to_target_id: u32, session: u32, now: Moment) -> Option<u32> {
         let mut explicit = self.explicit.iter_mut();
         let found = explicit.find(|one| one.to_target_id == to_target_id && one.session == session)?;
@@ -98,7 +98,7 @@ impl Connections {
 }
 
 impl Plant {
-    /// Handles a request to the connection manager; returns its reply with the socket items to send next to it.
+    /// Handles a request to the connection manager and returns the reply with the socket items to send along with it.
     pub(super) fn handle_connection(
         &mut self,
         from: (Originator, u32),
@@ -192,7 +192,7 @@ impl Plant {
         Ok((id, vec![Item::SocketToTarget(own)]))
     }
 
-    /// Assemblies 100 and 101, with or without 104 for configuration, and a key that fits.
+    /// Checks that a path names assemblies 100 and 101, optionally 104 for configuration, and that its key fits.
     fn check_path(&mut self, path: &Path) -> Result<(), Refusal> {
         let [configuration, to_target, to_originator] = ASSEMBLIES;
         for segment in &path.0 {
@@ -230,7 +230,7 @@ impl Plant {
         }
     }
 
-    /// Returns the layout, with or without parameter words in both directions.
+    /// Returns the layout of an open request, with or without parameter words in both directions.
     fn layout(&self, open: &ForwardOpen) -> Result<Layout, Refusal> {
         let topology = self.station.topology();
         let layouts = [true, false].map(|pkw| Layout { topology, pkw, order: self.order });
@@ -279,7 +279,7 @@ impl Plant {
     }
 }
 
-/// Returns the address for cyclic data as requested by the originator, or else the originator's address and the usual
+/// Returns the address for cyclic data that the originator requested, or else the originator's address with the usual
 /// port.
 fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> SocketAddrV4 {
     match requested {
@@ -289,8 +289,8 @@ fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> Socket
     }
 }
 
-/// Unwraps the request in an Unconnected_Send: time-out, length, request padded to whole words, and a route, which is
-/// ignored.
+/// Unwraps the request in an Unconnected_Send, which consists of time-out, length, request padded to whole words, and
+/// an ignored route.
 fn wrapped(data: &[u8]) -> Result<Request, GeneralStatus> {
     let [_, _, low, high, rest @ ..] = data else { return Err(GeneralStatus::TOO_SHORT) };
     let length = usize::from(u16::from_le_bytes([*low, *high]));

@@ -43,15 +43,15 @@ impl Cyclic {
         }
     }
 
-    /// Returns when the next packet is due.
+    /// Returns the time at which the next packet is due.
     pub(super) const fn due(&self) -> Moment {
         self.next
     }
 }
 
 impl Plant {
-    /// Sends the packets that are due, each with the state of the drives at its time. The connection of a lost master
-    /// is closed.
+    /// Sends the packets that are due, each with the state of the drives at its time, and closes the connection of a
+    /// lost master.
     pub(super) fn produce(&mut self) {
         while let Some(cyclic) = self.connections.cyclic.as_mut() {
             let at = cyclic.next.min(self.now);
@@ -73,7 +73,7 @@ impl Plant {
                 data: self.station.image(at).emit(cyclic.layout),
             };
             let to = cyclic.to;
-            if self.speaks() {
+            if self.can_send() {
                 self.send(at, to, packet.emit());
             }
         }
@@ -81,7 +81,7 @@ impl Plant {
 
     pub(super) fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]) {
         self.advance(now);
-        if !self.hears() || !self.arrives() {
+        if !self.can_receive() || !self.is_delivered() {
             return;
         }
         match IoPacket::parse(packet, RealTimeFormat::Header) {

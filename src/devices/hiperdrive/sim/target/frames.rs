@@ -8,9 +8,10 @@ use crate::buses::ethernet_ip::protocol::{
     SocketAddress,
 };
 
-/// The only encapsulation service: CIP over TCP, and cyclic data over UDP. Item 0100h: version, capability, name.
+/// ListServices item (0100h) with version, capability and name. The only service carries CIP over TCP and cyclic data
+/// over UDP.
 const SERVICES: (u16, [u8; 20]) = (0x0100, *b"\x01\x00\x20\x01Communications\0\0");
-/// Attribute 8 of the identity object: operational.
+/// Value of attribute 8 of the identity object for an operational device.
 const OPERATIONAL: u8 = 3;
 /// Status for an unknown path segment.
 const PATH_SEGMENT: GeneralStatus = GeneralStatus::new(0x04);
@@ -44,7 +45,7 @@ impl Plant {
         })
     }
 
-    /// Handles a frame in a datagram, replying to list commands only; returns whether it is a frame.
+    /// Handles a frame in a datagram and returns whether the datagram is a frame. Only list commands are answered.
     pub(super) fn answer_datagram(&mut self, from: SocketAddrV4, frame: &Frame) -> bool {
         let asked = matches!(frame.command, Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES);
         if asked && frame.options == 0 {
@@ -92,7 +93,7 @@ impl Plant {
         Body::List(Items(items))
     }
 
-    /// Parses the items of a frame in its own session.
+    /// Parses the items of a frame that belongs to the originator's own session.
     fn items(&self, from: Originator, frame: &Frame) -> Result<Items, Refusal> {
         if self.sessions.get(&frame.session) != Some(&from) {
             return Err(EncapsulationStatus::NO_SESSION);
@@ -113,7 +114,7 @@ impl Plant {
         Ok(Body::Data { interface: 0, timeout_s: 0, items: Items(items) })
     }
 
-    /// Handles SendUnitData, or returns `None` for an unknown connection.
+    /// Handles SendUnitData. Returns `None` for an unknown connection.
     fn connected(&mut self, from: Originator, frame: &Frame) -> Result<Option<Body>, Refusal> {
         let items = self.items(from, frame)?;
         let [Item::ConnectedAddress(connection), Item::ConnectedData(data), ..] = items.0.as_slice() else {
@@ -129,7 +130,7 @@ impl Plant {
         Ok(Some(Body::Data { interface: 0, timeout_s: 0, items }))
     }
 
-    /// Handles a CIP message; returns its reply with the socket items to send next to it.
+    /// Handles a CIP message and returns the reply with the socket items to send along with it.
     fn message(
         &mut self,
         from: (Originator, u32),

@@ -34,8 +34,8 @@ use crate::sim::line::Queue;
 use crate::sim::{ByteDevice, DatagramDevice, Faults};
 use crate::units::Moment;
 
-/// TCP connection to a virtual adapter or hub, and the datagrams of all of them. Created from a [`Config`];
-/// [`connection`](Self::connection) gives one of another originator, and so does a clone.
+/// A TCP connection of one originator to a virtual adapter or hub, and the datagrams of all originators. Created from a
+/// [`Config`]; [`connection`](Self::connection) and cloning create the connection of another originator.
 #[derive(Debug)]
 pub struct Target {
     shared: Arc<Mutex<Plant>>,
@@ -49,14 +49,14 @@ pub struct Target {
 pub struct Figures {
     /// Whole frames over TCP.
     pub frames: u64,
-    /// Streams that were no frames.
+    /// Number of streams that were not frames.
     pub broken: u64,
     pub packets: u64,
-    /// Packets of the connection that were older than an earlier one, or repeated.
+    /// Number of packets of the connection that were repeated or older than an earlier packet.
     pub stale: u64,
-    /// Datagrams that were neither a packet nor a frame, or of a wrong length.
+    /// Number of datagrams that were neither a packet nor a frame, or had a wrong length.
     pub malformed: u64,
-    /// Packets of a connection that there is not.
+    /// Number of packets for a connection that does not exist.
     pub foreign: u64,
 }
 
@@ -65,7 +65,7 @@ impl Target {
         Target::to(Arc::new(Mutex::new(Plant::new(config))), Ipv4Addr::LOCALHOST)
     }
 
-    /// Creates the connection of another originator with this address to the same device.
+    /// Creates a connection of another originator, with this address, to the same device.
     pub fn connection(&self, peer: Ipv4Addr) -> Self {
         Target::to(self.shared.clone(), peer)
     }
@@ -75,23 +75,23 @@ impl Target {
         Target { shared, originator, receiver: Receiver::default(), to_host: Queue::default(), ended: false }
     }
 
-    /// Reads the station, or changes it in a way that no bus can.
+    /// Gives access to the station, for reading it or for changes that are not possible over a bus.
     pub fn with<T>(&self, work: impl FnOnce(&mut Station) -> T) -> T {
         work(&mut self.lock().station)
     }
 
-    /// Switches the supply off and on: sessions, connections and unsaved values are lost.
+    /// Switches the supply off and on. Sessions, connections and unsaved values are lost.
     pub fn power_cycle(&self) {
         self.lock().power_cycle();
     }
 
-    /// Sets the address over TCP and UDP, which it reports and where it receives cyclic data.
+    /// Sets the TCP and UDP address that the device reports and at which it receives cyclic data.
     pub fn listen(&self, at: SocketAddrV4) {
         let mut plant = self.lock();
         (plant.listens, plant.udp) = (at, at.port());
     }
 
-    /// Replaces the faults, for a cable that is repaired or breaks later. Frames and saves keep their counts.
+    /// Replaces the faults, as for a cable that is repaired or breaks later. The counts of frames and saves are kept.
     pub fn set_faults(&self, faults: &Faults) {
         self.lock().set_faults(faults);
     }

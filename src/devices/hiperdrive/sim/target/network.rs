@@ -11,7 +11,7 @@ use crate::buses::ethernet_ip::protocol::{
 };
 use crate::devices::hiperdrive::protocol::AddressSwitch;
 
-/// The source of the address, and the address.
+/// Address source and address of the virtual device.
 #[derive(Debug)]
 pub(super) struct Network {
     switch: u8,
@@ -29,14 +29,15 @@ const NONE: InterfaceConfiguration = InterfaceConfiguration {
     domain: String::new(),
 };
 const NETWORK: Ipv4Addr = Ipv4Addr::new(255, 255, 255, 0);
-/// The address that a virtual DHCP or BOOTP server assigns.
+/// Address assigned by a virtual DHCP or BOOTP server.
 const GIVEN: Ipv4Addr = Ipv4Addr::new(192, 168, 1, 200);
-/// Attribute 1: an address was obtained; attribute 2: BOOTP, DHCP, settable.
+/// Value of attribute 1 of the TCP/IP object: an address was obtained. Attribute 2, below, means BOOTP, DHCP and
+/// settable.
 const CONFIGURED: u32 = 1;
 const CAPABILITY: u32 = 0x15;
 const ETHERNET_LINK: u16 = 0xF6;
 const MEGABITS: u32 = 100;
-/// Attribute 2 of the Ethernet link: active, full duplex.
+/// Value of attribute 2 of the Ethernet link object for an active, full-duplex link.
 const LINK_UP: u32 = 0x03;
 
 impl Network {
@@ -64,7 +65,7 @@ impl Network {
             if stored { self.stored.clone() } else { InterfaceConfiguration { address: GIVEN, mask: NETWORK, ..NONE } };
     }
 
-    /// Restores the factory settings; the address is kept until the supply is switched.
+    /// Restores the factory settings. The address is kept until the supply is switched.
     pub(super) fn factory(&mut self) {
         (self.control, self.stored) = (dhcp(), NONE);
     }

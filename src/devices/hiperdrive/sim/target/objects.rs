@@ -7,19 +7,19 @@ use crate::buses::ethernet_ip::protocol::{
 };
 use crate::devices::hiperdrive::protocol::{Access, ParameterNumber, ParameterRow, VENDOR, Value};
 
-/// A communications adapter, of ODVA's list.
+/// Device type of a communications adapter, from ODVA's list.
 const DEVICE_TYPE: u16 = 0x0C;
 /// Chosen (`U`).
 const PRODUCT_CODE: u16 = 1;
 const REVISION: Revision = Revision { major: 1, minor: 2 };
-/// Bits 7 to 4 of the status word without a cyclic connection, and with a running one; bit 0: the connection has an
-/// owner.
+/// Bits 7 to 4 of the status word without a cyclic connection and with a running connection. Bit 0 means that the
+/// connection has an owner.
 const NOT_CONNECTED: u16 = 0x0030;
 const CONNECTED: u16 = 0x0061;
 const ETHERNET_LINK: u16 = 0xF6;
-/// CIP class of the device parameters; that of drive n is n higher.
+/// CIP class of the device parameters. The class of the parameters of drive n is n higher.
 const PARAMETERS: u16 = 0x64;
-/// The attribute can only be set.
+/// Status for an attribute that can only be set.
 const NOT_GETTABLE: GeneralStatus = GeneralStatus::new(0x2C);
 
 type Answer = Result<Vec<u8>, GeneralStatus>;
@@ -108,7 +108,7 @@ impl Plant {
     }
 }
 
-/// Returns class and attribute of a path to the only instance of an object.
+/// Returns class and attribute of a path that refers to the only instance of an object.
 pub(super) fn object(path: &Path) -> Result<(u16, Option<u16>), GeneralStatus> {
     let understood = |segment: &Segment| match segment {
         Segment::Logical { kind, .. } => *kind != LogicalKind::ConnectionPoint,

@@ -85,12 +85,12 @@ impl Plant {
         }
     }
 
-    /// Handles a frame received over TCP; returns its reply with the time of sending, if there is one and it gets
-    /// through.
+    /// Handles a frame received over TCP. Returns the reply with its time of sending, unless there is no reply or a
+    /// fault drops it.
     pub(super) fn take(&mut self, now: Moment, from: Originator, frame: &Frame) -> Option<(Moment, Vec<u8>)> {
         self.advance(now);
         self.figures.frames += 1;
-        if !self.hears() {
+        if !self.can_receive() {
             return None;
         }
         let reply = self.answer(from, frame)?;
@@ -134,23 +134,23 @@ impl Plant {
         self.datagrams = Queue::default();
     }
 
-    /// Counts an arrival; returns whether the target receives it.
-    pub(super) fn hears(&mut self) -> bool {
-        let speaks = self.speaks();
+    /// Counts an arrival and returns whether the target receives it.
+    pub(super) fn can_receive(&mut self) -> bool {
+        let speaks = self.can_send();
         self.heard = self.heard.saturating_add(1);
         speaks && !self.station.is_dead(self.now)
     }
 
-    pub(super) fn speaks(&self) -> bool {
+    pub(super) fn can_send(&self) -> bool {
         !self.station.is_cut_off() && self.faults.silent_after().is_none_or(|count| self.heard < count)
     }
 
-    pub(super) fn arrives(&mut self) -> bool {
+    pub(super) fn is_delivered(&mut self) -> bool {
         self.faults.passage(&mut self.rng, 0).carried.is_some()
     }
 
-    /// Applies the faults to a packet. Ethernet delivers a packet completely or not at all, so a fault of one byte on a
-    /// serial line affects all bytes.
+    /// Applies the faults to a packet. Ethernet delivers a packet completely or not at all, so a fault that affects one
+    /// byte on a serial line affects all bytes here.
     pub(super) fn carry(&mut self, mut bytes: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.passage(&mut self.rng, 0);
         let carried = passage.carried?;
@@ -164,7 +164,7 @@ impl Plant {
         Some(bytes)
     }
 
-    /// Sends a datagram at the given moment, if it gets through.
+    /// Sends a datagram at the given moment, unless a fault drops it.
     pub(super) fn send(&mut self, at: Moment, to: SocketAddrV4, bytes: Vec<u8>) {
         if let Some(bytes) = self.carry(bytes) {
             self.datagrams.insert(at + self.faults.delay(), (to, bytes));

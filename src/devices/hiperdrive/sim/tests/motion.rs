@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::devices::hiperdrive::protocol::State;
 
-/// Reference 3 and 9: the start sequence with its status words. 2.5 turns at 35 rpm, with 0.1 s each for acceleration and
-/// braking (0.0583 turns): 0.2 + (2.5 − 0.0583) / 0.58333 s = 4.386 s.
+/// Reference 3 and 9: the start sequence with its status words. 2.5 turns at 35 rpm, with 0.1 s each for acceleration
+/// and braking (0.0583 turns): 0.2 + (2.5 − 0.0583) / 0.58333 s = 4.386 s.
 #[test]
 fn published_start_sequence_works() {
     let mut bench = Bench::single();
@@ -95,8 +95,8 @@ fn a_start_needs_speed_and_torque() {
     }
 }
 
-/// Reference 3: a run ends at the range, an endless one does not; clearing bit 12 after it starts a job to a stale target,
-/// and 0400 avoids it.
+/// Reference 3: a run ends at the range, an endless one does not; clearing bit 12 after it starts a job to a stale
+/// target, and 0400 avoids it.
 #[test]
 fn leaving_speed_mode_directly_starts_a_stale_job() {
     let mut bench = Bench::single();

@@ -140,8 +140,8 @@ fn saved_parameters_survive_a_power_cycle() {
     assert_eq!(bench.write(47, 2), Err(Refused::Value));
 }
 
-/// Issue 21.6 (d): 47 = −1 and −2 concern the parameters that the adapter or hub stores itself (manual, 47): its registers,
-/// which drives are requested (152), their baud rate (190). Scale, limits and reference of a drive stay.
+/// Issue 21.6 (d): 47 = −1 and −2 concern the parameters that the adapter or hub stores itself (manual, 47): its
+/// registers, which drives are requested (152), their baud rate (190). Scale, limits and reference of a drive stay.
 #[test]
 fn the_device_recalls_only_its_own_parameters() {
     let own = [24, 152, 190];
@@ -166,8 +166,8 @@ fn the_device_recalls_only_its_own_parameters() {
     }
 }
 
-/// Issue 21.6 (d): a reset has no effect on the position that was set, saved or not; the factory state makes it that of the
-/// shaft, between 0 and 1 turn (manual, 198).
+/// Issue 21.6 (d): a reset has no effect on the position that was set, saved or not; the factory state makes it that of
+/// the shaft, between 0 and 1 turn (manual, 198).
 #[test]
 fn a_set_position_survives_a_reset() {
     let mut bench = Bench::single();

@@ -7,9 +7,9 @@ use crate::app::Language;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DriveRequest {
-    /// Write parameters, by the numbers of drive 1, through a plan that does not save.
+    /// Write parameters, by their numbers for drive 1, through a plan that does not save.
     Try(Vec<(u16, i64)>),
-    /// Set the position at the present location of the drive, without saving.
+    /// Assign a position to the present location of the drive, without saving.
     SetPosition(i32),
     ConfirmLimits,
     Move(i32),
@@ -19,17 +19,17 @@ pub enum DriveRequest {
     /// Write the previous values back, without saving.
     Restore(Vec<(u16, i64)>),
     Acknowledge,
-    /// Note that the supply was off, as stated by the user.
+    /// Record the user's statement that the supply was off.
     BelieveRestart,
     PowerCycle,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {
-    /// Execute the task of the step: request, write or save.
+    /// Execute the task of the current step, which is a request, a write or a save.
     Do,
     Confirm,
-    /// Widen the limits to the travel of the drive.
+    /// Widen the limits to the full travel of the drive.
     Widen,
     Go(TestTarget),
     Take,
@@ -45,13 +45,13 @@ pub enum AxisAction {
     Begin,
     Edit(Box<Entries>),
     Press(Button),
-    /// Adopt the present position as the limit of the step.
+    /// Adopt the present position as the limit that the current step sets.
     TakePlace,
     Next,
     Skip,
     Back,
     Cancel,
-    /// Ask where to save the report of a finished run.
+    /// Ask where to save the report of a completed set-up.
     AskReport,
     SaveReport(PathBuf, Language),
 }

@@ -4,7 +4,7 @@
 use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 
-/// A parameter, by the number of drive 1.
+/// A parameter, identified by its number for drive 1, whose value differs from the saved value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Difference {
     pub number: u16,
@@ -13,7 +13,7 @@ pub struct Difference {
 }
 
 impl DriveFacts {
-    /// Returns the values known to differ from the saved ones, by number.
+    /// Returns the values known to differ from the saved values, by number.
     pub fn differences(&self) -> Vec<Difference> {
         let difference = |(number, saved): (&u16, &i64)| {
             let now = *self.values.get(number)?;
@@ -23,13 +23,13 @@ impl DriveFacts {
     }
 }
 
-/// Returns whether the position that was set is known to differ from the saved one.
+/// Returns whether the position that was set is known to differ from the saved position.
 pub(super) fn is_position_different(seen: &DriveFacts) -> bool {
     seen.differences().iter().any(|own| own.number == REFERENCE)
 }
 
-/// Returns the values to write to restore the previous state. The reference is left to the user: writing it assigns the
-/// number to the present location of the axis (manual, 198), which anywhere else would be a wrong zero.
+/// Returns the values to write in order to restore the previous state. The reference is left to the user: writing it
+/// assigns the number to the present location of the axis (manual, 198), which anywhere else would be a wrong zero.
 pub(super) fn values_to_restore(seen: &DriveFacts) -> Vec<(u16, i64)> {
     let differences = seen.differences().into_iter().filter(|own| own.number != REFERENCE);
     differences.map(|own| (own.number, own.saved)).collect()

@@ -10,22 +10,22 @@ use crate::units::Moment;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveFacts {
     pub connected: bool,
-    /// A job is running, or a review is open.
+    /// Whether a job is running or a review is open.
     pub busy: bool,
-    /// Whether the parameters may differ from those that were read.
+    /// Whether the parameters may differ from the values read.
     pub stale: bool,
     pub is_virtual: bool,
     pub controlled: bool,
     pub moves: bool,
-    /// The act of a held jog button, and its direction.
+    /// The act and direction of a held jog button.
     pub held: Option<(u64, Direction)>,
     pub actual: Option<Actual>,
-    /// Time of the last report on the session's clock, if known.
+    /// Time of the last report from the drive on the session's clock, if known.
     pub actual_at: Option<Moment>,
     pub position: Option<i32>,
-    /// Parameters of the drive as last read, by the numbers of drive 1.
+    /// Parameters of the drive as last read, by their numbers for drive 1.
     pub values: BTreeMap<u16, i64>,
-    /// Saved values known to differ from those written since, by the numbers of drive 1.
+    /// Saved values known to differ from those written since, by their numbers for drive 1.
     pub unsaved: BTreeMap<u16, i64>,
     /// Number of times this program has set the position.
     pub times_set: u32,
@@ -40,7 +40,7 @@ pub struct DriveFacts {
     pub family: Option<Family>,
     pub locks: Vec<Lock>,
     pub ended: Option<(u64, Ended)>,
-    /// Latest error since the acknowledgement, if it was read.
+    /// Latest error since the last acknowledgement, if it was read.
     pub error: Option<ErrorCode>,
 }
 
@@ -49,12 +49,12 @@ impl DriveFacts {
         self.connected && !self.busy && !self.stale
     }
 
-    /// Returns whether the drive has failed and does not move until the fault is acknowledged.
+    /// Returns whether the drive has failed and cannot move until the fault is acknowledged.
     pub fn has_failed(&self) -> bool {
         self.actual.is_some_and(|actual| matches!(actual.status.state(), State::Fault | State::Locked))
     }
 
-    /// Returns the ruler: in millimetres if the user has confirmed a pitch.
+    /// Returns the ruler of the drive, in millimetres if the user has confirmed a pitch.
     pub fn ruler(&self) -> Option<Ruler> {
         Some(Ruler { scale: self.scale?, pitch: self.pitch })
     }

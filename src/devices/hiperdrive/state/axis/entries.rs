@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::state::ruler::{Measure, PositionRangeError, Rule
 /// Typed values in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entries {
-    /// Pitch of the spindle, per turn.
+    /// Pitch of the spindle in length per turn.
     pub pitch: String,
     /// Length of a step.
     pub resolution: String,
@@ -25,11 +25,11 @@ pub struct Preview {
     /// Parameters 154 and 156.
     pub scale: PositionScale,
     pub ruler: Ruler,
-    /// Lower limit for the set-up: the travel of the drive.
+    /// Lower limit for the set-up, given by the travel of the drive.
     pub lower: i32,
     /// As `lower`.
     pub upper: i32,
-    /// Present limits under the new scale in millimetres, if their numbers do not change.
+    /// Present limits in millimetres under the new scale, if their numbers do not change.
     pub unchanged: Option<(f64, f64)>,
 }
 
@@ -37,12 +37,12 @@ pub struct Preview {
 pub struct Reference {
     /// Position as entered.
     pub asked: i32,
-    /// Position as accepted by the drive: a multiple of 64 steps.
+    /// Position as accepted by the drive, a multiple of 64 steps.
     pub becomes: i32,
 }
 
 impl Entries {
-    /// Creates the initial entries with the known data of the spindle. No pitch is proposed, since an unconfirmed one
+    /// Creates the initial entries from the known data of the spindle. No pitch is proposed, since an unconfirmed pitch
     /// would yield wrong measurements.
     pub(super) fn new(ruler: Option<Ruler>) -> Self {
         let known = ruler.and_then(|own| Some((own.pitch?, own)));
@@ -53,7 +53,7 @@ impl Entries {
         Entries { pitch, resolution, reference: "0".to_owned(), ..Entries::default() }
     }
 
-    /// Returns the entries with the decimal sign of a language.
+    /// Returns the entries with the decimal separator of a language.
     pub fn shown(&self, language: Language) -> Self {
         let shown = |text: &String| signed(text, language);
         Entries {
@@ -68,15 +68,15 @@ impl Entries {
     /// Returns the pitch of the spindle.
     ///
     /// # Errors
-    /// Why the entry is invalid.
+    /// Explains why the entry is invalid.
     pub fn pitch(&self) -> Result<Length, Text> {
         length("hd_axis.pitch", &self.pitch, 1000.0)
     }
 
-    /// Returns the result of pitch and resolution.
+    /// Returns the values that result from the entered pitch and resolution.
     ///
     /// # Errors
-    /// Why the entries are invalid.
+    /// Explains why the entries are invalid.
     pub fn preview(&self, seen: &DriveFacts) -> Result<Preview, Text> {
         let (pitch, step) = (self.pitch()?, length("hd_axis.resolution", &self.resolution, 100.0)?);
         let scale = PositionScale::for_spindle(pitch, step).map_err(|why| words::scale(&why))?;
@@ -92,10 +92,10 @@ impl Entries {
         Ok(Preview { scale, ruler, lower, upper, unchanged })
     }
 
-    /// Returns the number that the present location of the axis would get.
+    /// Returns the number to assign to the present location of the axis.
     ///
     /// # Errors
-    /// Explains why the number is invalid, or outside the limits.
+    /// Explains why the number is invalid or outside the limits.
     pub fn reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<Reference, Text> {
         let asked = position("hd_axis.reference", &self.reference, ruler)?;
         let (low, high) = limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
@@ -110,7 +110,7 @@ impl Entries {
     /// Returns the lower limit.
     ///
     /// # Errors
-    /// Why the entry is invalid.
+    /// Explains why the entry is invalid.
     pub fn lower(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
         position("hd_axis.lower", &self.lower, ruler)
     }
@@ -118,19 +118,19 @@ impl Entries {
     /// Returns the upper limit.
     ///
     /// # Errors
-    /// Why the entries are invalid.
+    /// Explains why the entries are invalid.
     pub fn upper(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
         position("hd_axis.upper", &self.upper, ruler)
     }
 }
 
-/// Returns a number without trailing zeros.
+/// Formats a number without trailing zeros.
 fn trimmed(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns steps as an entry, with enough decimals to distinguish steps.
+/// Formats a number of steps as an entry, with enough decimals to distinguish steps.
 pub(super) fn typed(ruler: Ruler, steps: i32) -> Option<String> {
     let decimals = ruler.decimals(Measure::Millimetres);
     Some(format!("{:.decimals$}", ruler.of(steps.into(), Measure::Millimetres)?))

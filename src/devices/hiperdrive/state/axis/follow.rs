@@ -15,9 +15,9 @@ impl Axis {
         }
     }
 
-    /// Adopts the present position of the axis as the limit of this step.
+    /// Adopts the present position of the axis as the limit that the current step sets.
     pub(crate) fn take_limit(&mut self, seen: &DriveFacts) {
-        if self.may_take_place(seen).is_err() {
+        if self.check_can_adopt_place(seen).is_err() {
             return;
         }
         let Some((ruler, position)) = seen.ruler().zip(seen.position) else { return };
@@ -29,16 +29,16 @@ impl Axis {
         }
     }
 
-    /// Goes to the next step if this one is complete; `when` is the time as written in the report.
+    /// Goes to the next step if the current step is complete; `when` is the time as written in the report.
     pub(crate) fn go_on(&mut self, seen: &DriveFacts, when: &str) {
-        if self.over.is_none() && self.may_go_on(seen).is_ok() {
+        if self.over.is_none() && self.check_can_continue(seen).is_ok() {
             self.leave(seen, false, when);
         }
     }
 
-    /// Skips this step, if allowed.
+    /// Skips the current step, if allowed.
     pub(crate) fn skip(&mut self, seen: &DriveFacts, when: &str) {
-        if self.over.is_none() && self.may_skip(seen) {
+        if self.over.is_none() && self.can_skip(seen) {
             self.leave(seen, true, when);
         }
     }
@@ -65,9 +65,9 @@ impl Axis {
         }
     }
 
-    /// Goes to the previous step, or to the one that must be repeated. Written values are kept.
+    /// Goes to the previous step or to a step that must be repeated. Written values are kept.
     pub(crate) fn back(&mut self, seen: &DriveFacts) {
-        if self.over.is_some() || !self.may_go_back(seen) {
+        if self.over.is_some() || !self.can_go_back(seen) {
             return;
         }
         if let Some(step) = self.invalidated_text().or_else(|| self.step.neighbour(-1)) {
@@ -140,7 +140,7 @@ impl Axis {
         }
     }
 
-    /// Records that taught limits were confirmed by the review of their plan.
+    /// Records that the user confirmed the taught limits by approving their plan.
     fn agree(&mut self, values: &[(u16, i64)], whole: bool) {
         let value = |own: u16| {
             let (_, value) = values.iter().find(|(number, _)| *number == own)?;
@@ -156,7 +156,7 @@ impl Axis {
         }
     }
 
-    /// Records that a request was not written; `begun` tells whether a part of it may have been.
+    /// Records that a request was not written; `begun` tells whether part of it may have been.
     pub(crate) fn handle_write_failure(&mut self, begun: bool) {
         match self.asked.take() {
             Some(DriveRequest::Try(values)) if begun => {
@@ -186,13 +186,13 @@ impl Axis {
         self.power = self.power.map(Power::gone);
     }
 
-    /// Records that all parameters were read; `switched` tells whether the virtual supply has been off since.
+    /// Records that all parameters were read; `switched` tells whether the virtual supply has been switched since.
     pub(crate) fn surveyed(&mut self, seen: &DriveFacts, switched: bool) {
         self.power = self.power.map(|power| power.back(seen, switched));
     }
 
-    /// Processes the present data of the drive: the travel, the end of a test move, and whether all results are still
-    /// valid.
+    /// Processes the present data of the drive, updating the travel, the end of a test move, and the validity of all
+    /// results.
     pub(crate) fn look(&mut self, seen: &DriveFacts) {
         if self.over.is_some() {
             return;
@@ -215,7 +215,7 @@ impl Axis {
         self.settle(seen);
     }
 
-    /// Discards results that no longer match the drive, and adopts those that do.
+    /// Discards results that no longer match the drive and adopts those that do.
     fn settle(&mut self, seen: &DriveFacts) {
         if !seen.is_settled() || self.asked.is_some() {
             return;
@@ -236,7 +236,8 @@ impl Axis {
         }
     }
 
-    /// Undoes the results of this step and the later ones; `taught` tells whether taught entries are discarded as well.
+    /// Undoes the results of the given step and all later steps; `taught` tells whether taught entries are discarded as
+    /// well.
     fn undo_from(&mut self, step: AxisStep, taught: bool) {
         if step <= AxisStep::Confirm {
             self.confirmed = None;

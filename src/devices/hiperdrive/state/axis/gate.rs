@@ -11,11 +11,11 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, 
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 
-/// Minimum time for which a step is shown before it can be left.
+/// Minimum time for which a step is shown before the user can leave it.
 const SETTLES: Duration = Duration::from_millis(600);
 
 impl Axis {
-    /// Returns the request of a button.
+    /// Returns the request that a button triggers.
     ///
     /// # Errors
     /// Explains why the button cannot be pressed now.
@@ -116,7 +116,7 @@ impl Axis {
         }
     }
 
-    /// Returns both taught limits, after checking that the axis is between them.
+    /// Returns both taught limits after checking that the axis is between them.
     fn taught_limits(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
         let (low, high) = (self.entries.lower(ruler)?, self.entries.upper(ruler)?);
@@ -135,7 +135,7 @@ impl Axis {
     /// Checks whether the axis may be moved.
     ///
     /// # Errors
-    /// Explains why it may not.
+    /// Explains why the axis may not be moved.
     pub fn may_move(&self, seen: &DriveFacts) -> Result<(), Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
@@ -163,8 +163,8 @@ impl Axis {
     /// Checks whether the present location of the axis can become a limit.
     ///
     /// # Errors
-    /// Explains why it cannot.
-    pub fn may_take_place(&self, seen: &DriveFacts) -> Result<(), Text> {
+    /// Explains why the location cannot become a limit.
+    pub fn check_can_adopt_place(&self, seen: &DriveFacts) -> Result<(), Text> {
         if let Some(step) = self.invalidated_text() {
             return Err(words::invalidated_text(step));
         }
@@ -177,8 +177,8 @@ impl Axis {
         seen.position.map(|_| ()).ok_or_else(|| TEXTS.text("hd_axis.no_position"))
     }
 
-    /// Checks whether a step that has been shown for the given time can be left, forward or back, since a second click
-    /// belongs to the previous step.
+    /// Checks whether a step has been shown for long enough to be left, forward or back. A second click within that
+    /// time was meant for the previous step.
     ///
     /// # Errors
     /// Returns the remaining time.
@@ -189,21 +189,21 @@ impl Axis {
         }
     }
 
-    /// Returns whether the previous step can be shown now.
-    pub fn may_go_back(&self, seen: &DriveFacts) -> bool {
+    /// Returns whether the user can go back to the previous step now.
+    pub fn can_go_back(&self, seen: &DriveFacts) -> bool {
         self.step != AxisStep::Request && self.asked.is_none() && !seen.moves
     }
 
-    /// Returns whether the step can be skipped now.
-    pub fn may_skip(&self, seen: &DriveFacts) -> bool {
+    /// Returns whether the current step can be skipped now.
+    pub fn can_skip(&self, seen: &DriveFacts) -> bool {
         self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.invalidated_text().is_none()
     }
 
-    /// Checks whether the present step is complete, so that the next one may follow.
+    /// Checks whether the current step is complete, so that the next step may follow.
     ///
     /// # Errors
     /// States what is missing.
-    pub fn may_go_on(&self, seen: &DriveFacts) -> Result<(), Text> {
+    pub fn check_can_continue(&self, seen: &DriveFacts) -> Result<(), Text> {
         let lacks = |holds: bool, id: &'static str| if holds { Ok(()) } else { Err(TEXTS.text(id)) };
         if self.asked.is_some() {
             return Err(TEXTS.text("hd_axis.busy"));
@@ -250,7 +250,7 @@ impl Axis {
         }
     }
 
-    /// Returns whether the user has confirmed the present limits of the drive under its present scale.
+    /// Returns whether the user has confirmed the present limits of the drive under the present scale.
     pub(super) fn is_confirmed(&self, seen: &DriveFacts) -> bool {
         let (Some(own), Some((low, high))) = (&self.confirmed, seen.limits) else { return false };
         let (agreed, begun) = (own.agreed, own.begun.unwrap_or(own.agreed));

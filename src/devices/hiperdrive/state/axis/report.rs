@@ -16,8 +16,8 @@ pub struct Device {
 const COLUMNS: usize = 78;
 const INDENT: &str = "   ";
 
-/// Returns the report of a finished run, or `None` while it is running. Values written back since are reported as in
-/// `now`.
+/// Returns the report of a completed set-up, or `None` while it is running. Values written back since then are reported
+/// as in `now`.
 pub fn report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language) -> Option<String> {
     let over = axis.over()?;
     let seen = &over.seen;
@@ -60,7 +60,7 @@ fn step_lines(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) {
 /// Returns what was written, whether it is saved, and what now differs from the saved values.
 pub fn end_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     let mut lines = Vec::new();
-    match (axis.changes().is_empty(), words::returned(axis, now)) {
+    match (axis.changes().is_empty(), words::write_back_text(axis, now)) {
         (true, None) => lines.push(TEXTS.text("hd_axis.nothing_written")),
         (true, Some(returned)) => lines.push(returned),
         (false, returned) => {
@@ -74,7 +74,7 @@ pub fn end_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     }
     lines.extend(words::differences(now));
     lines.extend(words::place_left(axis, now));
-    lines.extend(words::unexplained(axis, axis.as_seen(now)));
+    lines.extend(words::unexplained_change_text(axis, axis.as_seen(now)));
     lines
 }
 
@@ -88,7 +88,7 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// Writes a text in as many lines as required.
+    /// Writes a text, wrapped to as many lines as required.
     fn line(&mut self, indent: &str, text: &Text) {
         let mut line = String::new();
         for word in text.words(self.language).split_whitespace() {

@@ -11,52 +11,52 @@ use crate::devices::hiperdrive::procedures::dead_man::SETTLE;
 use crate::devices::hiperdrive::protocol::{PositionScale, StatusBit};
 use crate::units::Moment;
 
-/// Maximum speed of a shaft: the largest value of parameter 166.
+/// Maximum speed of a shaft in rpm, the largest value of parameter 166.
 const FASTEST_RPM: f64 = 35.0;
-/// Time without a reading after which an axis may have moved and come to rest again.
+/// Time without a reading in which an axis may have moved and come to rest again.
 const UNREAD: Duration = Duration::from_secs(1);
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Standstill {
     last: Option<StandstillReading>,
-    /// Whether the connection was lost since: the clock of a session is only valid for that session.
+    /// Whether the connection has been lost since the reading. The clock of a session is valid only for that session.
     interrupted: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct StandstillReading {
-    /// Time of the reading, or `None` if it was part of a complete reading after a loss of the connection.
+    /// Time of the reading, or `None` if the reading was part of a complete reading after a loss of the connection.
     at: Option<Moment>,
     position: i32,
     scale: PositionScale,
     origin: Origin,
-    /// Last act of the user that had ended.
+    /// Last act of the user that had ended by then.
     act: Option<u64>,
 }
 
-/// A change of position that no motion explains.
+/// A change of position that cannot be explained by motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PositionChange {
-    /// A change farther than the shaft can turn in the elapsed time: the reference was set again.
+    /// A change greater than the shaft can turn in the elapsed time. The reference was set again.
     Jump,
-    /// Number of steps by which the position changed while it was not read: the axis was moved, or its reference was
+    /// Number of steps by which the position changed while it was not read. The axis was moved, or its reference was
     /// set again.
     Unexplained(i64),
 }
 
 impl Standstill {
-    /// Notes that the connection was lost.
+    /// Records that the connection was lost.
     pub(super) const fn interrupt(&mut self) {
         self.interrupted = true;
     }
 
-    /// Discards the last standstill, because the drive was off and may have been turned by hand. The power-cycle check
+    /// Discards the last standstill because the drive was off and may have been turned by hand. The power-cycle check
     /// compares the position itself.
     pub(super) fn forget(&mut self) {
         *self = Standstill::default();
     }
 
-    /// Processes a reading; returns the change since the previous one if no motion explains it.
+    /// Processes a reading. Returns the change since the previous reading if it cannot be explained by motion.
     pub(super) fn note(&mut self, seen: &DriveFacts, origin: Origin) -> Option<PositionChange> {
         let (actual, position, scale, at) = (seen.actual?, seen.position?, seen.scale?, seen.actual_at);
         if at.is_none() && !self.interrupted {

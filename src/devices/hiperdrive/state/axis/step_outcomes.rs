@@ -5,8 +5,8 @@ use super::{AxisStep, DriveFacts};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
-/// Origin of positions: the position set last (198), how often one was set by this program, and how often the position
-/// jumped at standstill, which alone reveals a reference set again to the same number.
+/// Origin of positions, given by the position set last (198), the number of times this program set a position, and the
+/// number of jumps at standstill. Only a jump reveals a reference set again to the same number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Origin {
     set: Option<i64>,
@@ -19,7 +19,7 @@ pub(super) struct Preconditions {
     pub(super) requested: Option<bool>,
     pub(super) scale: Option<PositionScale>,
     pub(super) pitch: Option<Length>,
-    /// Whether the limits of the drive are confirmed under this scale.
+    /// Whether the limits of the drive are confirmed under the present scale.
     pub(super) confirmed: bool,
     pub(super) origin: Origin,
     pub(super) limits: Option<(i32, i32)>,
@@ -32,7 +32,7 @@ struct StepOutcome {
     skipped: bool,
 }
 
-/// Results, from the first step on without a gap.
+/// Results of consecutive steps, starting with the first step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepOutcomes(Vec<StepOutcome>);
 
@@ -43,7 +43,7 @@ impl Origin {
 }
 
 impl StepOutcomes {
-    /// Returns the first step without a result, or `None` if all have one.
+    /// Returns the first step without a result, or `None` if all steps have a result.
     pub(super) fn end(&self) -> Option<AxisStep> {
         AxisStep::ALL.get(self.0.len()).copied()
     }
@@ -56,8 +56,8 @@ impl StepOutcomes {
         self.0.get(step.index()).is_some_and(|made| made.skipped)
     }
 
-    /// Records the result of a step; returns whether it differs from the previous one, which voids the results after
-    /// it.
+    /// Records the result of a step. Returns whether it differs from the previous result, in which case the results of
+    /// later steps are void.
     pub(super) fn make(&mut self, step: AxisStep, on: Preconditions, skipped: bool) -> bool {
         let made = StepOutcome { on, skipped };
         let before = self.0.get(step.index()).copied();
@@ -71,7 +71,7 @@ impl StepOutcomes {
         before.is_some()
     }
 
-    /// Discards results that no longer match the present facts; returns the first of these steps.
+    /// Discards results that no longer match the present facts and returns the first affected step.
     pub(super) fn fall(&mut self, now: &Preconditions) -> Option<AxisStep> {
         let holds = |(step, made): (&AxisStep, &StepOutcome)| is_unchanged(*step, &made.on, now);
         let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| holds(*own)).count();
@@ -81,8 +81,8 @@ impl StepOutcomes {
     }
 }
 
-/// Returns whether the facts of the drive on which a step depends are unchanged. Facts of earlier steps are checked
-/// there.
+/// Returns whether the facts of the drive on which a step depends are unchanged. Facts of earlier steps are checked for
+/// those steps.
 fn is_unchanged(step: AxisStep, on: &Preconditions, now: &Preconditions) -> bool {
     match step {
         AxisStep::Request => now.requested == Some(true),

@@ -5,34 +5,34 @@ use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
 use crate::devices::hiperdrive::protocol::{Factory, PARAMETERS, PositionScale};
 
-/// Parameter that reveals a restart of the drive: it is never saved, so only a restart restores its factory setting
+/// Parameter that reveals a restart of the drive. It is never saved, so only a restart restores its factory setting
 /// (manual, 182), and it moves nothing.
 pub(super) const MARK: u16 = HAND_DRIVE_WAIT;
 
 /// Angle in degrees by which a drive may readjust its position at power-up and after a stop (manual, 8.3).
 pub(super) const READJUSTS: f64 = 5.0;
 
-/// The facts before the supply is switched off.
+/// Facts of the drive before the supply is switched off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StateBeforePowerOff {
     scale: Option<PositionScale>,
     limits: Option<(i32, i32)>,
     position: Option<i32>,
-    /// [`MARK`] was not as from the factory.
+    /// Whether [`MARK`] differed from its factory setting.
     marked: bool,
 }
 
-/// The evidence that the supply was off.
+/// Evidence that the supply was off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restart {
-    /// Proven by a reading: parameter 182 has its factory setting again.
+    /// The restart is proven by a reading, in which parameter 182 has its factory setting again.
     Read,
     Switched,
-    /// Stated by the user; no reading proves it.
+    /// The restart is stated by the user and not proven by a reading.
     Said,
-    /// Unproven: the connection was lost, which can have other causes.
+    /// The restart is unproven. The connection was lost, which can have other causes.
     Unproven,
-    /// Disproved: parameter 182 still has the value that only a restart removes.
+    /// The restart is disproved, since parameter 182 still has a value that any restart removes.
     Disproved,
 }
 
@@ -45,7 +45,7 @@ pub enum Power {
     Back {
         before: StateBeforePowerOff,
         kept: bool,
-        /// Steps between the positions before and after, or `None` if one of them is unknown.
+        /// Steps between the positions before and after the restart, or `None` if one of them is unknown.
         moved: Option<i64>,
         /// Allowed deviation in steps.
         allowed: i64,
@@ -59,7 +59,7 @@ impl Power {
     }
 
     /// Adopts the latest values while the supply is on. As long as the mark is present, the supply has not been off
-    /// since it was set.
+    /// since the mark was set.
     pub(super) fn followed(self, seen: &DriveFacts) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: Restart::Unproven }
@@ -84,8 +84,8 @@ impl Power {
         }
     }
 
-    /// Records that the parameters were read again. Unless something reveals that the supply was off, any reading may
-    /// be the one after the power cycle.
+    /// Records that the parameters were read again. Unless something shows that the supply was off, any reading may be
+    /// the first one after the power cycle.
     pub(super) fn back(self, seen: &DriveFacts, switched: bool) -> Self {
         let mut before = match self {
             Power::Gone(before) | Power::Back { before, restart: Restart::Unproven | Restart::Disproved, .. } => before,
@@ -110,7 +110,7 @@ impl Power {
         }
     }
 
-    /// Adopts the statement of the user that the supply was off, if nothing proves or disproves it.
+    /// Adopts the user's statement that the supply was off, if nothing proves or disproves the statement.
     pub(super) const fn confirmed_by_user(self) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: Restart::Unproven } => {
@@ -132,7 +132,7 @@ pub(super) fn is_marked(seen: &DriveFacts) -> Option<bool> {
     Some(*seen.values.get(&MARK)? != from_the_factory()?)
 }
 
-/// Returns the value that marks a drive, next to the factory setting.
+/// Returns a value that marks a drive, which is next to the factory setting.
 pub(super) fn mark() -> Option<i64> {
     from_the_factory().map(|value| value + 1)
 }

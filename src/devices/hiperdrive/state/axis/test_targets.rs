@@ -17,27 +17,27 @@ pub struct Outcome {
     pub target: i32,
     pub position: i32,
     pub ended: Ended,
-    /// Allowed deviation from the target in steps: 1° (reference 5, repeatability).
+    /// Allowed deviation from the target in steps, corresponding to 1° (reference 5, repeatability).
     pub allowed: i64,
 }
 
 /// Distance in steps by which an axis was jogged. Only motion while a button is held counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Travel {
-    /// Farthest upward distance of a single jog; 0 until it is significant.
+    /// Farthest upward distance of a single jog, or 0 until the distance is significant.
     pub up: i64,
     pub down: i64,
-    /// Whether turning clockwise counts up, or `None` if not observed yet.
+    /// Whether clockwise rotation counts up, or `None` if not observed yet.
     pub clockwise_is_up: Option<bool>,
-    /// The act that moves the axis, and the position at its start.
+    /// The act that moves the axis, and the position when the act started.
     from: Option<(u64, i32)>,
 }
 
 impl TestTarget {
-    /// All targets, in the order of the test.
+    /// All test targets, in the order of the test.
     pub const ALL: [TestTarget; 3] = [TestTarget::Middle, TestTarget::Lower, TestTarget::Upper];
 
-    /// Returns the number of steps between two limits.
+    /// Returns the target as a step position between two limits.
     pub const fn between(self, low: i32, high: i32) -> i32 {
         match self {
             TestTarget::Middle => low.midpoint(high),
@@ -48,7 +48,7 @@ impl TestTarget {
 }
 
 impl Outcome {
-    /// Returns the number of steps between target and position.
+    /// Returns the number of steps by which the position misses the target.
     pub fn position_deviation(&self) -> i64 {
         i64::from(self.position) - i64::from(self.target)
     }
@@ -59,7 +59,7 @@ impl Outcome {
 }
 
 impl Travel {
-    /// Processes the position of the drive. Less than a 64th of a turn is not significant.
+    /// Processes the position of the drive. Travel of less than a 64th of a turn is not significant.
     pub(super) fn note(&mut self, seen: &DriveFacts) {
         let (Some((act, direction)), Some(position), Some(scale)) = (seen.held, seen.position, seen.scale) else {
             self.from = None;

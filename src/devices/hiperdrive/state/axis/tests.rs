@@ -86,7 +86,7 @@ fn press(axis: &mut Axis, seen: &mut DriveFacts, button: Button) -> DriveRequest
 
 #[track_caller]
 fn next(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
-    assert_eq!(axis.may_go_on(seen), Ok(()));
+    assert_eq!(axis.check_can_continue(seen), Ok(()));
     go_on(axis, seen);
     assert_eq!(axis.step(), step);
 }
@@ -115,12 +115,12 @@ fn a_step_is_shown_for_a_minimum_time() {
     let ms = Duration::from_millis;
     assert_eq!([0, 599, 600].map(|age| Axis::may_leave(ms(age))), [Err(ms(600)), Err(ms(1)), Ok(())]);
     let (mut axis, mut seen) = until_jog();
-    assert!(axis.may_go_back(&seen));
+    assert!(axis.can_go_back(&seen));
     seen.moves = true;
-    assert!(!axis.may_go_back(&seen), "it moves");
+    assert!(!axis.can_go_back(&seen), "it moves");
     seen.moves = false;
     axis = run();
-    assert!(!axis.may_go_back(&seen), "nothing is before the first step");
+    assert!(!axis.can_go_back(&seen), "nothing is before the first step");
 }
 
 /// A proposed step has the same decimal sign as the numbers beside it, and is accepted in either language.
@@ -154,7 +154,7 @@ fn until_jog() -> (Axis, DriveFacts) {
     let values = vec![(154, 400), (156, 256), (158, -204_400), (160, 204_400)];
     assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(values));
     confirm_spindle(&mut axis, &mut seen);
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_confirm");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_confirm");
     press(&mut axis, &mut seen, Button::Confirm);
     next(&mut axis, &seen, AxisStep::Jog);
     (axis, seen)
@@ -175,7 +175,7 @@ fn until_test() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = until_jog();
     press(&mut axis, &mut seen, Button::Take);
     jog(&mut axis, &mut seen, 500, Direction::Clockwise);
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_down");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_down");
     jog(&mut axis, &mut seen, 100, Direction::Counterclockwise);
     assert_eq!((axis.travel().up, axis.travel().down), (500, 400));
     assert_eq!(axis.travel().clockwise_is_up, Some(true));
@@ -184,14 +184,14 @@ fn until_test() -> (Axis, DriveFacts) {
     // 100 steps become 128: the nearest multiple of 64.
     assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::SetPosition(128));
     next(&mut axis, &seen, AxisStep::Lower);
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "entry.missing");
     at(&mut seen, -1000);
     axis.take_limit(&seen);
     assert_eq!(axis.entries().lower, "-10.00");
     next(&mut axis, &seen, AxisStep::Upper);
     at(&mut seen, 2000);
     axis.take_limit(&seen);
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_limits");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_limits");
     assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(158, -1000), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
     (axis, seen)
@@ -212,7 +212,7 @@ fn go(axis: &mut Axis, seen: &mut DriveFacts, place: TestTarget, ends: i32) {
 fn until_power() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = until_test();
     for (place, ends) in [(TestTarget::Middle, 500), (TestTarget::Lower, -1001), (TestTarget::Upper, 2002)] {
-        assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_test");
+        assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_test");
         go(&mut axis, &mut seen, place, ends);
     }
     next(&mut axis, &seen, AxisStep::Save);
@@ -226,7 +226,7 @@ fn until_power() -> (Axis, DriveFacts) {
 #[test]
 fn a_new_drive_is_set_up_to_survive_a_power_cycle() {
     let (mut axis, mut seen) = until_power();
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_power");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_power");
     // Reading without switching off proves nothing.
     axis.surveyed(&seen, false);
     assert!(matches!(axis.power(), Some(Power::On(_))));
@@ -264,7 +264,7 @@ fn values_lost_in_a_power_cycle_are_reported() {
         change(&mut seen);
         axis.surveyed(&seen, false);
         assert!(!axis.survived() && axis.reached(AxisStep::PowerCycle) == Reached::Failed);
-        assert!(axis.may_go_on(&seen).is_err());
+        assert!(axis.check_can_continue(&seen).is_err());
         words::found(&axis, AxisStep::PowerCycle, &seen).unwrap().id()
     };
     assert_eq!(survive(|seen| at(seen, 2002 + 7)), "hd_axis.power_moved");
@@ -290,7 +290,7 @@ fn impossible_steps_are_refused_with_a_reason() {
     for button in [Button::Do, Button::Widen, Button::Go(TestTarget::Lower), Button::Give, Button::Recall] {
         assert_eq!(why(&axis, &seen, button), "hd_axis.moving", "{button:?}");
     }
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.moving");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.moving");
     seen.moves = false;
     assert_eq!(why(&axis, &seen, Button::PowerCycle), "hd_axis.not_virtual");
     seen.is_virtual = true;
@@ -343,7 +343,9 @@ fn a_test_that_misses_its_target_does_not_count() {
     assert_eq!((axis.going(), axis.outcome(TestTarget::Upper)), (Some(TestTarget::Upper), None));
     seen.ended = Some((9, Ended::Stopped));
     axis.look(&seen);
-    assert!(axis.outcome(TestTarget::Upper).is_some_and(|own| !own.is_good()) && axis.may_go_on(&seen).is_err());
+    assert!(
+        axis.outcome(TestTarget::Upper).is_some_and(|own| !own.is_good()) && axis.check_can_continue(&seen).is_err()
+    );
 }
 
 #[test]
@@ -428,13 +430,13 @@ fn every_step_has_instructions_and_a_result() {
         }
     }
     let found = |step| words::found(&axis, step, &seen).unwrap().words(Language::English);
-    assert_eq!(found(AxisStep::Scale), "The drive's scaling is 400/256, or 400 steps per turn.");
+    assert_eq!(found(AxisStep::Scale), "The drive's scaling is 400/256 (400 steps per turn).");
     assert_eq!(
         found(AxisStep::Confirm),
-        "The drive's limits are -2044.00 mm … 2044.00 mm.",
+        "The drive's limits are -2044.00 mm to 2044.00 mm.",
         "those that were looked at"
     );
-    assert_eq!(found(AxisStep::Upper), "The drive's limits are -10.00 mm … 20.00 mm.");
+    assert_eq!(found(AxisStep::Upper), "The drive's limits are -10.00 mm to 20.00 mm.");
     assert_eq!(found(AxisStep::Jog), "Moved 5.00 mm up, 4.00 mm down. The position increases clockwise.");
     assert_eq!(found(AxisStep::Test), "Positions reached: 3 of 3, at most 0.02 mm off target.");
 }

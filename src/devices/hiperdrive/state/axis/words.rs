@@ -153,7 +153,7 @@ pub fn invalidated_text(step: AxisStep) -> Text {
     text.with_text("step", title(step)).with_text("why", why)
 }
 
-/// Describes the fault of the drive with its code if known, or returns `None` without a fault.
+/// Describes the fault of the drive, with its code if known, or returns `None` without a fault.
 pub fn fault(seen: &DriveFacts) -> Option<Text> {
     if !seen.has_failed() {
         return None;
@@ -166,7 +166,7 @@ pub fn fault(seen: &DriveFacts) -> Option<Text> {
     Some(text.with_text("name", words.name).with_text("remedy", words.remedy))
 }
 
-/// Describes speed and torque of the pads and of the test, as sent.
+/// Describes the speed and torque sent for the jog buttons and the test.
 pub fn effort(id: &'static str) -> Text {
     let Effort { speed, torque } = Effort::JOG;
     TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
@@ -182,7 +182,7 @@ pub fn outcome(outcome: &Outcome, seen: &DriveFacts) -> Text {
     TEXTS.text("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
 }
 
-/// Lists the values known to differ from the saved ones, or returns `None` if there are none.
+/// Lists the values known to differ from the saved values, or returns `None` if there are none.
 pub fn differences(seen: &DriveFacts) -> Option<Text> {
     let difference = |own: super::differences::Difference| {
         let id = if own.number == REFERENCE { "hd_axis.differs_place" } else { "hd_axis.differs" };
@@ -192,8 +192,8 @@ pub fn differences(seen: &DriveFacts) -> Option<Text> {
     (!all.is_empty()).then(|| TEXTS.text("hd_axis.unsaved").with_list("differences", all))
 }
 
-/// Describes the outcome of writing back, or returns `None` if nothing was written back.
-pub fn returned(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
+/// Describes the outcome of writing values back, or returns `None` if none were written back.
+pub fn write_back_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     if axis.returned.is_empty() {
         return None;
     }
@@ -211,7 +211,7 @@ pub fn place_left(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
 }
 
 /// Returns a message if the position has changed since the reference while it was not read.
-pub fn unexplained(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
+pub fn unexplained_change_text(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let way = axis.unexplained?;
     Some(TEXTS.text("hd_axis.unexplained").with_text("way", millimetres(seen.ruler(), way)))
 }
@@ -224,7 +224,7 @@ pub fn place(place: TestTarget) -> Text {
     })
 }
 
-/// Lists all changes, if any; for a parameter that was written again, with its present value.
+/// Lists all changes, if any. A parameter that was written more than once is listed with its present value.
 pub fn changes(axis: &Axis) -> Text {
     let number = |own: &AxisChange| match own {
         AxisChange::Parameter(number, _) => *number,
@@ -244,7 +244,7 @@ fn change(own: &AxisChange) -> Text {
     }
 }
 
-/// Returns steps in millimetres, with enough decimals to distinguish steps; as steps if the spindle is not known.
+/// Formats steps in millimetres, with enough decimals to distinguish steps, or as steps if the spindle is unknown.
 pub fn millimetres(ruler: Option<Ruler>, steps: i64) -> Text {
     match ruler.and_then(|ruler| Some((ruler.of(steps, Measure::Millimetres)?, ruler))) {
         Some((value, ruler)) => {

@@ -101,7 +101,7 @@ fn out_of_range_text(id: &'static str, error: &OutOfRange) -> Text {
     named(id, error.number).with("value", error.value).with_text("range", range(error.range))
 }
 
-/// Returns a text about a parameter with its number and name.
+/// Returns a message about a parameter, with its number and name.
 pub(super) fn named(id: &'static str, number: ParameterNumber) -> Text {
     TEXTS.text(id).with("number", number).with_text("name", parameter(number))
 }

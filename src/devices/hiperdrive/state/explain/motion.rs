@@ -109,7 +109,7 @@ pub fn phase(phase: Phase) -> Text {
     }
 }
 
-/// Text ids of [`lost`]; these notices end once control is taken again.
+/// Text IDs used by [`lost`]. These notices end once control is taken again.
 pub const LOST: [&str; 6] =
     ["hd_lost.silent", "hd_lost.port", "hd_lost.does_not_stand", "hd_lost.session", "hd_lost.failed", "hd_end.lost"];
 

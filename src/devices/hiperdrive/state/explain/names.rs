@@ -39,7 +39,7 @@ pub fn status_bit(bit: StatusBit) -> Text {
     })
 }
 
-/// Returns the meaning of a control word bit when set; bits 4 to 6 differ in speed mode.
+/// Returns the meaning of a control word bit when set. Bits 4 to 6 have a different meaning in speed mode.
 pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
     TEXTS.text(match (bit, speed_mode) {
         (ControlBit::On, _) => "hd_bit.control_on",
@@ -62,11 +62,11 @@ pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
 pub struct ErrorExplanation {
     pub name: Text,
     pub cause: Text,
-    /// Remedy, to be applied before acknowledging the error.
+    /// Remedy to apply before acknowledging the error.
     pub remedy: Text,
 }
 
-/// Returns the texts for an error of the buffer: name, cause and remedy.
+/// Returns the name, cause and remedy of an error in the error buffer.
 pub fn error(code: ErrorCode) -> ErrorExplanation {
     let (name, cause, remedy) = match code {
         ErrorCode::OVER_CURRENT => ("hd_error.over_current", "hd_cause.over_current", "hd_remedy.over_current"),

@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 
 const UNKNOWN: &str = "hd_status_name.unknown";
 
-/// Returns the code and the name of an encapsulation status.
+/// Returns code and name of an encapsulation status.
 pub(super) fn frame(status: EncapsulationStatus) -> Text {
     let name = match status.code() {
         0x00 => "hd_status_name.frame_00",
@@ -24,7 +24,7 @@ pub(super) fn frame(status: EncapsulationStatus) -> Text {
     coded_name(format!("0x{:08X}", status.code()), name)
 }
 
-/// Returns code and name of a CIP status, and of its extended status.
+/// Returns code and name of a CIP status and of its extended status.
 pub(super) fn refusal(refusal: &Refusal) -> Text {
     let status = general(refusal.status);
     let words: Vec<Text> = match (refusal.extended.as_slice(), refusal.row()) {

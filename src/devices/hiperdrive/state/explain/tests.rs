@@ -37,7 +37,7 @@ fn invalid_input_names_cause_and_remedy() {
         "Parameter 166 (Maximum speed) cannot be set to 351. Allowed: 5 to 350."
     );
     let outside = PlanError::PositionOutside { drive: ONE, position: 5000, lower: 0, upper: 4000 };
-    assert!(english(&plan(&outside)).starts_with("Drive 1 is at 5000, outside the limits 0 to 4000"));
+    assert!(english(&plan(&outside)).starts_with("Drive 1 is at 5000 and would reject the limits 0 to 4000"));
     let read_only = PlanError::ReadOnly { item: Item(number(107)) };
     assert_eq!(english(&plan(&read_only)), "Parameter 107 (Actual position) is read-only. Choose another parameter.");
     assert_eq!(
@@ -95,11 +95,11 @@ fn errors_name_cause_and_remedy() {
     for (language, said) in [
         (
             Language::English,
-            "The value of parameter 107 (Actual position) has the wrong length (bytes received: 2, expected: 4)",
+            "Parameter 107 (Actual position) was not used, because its value has the wrong length (bytes received: 2, expected: 4)",
         ),
         (
             Language::German,
-            "Der Wert von Parameter 107 (Istposition) hat die falsche Länge (Bytes empfangen: 2, erwartet: 4)",
+            "Parameter 107 (Istposition) wurde nicht verwendet, weil sein Wert die falsche Länge hat (Bytes empfangen: 2, erwartet: 4)",
         ),
     ] {
         assert!(wrong_length(&length).words(language).starts_with(said), "{}", wrong_length(&length).words(language));

@@ -93,7 +93,7 @@ fn of_types(types: &OtherType, whole: &'static str, of_drive: &'static str) -> T
     }
 }
 
-/// Returns why something cannot be planned; nothing was written.
+/// Explains why a plan cannot be made. Nothing was written.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {

@@ -6,17 +6,17 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, 
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
-/// An edit. Each is one step, however much it changes.
+/// An edit. Each edit is a single undo step, however much it changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edit {
     Set(ParameterNumber, i64),
-    /// Return a parameter to the value of the device or the profile.
+    /// Revert a parameter to the value of the device or the profile.
     Revert(ParameterNumber),
     Leave(ParameterNumber),
-    /// Set both limits of a drive at once, if they cannot be set one after another.
+    /// Set both limits of a drive at once, for limits that cannot be set one after the other.
     Limits {
         drive: DriveNumber,
-        /// In steps of the edited scale.
+        /// Lower limit, in steps of the edited scale.
         lower: i64,
         upper: i64,
     },
@@ -28,31 +28,31 @@ pub enum Edit {
     },
 }
 
-/// How limits change with the size of a step.
+/// How limits change when the size of a step changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitsPolicy {
     InPlace,
     AsNumbers,
 }
 
-/// Why an edit is refused. Nothing has changed then.
+/// Reason why an edit is refused. Nothing has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
-    /// No values of the device were read.
+    /// No values of the device have been read.
     #[error("nothing has been read yet")]
     NothingRead,
-    /// The manual has no parameter with this number.
+    /// The manual does not list a parameter with this number.
     #[error("there is no parameter {0}")]
     Unknown(ParameterNumber),
     /// The value of this parameter has not been read.
     #[error("parameter {0} has not been read")]
     NotRead(ParameterNumber),
-    /// Read-only, or an action without a stored value.
+    /// The parameter is read-only, or is an action without a stored value.
     #[error("parameter {0} is not set as a value")]
     NotAValue(ParameterNumber),
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// The upper limit would not exceed the lower limit.
+    /// The upper limit would not be greater than the lower limit.
     #[error("the lower limit {lower} is not below the upper limit {upper}")]
     Crossed { lower: i64, upper: i64 },
 }

@@ -8,18 +8,18 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale, Travel};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
-/// A finding that the user should check. An edit may cause it, since another scale moves limits.
+/// A finding that the user should check. An edit can cause one, for example because another scale moves the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mark {
     /// A value from a profile or an earlier edit is not allowed.
     OutOfRange(OutOfRange),
-    /// The upper limit does not exceed the lower limit.
+    /// The upper limit is not greater than the lower limit.
     Crossed { drive: DriveNumber, lower: i64, upper: i64 },
-    /// The drive is outside its edited limits, which it would refuse.
+    /// The drive is outside its edited limits and would refuse them.
     Outside { drive: DriveNumber, position: i64, lower: i64, upper: i64 },
-    /// The scale has changed but the limits have the same numbers, which now denote other positions.
+    /// The scale has changed but the limits have kept their numbers, which now denote other positions.
     LimitsMove { drive: DriveNumber, lower: (f64, f64), upper: (f64, f64) },
-    /// Parameter 186 is 255: the drive would continue after a loss of the connection, so this program does not move it.
+    /// Parameter 186 is 255. The drive would continue after a loss of the connection, so this program does not move it.
     NoTimeout { drive: DriveNumber },
 }
 
@@ -38,7 +38,7 @@ impl Mark {
 }
 
 impl Staged {
-    /// Returns all findings; `position` returns the position of a drive in steps of its present scale.
+    /// Returns all findings; `position` gives the position of a drive in steps of its present scale.
     pub fn marks(&self, position: impl Fn(DriveNumber) -> Option<i64>) -> Vec<Mark> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let mut of_drives = Vec::new();

@@ -26,22 +26,22 @@ pub(super) fn content_ui(
 ) {
     let step = shown.axis.step();
     if step.moves() {
-        control(ui, theme, shown, actions);
+        control_ui(ui, theme, shown, actions);
     }
     if step.jogs() {
-        pads(ui, theme, shown, actions);
+        pads_ui(ui, theme, shown, actions);
     }
     match step {
         AxisStep::Scale => {
-            number(ui, theme, "hd_axis.pitch", &mut entries.pitch);
-            number(ui, theme, "hd_axis.resolution", &mut entries.resolution);
+            number_ui(ui, theme, "hd_axis.pitch", &mut entries.pitch);
+            number_ui(ui, theme, "hd_axis.resolution", &mut entries.resolution);
         }
-        AxisStep::Confirm => limits(ui, theme, shown, actions),
-        AxisStep::Reference => number(ui, theme, "hd_axis.reference", &mut entries.reference),
-        AxisStep::Lower => number(ui, theme, "hd_axis.lower", &mut entries.lower),
-        AxisStep::Upper => number(ui, theme, "hd_axis.upper", &mut entries.upper),
-        AxisStep::Test => test(ui, theme, shown, actions),
-        AxisStep::PowerCycle => power(ui, theme, shown, actions),
+        AxisStep::Confirm => limits_ui(ui, theme, shown, actions),
+        AxisStep::Reference => number_ui(ui, theme, "hd_axis.reference", &mut entries.reference),
+        AxisStep::Lower => number_ui(ui, theme, "hd_axis.lower", &mut entries.lower),
+        AxisStep::Upper => number_ui(ui, theme, "hd_axis.upper", &mut entries.upper),
+        AxisStep::Test => test_ui(ui, theme, shown, actions),
+        AxisStep::PowerCycle => power_ui(ui, theme, shown, actions),
         AxisStep::Request | AxisStep::Jog | AxisStep::Save => {}
     }
     if matches!(
@@ -49,15 +49,15 @@ pub(super) fn content_ui(
         AxisStep::Request | AxisStep::Scale | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Save
     ) {
         ui.add_space(theme.space.inside);
-        ui.horizontal_wrapped(|ui| buttons(ui, theme, shown, actions));
+        ui.horizontal_wrapped(|ui| buttons_ui(ui, theme, shown, actions));
     }
 }
 
-/// Draws the buttons of the step, in one line if there is room.
-fn buttons(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+/// Draws the buttons of the step, on one line if there is room.
+fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if matches!(step, AxisStep::Lower | AxisStep::Upper) {
-        let allowed = shown.axis.may_take_place(shown.seen);
+        let allowed = shown.axis.check_can_adopt_place(shown.seen);
         if allowed_button(ui, theme, &allowed, icons::TARGET, &say(theme, "hd_axis.take_place")).clicked() {
             shown.push(actions, Run::TakePlace);
         }
@@ -67,12 +67,12 @@ fn buttons(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
         shown.button(ui, theme, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
     }
     if step == AxisStep::Request {
-        super::recall(ui, theme, shown, actions);
+        super::recall_ui(ui, theme, shown, actions);
     }
-    super::skip(ui, theme, shown, actions);
+    super::skip_ui(ui, theme, shown, actions);
 }
 
-/// Draws the results of the entries and of the step so far, without clickable widgets.
+/// Draws the messages about the entries and the results of the step so far, without clickable widgets.
 pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let step = shown.axis.step();
     if step.jogs() {
@@ -80,7 +80,7 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, e
     }
     match step {
         AxisStep::Scale => scale(ui, theme, shown, entries),
-        AxisStep::Reference => reference(ui, theme, shown, entries),
+        AxisStep::Reference => reference_ui(ui, theme, shown, entries),
         AxisStep::Test => {
             for own in TestTarget::ALL {
                 let Some(outcome) = shown.axis.outcome(own) else { continue };
@@ -94,8 +94,8 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, e
     }
 }
 
-/// Draws the button that takes control. Nothing moves without the cyclic connection, nor in a fault.
-fn control(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+/// Draws the button that takes control. Nothing moves without the cyclic connection, nor during a fault.
+fn control_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = say(theme, "hd_axis.take");
         shown.button(ui, theme, Button::Take, (icons::PLUGS_CONNECTED, &word), actions);
@@ -109,7 +109,7 @@ fn may_jog(shown: &AxisPicture<'_>, direction: Direction) -> Result<(), Text> {
     shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_jog(shown.axis.drive(), direction))
 }
 
-/// Draws why the jog buttons are blocked, or what they do.
+/// Draws the reason why the jog buttons are blocked, or what they do.
 fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| may_jog(shown, own).err());
     if let Some(outside) = shown.unit.outside_words(shown.axis.drive()) {
@@ -119,9 +119,9 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
         && shown.seen.controlled
         && shown.axis.invalidated_text().is_none()
         // Shown above already.
-        && shown.axis.may_go_on(shown.seen).err().as_ref() != Some(&why)
+        && shown.axis.check_can_continue(shown.seen).err().as_ref() != Some(&why)
     {
-        super::warning(ui, theme, &why);
+        super::warning_ui(ui, theme, &why);
     }
     if let Some(status) = shown.unit.current_or_last_request(shown.axis.drive()) {
         let ink = if status.is_well { theme.palette.muted } else { theme.palette.warn };
@@ -129,8 +129,8 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     }
 }
 
-/// Draws the two hold buttons for slow and weak jogging.
-fn pads(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+/// Draws the two hold-to-run buttons, which jog slowly and with low torque.
+fn pads_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     let caption = theme.words(&words::effort("hd_axis.jog_hold"));
     ui.horizontal(|ui| {
@@ -147,12 +147,12 @@ fn pads(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
     ui.add_space(theme.space.inside);
 }
 
-fn number(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String) {
+fn number_ui(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String) {
     let word = say(theme, id);
     entry(ui, theme, &word, |ui| text_entry(ui, text, NUMBER, &word, ""));
 }
 
-/// Draws pitch and resolution, and the resulting values before they are written.
+/// Draws pitch and resolution, and the values that result from them before they are written.
 fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     if entries.pitch.trim().is_empty() {
         return;
@@ -183,7 +183,7 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries)
     }
 }
 
-fn limits(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn limits_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| words::millimetres(shown.seen.ruler(), steps.into());
     let range = |(low, high): (i32, i32)| {
         theme.words(&TEXTS.text("hd_axis.range").with_text("low", mm(low)).with_text("high", mm(high)))
@@ -198,7 +198,7 @@ fn limits(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec
     });
 }
 
-fn reference(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
+fn reference_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let ruler = shown.seen.ruler();
     match entries.reference(ruler, shown.seen.limits) {
         Ok(own) if own.asked != own.becomes => {
@@ -211,7 +211,7 @@ fn reference(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entr
     }
 }
 
-fn test(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn test_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| theme.words(&words::millimetres(shown.seen.ruler(), steps.into()));
     for own in TestTarget::ALL {
         let word = theme.words(&words::place(own));
@@ -237,8 +237,8 @@ fn test(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
     }
 }
 
-/// Draws the supply, which is switched here for a virtual device, and by hand for a real one.
-fn power(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+/// Draws the control of the supply, which is switched here for a virtual device and by hand for a real one.
+fn power_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = theme.words(&words::button(AxisStep::PowerCycle));
         shown.button(ui, theme, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
@@ -251,6 +251,6 @@ fn power(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<
             let word = say(theme, "hd_axis.restarted");
             shown.button(ui, theme, Button::Restarted, (icons::POWER, &word), actions);
         }
-        super::skip(ui, theme, shown, actions);
+        super::skip_ui(ui, theme, shown, actions);
     });
 }

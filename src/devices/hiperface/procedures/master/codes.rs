@@ -7,16 +7,16 @@ use crate::devices::hiperface::protocol::{Answer, Reply, Request, StatusCode};
 
 /// Maximum number of codes in the queue of an encoder, plus one to detect its end.
 const MOST_CODES: usize = 5;
-/// Number of replies without a new code after which the queue is abandoned.
+/// Number of replies without a new code after which reading the queue is abandoned.
 const MOST_REPEATED: u32 = 5;
 /// Length of a reply to 50h in bytes: address, command, one to four codes, checksum.
 const REPLY: std::ops::RangeInclusive<usize> = 4..=7;
 
-/// Codes in a reply to 50h, and whether more follow.
+/// Status codes in a reply to 50h, and whether more codes follow.
 type Codes = (Vec<StatusCode>, bool);
 
 impl Master<'_> {
-    /// Reads the complete queue into the station: 50h until the error bit is cleared.
+    /// Reads the complete status queue into the station, using 50h until the error bit is cleared.
     ///
     /// # Errors
     /// Every attempt failed, or the user cancelled. Codes received so far are in the station, which also counts those
@@ -37,8 +37,8 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Takes the next codes out of the queue; returns whether more follow. `seen` contains the codes of each reply so
-    /// far.
+    /// Takes the next codes from the queue, and returns whether more codes follow. `seen` contains the codes of each
+    /// reply so far.
     fn next_codes(&mut self, seen: &mut Vec<Vec<StatusCode>>) -> Result<bool, Error> {
         self.detect_echo()?;
         let mut tries = 0;
@@ -77,8 +77,8 @@ impl Master<'_> {
         }
     }
 
-    /// Handles a reply to 50h. One that equals an earlier one in the same queue may be a late duplicate: its codes are
-    /// known, and the reply to the present request may be missing.
+    /// Handles a reply to 50h. A reply equal to an earlier one for the same queue may be a late duplicate, in which
+    /// case its codes are known and the reply to the current request may be missing.
     fn record_reply_codes(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
         if seen.contains(&codes) {
             return;
@@ -93,7 +93,7 @@ impl Master<'_> {
         Ok(self.line.hear_late(&mut self.station.line, tries, quiet)?)
     }
 
-    /// The replies to 50h among bytes that were let pass.
+    /// Returns the replies to 50h among bytes that were skipped.
     fn replies_in(&self, bytes: &[u8]) -> Vec<Codes> {
         let (mut rest, mut found) = (bytes, Vec::new());
         while let [_, behind @ ..] = rest {
@@ -108,9 +108,9 @@ impl Master<'_> {
         found
     }
 
-    /// Returns the reply to 50h at the start of the bytes, and the rest. The checksum also matches the first bytes of
-    /// some replies (01h and 11h from address 40h), so a reply that ends with the bytes, or before the next reply,
-    /// takes precedence.
+    /// Returns the reply to 50h at the start of the bytes, and the remaining bytes. The checksum also matches the first
+    /// bytes of some replies (01h and 11h from address 40h), so a reply that ends with the bytes, or before the next
+    /// reply, takes precedence.
     fn reply_at<'b>(&self, bytes: &'b [u8]) -> Option<(Codes, &'b [u8])> {
         let replies = REPLY.filter_map(|length| bytes.split_at_checked(length)).filter_map(|(frame, behind)| {
             let answer = Request::ReadStatus.parse_reply(self.station.address, frame).ok()?;

@@ -14,13 +14,14 @@ use crate::devices::hiperface::protocol::{Answer, Command, Request, SecretFrame,
 use crate::link::LinkError;
 use crate::units::Moment;
 
-/// The encoder's replies to a request that was damaged on the line. A lost byte 00h leaves the checksum right.
+/// Status codes with which the encoder replies to a request damaged on the line. The loss of a byte 00h leaves the
+/// checksum valid.
 const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
 
 pub(in super::super) enum ExchangeFailure {
-    /// No reply, except possibly the echo.
+    /// No reply was received, except possibly the echo.
     Silence {
-        /// The sent bytes came back.
+        /// Whether the sent bytes were received as an echo.
         echo_heard: bool,
     },
     Damage(Damage),
@@ -32,10 +33,10 @@ pub(in super::super) struct ReceivedAnswer {
     pub(super) at: Moment,
 }
 
-/// The bytes received, without the echo.
+/// Received bytes without the echo.
 struct ReceivedBytes {
     reply: Vec<u8>,
-    /// When the first byte of the reply was complete.
+    /// Time at which the first byte of the reply was complete.
     first_at: Moment,
     echo_heard: bool,
     damage: Option<Damage>,
@@ -72,7 +73,7 @@ impl Master<'_> {
         }))
     }
 
-    /// Determines whether the line echoes, if not known yet.
+    /// Determines whether the line echoes, if not yet known.
     pub(super) fn detect_echo(&mut self) -> Result<(), Error> {
         if self.station.line.echo == Echo::Unknown {
             self.ask(&Request::ReadTypeLabel)?;
@@ -86,17 +87,17 @@ impl Master<'_> {
         Ok(self.line.begin(&mut self.station.line, quiet)?)
     }
 
-    /// Sends a frame, and traces the part that may be shown.
+    /// Sends a frame, and traces the part of it that may be shown.
     pub(super) fn send(&mut self, frame: &SecretFrame, sent_at: Moment) -> Result<(), LinkError> {
         self.line.send(frame.bytes(), frame.masked(), sent_at)
     }
 
-    /// Returns tT, which must exceed the time-out: one bit longer.
+    /// Returns the dead time tT, which must exceed the time-out and is one bit longer.
     fn dead_time(&self) -> Duration {
         self.station.timing().timeout + self.station.format.baud.time_of_bits(1)
     }
 
-    /// Returns the silence after which the line is free.
+    /// Returns the duration of silence after which the line is free.
     pub(super) fn silence_duration(&self) -> Duration {
         self.dead_time() + self.station.line.margin
     }
@@ -139,7 +140,7 @@ impl Master<'_> {
         Ok(self.parse_received_line(&line, request, frame, first_at, intrusion))
     }
 
-    /// Listens during the dead time. Returns true if bytes arrived that belong to no reply.
+    /// Listens during the dead time, and returns whether bytes arrived that belong to no reply.
     fn receive_during_dead_time(&mut self, line: &mut Vec<u8>, frame: &SecretFrame) -> Result<bool, Error> {
         let before = line.len();
         let quiet_until = self.now() + self.dead_time();

@@ -3,7 +3,7 @@
 use super::{PlanError, RestoreOptions};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 
-/// Refuses an encoder other than that of the profile. Encoders without a serial number never match.
+/// Checks that the encoder is the one from which the profile was read. Encoders without a serial number never match.
 ///
 /// # Errors
 /// [`PlanError::OtherDevice`], [`PlanError::OtherType`].
@@ -21,7 +21,7 @@ pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_typ
     Ok(())
 }
 
-/// Refuses an encoder other than that of the profile, unless the options allow it.
+/// Checks that the encoder is the one from which the profile was read, unless the options allow another one.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].

@@ -2,7 +2,7 @@
 
 use crate::devices::hiperface::protocol::CodeNumber;
 
-/// The reason why a profile cannot be restored or an edit cannot be planned.
+/// Reason why a profile cannot be restored or an edit cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another encoder.
@@ -21,7 +21,7 @@ pub enum PlanError {
         /// Type code of the encoder.
         device: u8,
     },
-    /// Only the last field can change its size.
+    /// Only the last field can change size.
     #[error("field {field} has {device} bytes in the encoder and {profile} in the profile, and is not the last")]
     SizeFixed {
         /// Field number.
@@ -36,7 +36,7 @@ pub enum PlanError {
     Gap {
         /// Field number.
         field: u8,
-        /// Number of the field that exists on neither side.
+        /// Number of the field that is missing in both the profile and the encoder.
         missing: u8,
     },
     /// The EEPROM is too small.
@@ -47,12 +47,12 @@ pub enum PlanError {
         /// Number of free bytes.
         free: usize,
     },
-    /// A field must be created again, but its content cannot be read.
+    /// A field would have to be created again, but its content cannot be read.
     #[error("field {field} has to be created again and its content cannot be read: access code {code} is not known")]
     WouldLose {
         /// Field number.
         field: u8,
-        /// Number of its access code.
+        /// Number of the access code that protects the field.
         code: CodeNumber,
     },
     /// Fields can only be created in ascending order.
@@ -60,7 +60,7 @@ pub enum PlanError {
     NotNext {
         /// Requested field number.
         field: u8,
-        /// The only field number that can be created.
+        /// Number of the only field that can be created next.
         next: u8,
     },
     /// Only the last field can be deleted or change its size.
@@ -102,7 +102,7 @@ pub enum PlanError {
     CodeUnknown {
         /// Field number.
         field: u8,
-        /// Number of its access code.
+        /// Number of the access code that protects the field.
         code: CodeNumber,
     },
 }

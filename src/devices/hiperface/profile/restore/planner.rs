@@ -12,7 +12,7 @@ pub(super) struct Planner<'a> {
     pub(super) profile: &'a HiperfaceProfile,
     pub(super) device: &'a DeviceState,
     pub(super) wanted: Vec<FieldImage>,
-    /// Fields whose bytes of unknown meaning are left alone.
+    /// Fields whose bytes of unknown meaning are left unchanged.
     pub(super) left: Vec<u8>,
     pub(super) is_other: bool,
     pub(super) with_mounting: bool,
@@ -25,8 +25,8 @@ pub(super) struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// Removes a field whose bytes are left unchanged from the targets, unless mounting values are written to it. A
-    /// field that the encoder lacks is created without content if another one must be created after it.
+    /// Removes fields whose bytes are left unchanged from the targets, unless mounting values are written to them. A
+    /// field that the encoder lacks is created without content if another field must be created after it.
     pub(super) fn skip_unknown_fields(&mut self) {
         let (profile, device, with_mounting) = (self.profile, self.device, self.with_mounting);
         let left = std::mem::take(&mut self.left);
@@ -87,7 +87,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Returns the first field whose size must change although fields follow it.
+    /// Returns the first field that must change size although other fields follow it.
     pub(super) fn first_to_recreate(&self, allowed: bool) -> Result<Option<u8>, PlanError> {
         let last = self.device.fields.last().map(|field| field.number);
         for target in &self.wanted {
@@ -130,8 +130,8 @@ impl Planner<'_> {
         self.wanted.iter().find(|field| field.number == number)
     }
 
-    /// Returns the target fields: those of the profile and, if fields are created again, those of the encoder that the
-    /// profile lacks.
+    /// Returns the target fields: those of the profile and, if fields are created again, those that exist only in the
+    /// encoder.
     pub(super) fn targets(&self, recreated: Option<u8>) -> Vec<FieldImage> {
         let mut targets = self.wanted.clone();
         if let Some(first) = recreated {
@@ -159,7 +159,8 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Plans a new field. Its content is unknown, so all of it is written; then it is protected if necessary.
+    /// Plans a new field. Since its initial content is unknown, all of it is written before the field is protected, if
+    /// necessary.
     pub(super) fn create(&mut self, target: &FieldImage) {
         let writable = target.status.with_write_enable(true);
         let first = if target.bytes.is_some() { writable } else { target.status };
@@ -212,7 +213,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns the parts of a range that may be written: all, or all except mounting values.
+    /// Returns the parts of a range that may be written: the whole range, or everything except mounting values.
     fn allowed(&mut self, field: u8, range: Range<usize>) -> Vec<Range<usize>> {
         if !self.is_other {
             return vec![range];
@@ -270,7 +271,7 @@ impl Planner<'_> {
     }
 }
 
-/// Adds an index to the last run, or begins a new one.
+/// Adds an index to the last run, or starts a new run.
 fn extend(runs: &mut Vec<Range<usize>>, at: usize) {
     match runs.last_mut() {
         Some(run) if run.end == at => run.end += 1,

@@ -4,8 +4,8 @@ use super::DeviceState;
 use crate::devices::hiperface::profile::{FieldImage, HiperfacePlan, HiperfaceProfile, Op};
 use crate::devices::hiperface::protocol::FreeMemory;
 
-/// Returns the fields to delete, because the write of this backup created them: those unchanged since, from the last
-/// one on; also returns the numbers of the others.
+/// Returns the fields to delete because the write of this backup created them, which are the last fields if unchanged
+/// since, and the numbers of the other created fields.
 pub(super) fn created_fields_to_undo(profile: &HiperfaceProfile, device: &DeviceState) -> (Vec<FieldImage>, Vec<u8>) {
     let (mut undone, mut left) = (Vec::new(), Vec::new());
     for now in device.fields.iter().rev() {
@@ -36,7 +36,7 @@ pub(super) fn delete(field: &FieldImage) -> Op {
     Op::Define { field: field.number, from: Some(field.status), to: field.status.deleted() }
 }
 
-/// Returns the fields that a plan creates and of which it writes every byte.
+/// Returns the fields that a plan creates and fills completely.
 pub fn created_by(plan: &HiperfacePlan) -> Vec<FieldImage> {
     let mut created: Vec<(FieldImage, usize)> = Vec::new();
     let had = |number: u8| plan.base.fields.iter().any(|field| field.number == number);

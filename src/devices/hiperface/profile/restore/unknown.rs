@@ -4,7 +4,7 @@ use super::{DeviceState, RestoreOptions};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile};
 use crate::profile::difference::runs;
 
-/// A data field with differing bytes of unknown meaning, if profile and encoder do not belong to the same device. The
+/// Data field with differing bytes of unknown meaning, if profile and encoder do not belong to the same device. These
 /// bytes may contain an offset between encoder and motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnknownField {
@@ -12,7 +12,7 @@ pub struct UnknownField {
     pub field: u8,
     /// Number of differing bytes of unknown meaning.
     pub bytes: usize,
-    /// Decision of the user: `true` copies the bytes; without a decision they are left out.
+    /// Decision of the user: `true` copies the bytes. Without a decision, the bytes are left out.
     pub answer: Option<bool>,
 }
 
@@ -22,13 +22,13 @@ impl UnknownField {
         self.answer == Some(true)
     }
 
-    /// Returns the item as accepted by `--copy` and `--leave`.
+    /// Returns the item in the form accepted by `--copy` and `--leave`.
     pub fn item(&self) -> FieldRange {
         FieldRange { field: self.field, start: 0, count: None }
     }
 }
 
-/// Returns the data fields of another encoder's profile with bytes that differ and do not belong to the mounting.
+/// Returns the data fields of another encoder's profile that differ in bytes other than mounting values.
 pub(super) fn unknown_fields(
     profile: &HiperfaceProfile,
     device: &DeviceState,

@@ -8,7 +8,7 @@ pub(super) struct Vector {
     pub(super) address: u8,
     pub(super) request: Request,
     pub(super) bytes: &'static str,
-    /// Bytes and meaning of each reply.
+    /// Bytes and decoded meaning of each reply.
     pub(super) replies: Vec<(&'static str, Answer)>,
 }
 
@@ -24,13 +24,13 @@ fn ask(request: Request, bytes: &'static str) -> Vector {
 }
 
 impl Vector {
-    /// Returns a reply without the error bit.
+    /// Adds a reply without the error bit.
     fn says(mut self, bytes: &'static str, reply: Reply) -> Self {
         self.replies.push((bytes, Answer::Reply { pending: false, reply }));
         self
     }
 
-    /// Returns a reply with the error bit.
+    /// Adds a reply with the error bit.
     fn warns(mut self, bytes: &'static str, reply: Reply) -> Self {
         self.replies.push((bytes, Answer::Reply { pending: true, reply }));
         self
@@ -94,7 +94,7 @@ fn type_label(encoder_type: u8) -> Reply {
     Reply::TypeLabel(TypeLabel { settings, encoder_type, eeprom_units: 0x80, options: 0x01 })
 }
 
-/// Returns all requests of the reference with their replies.
+/// Returns all requests of the reference, with their replies.
 #[rustfmt::skip]
 pub(super) fn vectors() -> Vec<Vector> {
     let serial = SerialLabel {
@@ -210,7 +210,7 @@ fn requests_and_replies_match_the_table() {
     }
 }
 
-/// Access codes are never shown, so this checks that the equality above really compares them.
+/// Requests with different access codes compare as unequal, although the codes are never shown.
 #[test]
 fn requests_with_other_codes_are_not_equal() {
     assert_ne!(read(1, 5, 2, CODE), read(1, 5, 2, CODE_66));

@@ -4,8 +4,8 @@ use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::tests::Host;
 use crate::devices::hiperface::sim::AtAdapter;
 
-/// The reference's status request and its reply; the times are those of HIPERFACE: eleven bits per character, 44 bits of
-/// silence, half of the five milliseconds that the command may take.
+/// The reference's status request and its reply; the times are those of HIPERFACE: eleven bits per character, 44 bits
+/// of silence, half of the five milliseconds that the command may take.
 #[test]
 fn the_adapters_uart_reaches_a_hiperface_encoder() {
     let mut host = Host::to("uart=hiperface", &[&AtAdapter]);

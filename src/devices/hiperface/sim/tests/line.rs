@@ -176,7 +176,8 @@ fn one_long_poll_equals_many_short_ones() {
     }
 }
 
-/// Issue 22.18: bytes beyond the buffer of a UART are lost, so that the line is not busy for longer than its buffer lasts.
+/// Issue 22.18: bytes beyond the buffer of a UART are lost, so that the line is not busy for longer than its buffer
+/// lasts.
 #[test]
 fn the_encoder_answers_after_a_flood_of_bytes() {
     let mut host = Host::with("");

@@ -1,4 +1,5 @@
-//! Figure 38: not listening, listening with factory settings, not listening, listening with the stored ones; 57h and 67h.
+//! Figure 38: not listening, listening with factory settings, not listening, listening with the stored ones; 57h and
+//! 67h.
 
 use super::*;
 

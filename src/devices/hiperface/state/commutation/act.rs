@@ -1,6 +1,6 @@
 //! Actions of the user in the commutation assistant.
 
-use super::outcome::may_read;
+use super::outcome::check_can_read;
 use super::{CommutationAction, Slot};
 use crate::app::Severity;
 use crate::app::services::Services;
@@ -49,7 +49,7 @@ impl Encoder {
     }
 
     fn read_into_slot(&mut self, slot: Slot, services: &mut Services) {
-        if let Err(why) = may_read(&self.commutation, self.session.is_ready()) {
+        if let Err(why) = check_can_read(&self.commutation, self.session.is_ready()) {
             self.commutation.problem = Some(why);
             return;
         }

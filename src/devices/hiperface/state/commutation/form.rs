@@ -7,18 +7,18 @@ use crate::app::number::{MOST_PERIODS, whole, within};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
-/// Entries of the assistant. An empty number of periods selects that of the encoder type.
+/// Entries of the assistant. If the number of periods is empty, that of the encoder type is used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form {
-    /// The user has confirmed that the controller is disabled.
+    /// Whether the user has confirmed that the controller is disabled.
     pub disabled: bool,
-    /// The user has confirmed that the motor is uncoupled, without load.
+    /// Whether the user has confirmed that the motor is uncoupled and without load.
     pub uncoupled: bool,
-    /// The user has confirmed that the brake is released.
+    /// Whether the user has confirmed that the brake is released.
     pub released: bool,
     /// Current limit in amperes, as typed.
     pub current_a: String,
-    /// Longest time with current in seconds, as typed.
+    /// Maximum time with current in seconds, as typed.
     pub time_s: String,
     pub vector: Vector,
     /// Typed angle of a custom vector in electrical degrees.
@@ -27,61 +27,61 @@ pub struct Form {
     pub pole_pairs: String,
     /// Signal periods per revolution, as typed.
     pub periods: String,
-    /// The position falls while the electrical angle rises.
+    /// Whether the position decreases as the electrical angle increases.
     pub reversed: bool,
     pub source: Source,
     /// Typed position in periods, if measured externally.
     pub phase: String,
-    /// Allowed difference of both sides in electrical degrees, as entered.
+    /// Permitted difference between both approach directions in electrical degrees, as typed.
     pub limit_deg: String,
-    /// Lead of the second vector in electrical degrees, as entered.
+    /// Lead of the second vector in electrical degrees, as typed.
     pub second_deg: String,
     /// Fine positions in periods, as typed, in the order of [`Slot::ALL`].
     pub typed: [String; 3],
     pub storage: Storage,
-    /// Data field for the offset, or `None` for the proposed one.
+    /// Data field for the offset, or `None` for the proposed field.
     pub field: Option<u8>,
-    /// Typed index of the first byte; empty for the proposed one.
+    /// Index of the first byte, as typed; empty for the proposed index.
     pub address: String,
-    /// Typed period of the position for method 2.
+    /// Period of the position for method 2, as typed.
     pub period: String,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
     OneSide,
-    /// At rest, approached from the other side.
+    /// Position at rest, approached from the other side.
     OtherSide,
-    /// At rest in the second vector.
+    /// Position at rest in the second vector.
     Second,
 }
 
-/// The vector that is energised while the position is read, by its wiring.
+/// Vector energised while the position is read, named by its wiring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vector {
-    /// Current into U, returning from V and W: 0°.
+    /// Current into U, returning through V and W: 0°.
     UAgainstBoth,
-    /// Current into U, returning from V: −30°.
+    /// Current into U, returning through V: −30°.
     UAgainstV,
-    /// Current into U, returning from W: 30°.
+    /// Current into U, returning through W: 30°.
     UAgainstW,
     Other,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The analogue channels of the encoder if available, or else the absolute position.
+    /// Analogue channels of the encoder if available, otherwise the absolute position.
     Signals,
     Typed,
-    /// The absolute position alone, 1/32 period.
+    /// Absolute position alone, with a resolution of 1/32 period.
     Absolute,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Storage {
-    /// The record of sixteen bytes.
+    /// Commutation record of sixteen bytes.
     Record,
-    /// The bare number of four bytes, high byte first.
+    /// Plain number of four bytes, most significant byte first.
     Number,
 }
 
@@ -90,14 +90,14 @@ pub struct OffsetInputs {
     pub motor: Motor,
     pub periods: u32,
     pub pole_pairs: u32,
-    /// The position falls while the electrical angle rises.
+    /// Whether the position decreases as the electrical angle increases.
     pub reversed: bool,
     pub vector_turns: f64,
-    /// Allowed difference of both sides, in electrical degrees.
+    /// Permitted difference between both approach directions, in electrical degrees.
     pub limit_deg: f64,
 }
 
-/// More pole pairs than any motor has.
+/// Limit for the number of pole pairs, greater than that of any motor.
 const MOST_POLE_PAIRS: u32 = 500;
 
 impl Slot {
@@ -131,7 +131,7 @@ impl Default for Form {
 }
 
 impl Form {
-    /// Returns current and time in amperes and seconds.
+    /// Returns the current in amperes and the time in seconds.
     ///
     /// # Errors
     /// States what is missing.
@@ -140,7 +140,7 @@ impl Form {
         Ok((current?, time?))
     }
 
-    /// Returns the problems of the entered current and time; an empty entry is not a problem yet.
+    /// Returns the problems with the entered current and time; an empty entry is not yet a problem.
     pub fn limit_problems(&self) -> (Option<Text>, Option<Text>) {
         let typed = |text: &str| !text.trim().is_empty();
         let (current, time) = self.each_limit();
@@ -173,7 +173,7 @@ impl Form {
     /// Returns the angle of the energised vector in electrical degrees.
     ///
     /// # Errors
-    /// Why the entry is invalid.
+    /// States why the entry is invalid.
     pub fn vector_deg(&self) -> Result<f64, Text> {
         match self.vector {
             Vector::UAgainstBoth => Ok(0.0),
@@ -183,27 +183,27 @@ impl Form {
         }
     }
 
-    /// Returns the lead of the second vector in electrical turns, which must be below ½, or the shaft may turn the
-    /// other way.
+    /// Returns the lead of the second vector in electrical turns. The lead must be below ½, since otherwise the shaft
+    /// may turn the other way.
     ///
     /// # Errors
-    /// A text that states why the entry is invalid.
+    /// States why the entry is invalid.
     pub fn second_turns(&self) -> Result<f64, Text> {
         Ok(within(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
     }
 
-    /// Returns the position inside a period that was typed.
+    /// Returns the entered position within a period.
     ///
     /// # Errors
-    /// Why the entry is invalid.
+    /// States why the entry is invalid.
     pub fn phase(&self) -> Result<Phase, Text> {
         phase(&self.phase)
     }
 
-    /// Returns the fine position in periods that was typed for a slot.
+    /// Returns the entered fine position of a slot in periods.
     ///
     /// # Errors
-    /// Why the entry is invalid.
+    /// States why the entry is invalid.
     pub fn fine(&self, slot: Slot) -> Result<f64, Text> {
         let [one, other, second] = &self.typed;
         let text = match slot {
@@ -214,10 +214,10 @@ impl Form {
         within(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
     }
 
-    /// Returns the signal periods per revolution as entered, or else of the encoder type.
+    /// Returns the signal periods per revolution as entered, or otherwise those of the encoder type.
     ///
     /// # Errors
-    /// A text that states why the entry is invalid.
+    /// States why the entry is invalid.
     pub fn periods(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
         match (self.periods.trim().is_empty(), geometry) {
             (_, Some(Geometry::Linear { .. })) => Err(TEXTS.text("commutation.linear")),

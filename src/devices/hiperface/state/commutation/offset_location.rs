@@ -8,7 +8,7 @@ use crate::devices::hiperface::profile::{CommutationRecord, FieldImage};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::{Staged, TEXTS, rules};
 
-/// Byte values considered empty: erased, or never written.
+/// Byte values that count as empty, because the memory was erased or never written.
 const FILLERS: [u8; 2] = [0x00, 0xFF];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,11 +19,11 @@ pub struct OffsetLocation {
 }
 
 impl Commutation {
-    /// Returns the selected or entered location, or else the proposed one: a stored record of the same kind, or the
-    /// last writable field with enough space.
+    /// Returns the selected or entered location, or otherwise the proposed one: a stored record of the same kind, or
+    /// the last writable field with enough space.
     ///
     /// # Errors
-    /// Explains why there is none: no field has enough space, or the entry is not an address.
+    /// Explains that no field has enough space, or that the entry is not an address.
     pub fn place(&self, staged: &Staged) -> Result<OffsetLocation, Text> {
         let no_room = || TEXTS.text("commutation.no_room").with("bytes", CommutationRecord::BYTES);
         let form = &self.form;
@@ -60,8 +60,8 @@ impl Commutation {
     }
 }
 
-/// Returns the first block of a field that satisfies `holds`, even for a bare number, since zeros among other numbers
-/// may be numbers.
+/// Returns the first record-sized block of a field that satisfies `holds`. A plain number also requires a whole block,
+/// since zeros among other numbers may be numbers.
 fn first(field: &FieldImage, holds: impl Fn(&[u8]) -> bool) -> Option<OffsetLocation> {
     let block = field.bytes.as_deref()?.chunks_exact(CommutationRecord::BYTES).position(holds)?;
     Some(OffsetLocation { field: field.number, address: block * CommutationRecord::BYTES })
@@ -71,7 +71,7 @@ fn is_filler(bytes: &[u8]) -> bool {
     FILLERS.iter().any(|filler| bytes.iter().all(|byte| byte == filler))
 }
 
-/// Returns whether the location already contains a complete record, which a new one replaces.
+/// Returns whether the location already contains a complete record, which a new record would replace.
 fn is_kept(storage: Storage, bytes: &[u8]) -> bool {
     storage == Storage::Record && matches!(CommutationRecord::parse(bytes), Some(Ok(_)))
 }
@@ -86,7 +86,8 @@ mod tests {
     use super::*;
     use crate::devices::hiperface::protocol::DataFieldStatus;
 
-    /// Status bytes as in section 4Dh of the manual: D8h and DAh are writable with 16 and 48 bytes, 89h is protected.
+    /// Returns a memory with status bytes as in section 4Dh of the manual: D8h and DAh are writable with 16 and 48
+    /// bytes, and 89h is protected.
     fn memory(fields: &[(u8, &[u8])]) -> Staged {
         let image = |(number, (status, bytes)): (u8, &(u8, &[u8]))| FieldImage {
             number,
@@ -125,7 +126,8 @@ mod tests {
         assert_eq!(proposed(&both, Storage::Record, Some(0)), Ok((0, 0)), "in the field that is chosen");
     }
 
-    /// The record of the reference: offset 5305 1EB8h, four pole pairs, its CRC by Python's `binascii.crc_hqx`.
+    /// The existing record is that of the reference: offset 5305 1EB8h, four pole pairs, CRC from Python's
+    /// `binascii.crc_hqx`.
     #[test]
     fn an_existing_record_is_proposed_for_replacement() {
         let record = [0x43, 0x4F, 0x31, 0x00, 0x53, 0x05, 0x1E, 0xB8, 4, 0, 0, 0, 0, 0, 0x2A, 0x23];

@@ -13,7 +13,7 @@ use crate::devices::hiperface::state::{Allowed, Staged, TEXTS};
 
 /// Step size in degrees from which method 2 is refused, because the torque may have the wrong sign (U).
 const UNUSABLE_DEG: f64 = 90.0;
-/// Step size in degrees from which a warning is given, because the torque falls to cos 30° and below (U).
+/// Step size in degrees from which a warning is given, because the torque is reduced to cos 30° or less (U).
 const WEAK_DEG: f64 = 30.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,26 +21,26 @@ pub struct Offset {
     /// Rest position of the shaft, in periods within a revolution.
     pub fine_periods: f64,
     pub shaft_deg: f64,
-    /// Difference between both sides in electrical degrees, or `None` with one side only.
+    /// Difference between both approach directions in electrical degrees, or `None` if only one was used.
     pub apart_deg: Option<f64>,
-    /// Offset: electrical angle = pole pairs × shaft − offset.
+    /// Electrical offset, such that electrical angle = pole pairs × shaft − offset.
     pub angle: ElectricalAngle,
     /// Resolution of the readings in electrical degrees, if known.
     pub resolution_deg: Option<f64>,
 }
 
-/// Setting the position by method 2.
+/// Position to be set by method 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     pub value: u32,
-    /// Whether exactly this value must be set because absolute position and phase do not agree now.
+    /// Whether exactly this value must be set because absolute position and phase currently disagree.
     pub exact: bool,
     /// Remaining offset in electrical degrees, −180 to 180.
     pub remaining_deg: f64,
     pub verdict: Verdict,
 }
 
-/// Commutation offset in the edited memory.
+/// Commutation offset stored in the edited memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stored {
     pub field: u8,
@@ -52,7 +52,7 @@ pub struct Stored {
 }
 
 impl Commutation {
-    /// Returns the offset.
+    /// Returns the commutation offset.
     ///
     /// # Errors
     /// States what is missing, or why the readings cannot be used.
@@ -98,9 +98,9 @@ impl Commutation {
     }
 
     fn evaluate_second_reading(&self, fine_periods: f64, geometry: Option<Geometry>) -> Result<(Verdict, Text), Text> {
-        /// Fraction of the expected movement below which the shaft counts as not moved.
+        /// Fraction of the expected movement below which the shaft counts as not having moved.
         const STILL: f64 = 0.1;
-        /// Allowed ratio of the movement to the expected one.
+        /// Permitted ratio of the actual movement to the expected movement.
         const FITS: std::ops::RangeInclusive<f64> = 0.8..=1.25;
         let (inputs, offset, turns) = (self.form.inputs(geometry)?, self.offset(geometry)?, self.form.second_turns()?);
         let moved = apart(offset.fine_periods, fine_periods, inputs.periods);
@@ -124,12 +124,12 @@ impl Commutation {
         Ok((Verdict::Fault, degrees(TEXTS.text(id)).with("pairs", second.pole_pairs)))
     }
 
-    /// Returns whether the second vector was read and fits.
+    /// Returns whether the second vector was read and fits the offset.
     pub fn is_confirmed(&self, geometry: Option<Geometry>) -> bool {
         matches!(self.second(geometry), Some(Ok((Verdict::Ok, _))))
     }
 
-    /// Method 1: returns data field, index of the first byte, and the bytes to store.
+    /// Returns the data field, the index of the first byte, and the bytes to store for method 1.
     ///
     /// # Errors
     /// States what is missing.
@@ -157,7 +157,7 @@ impl Commutation {
         Ok((field, address, bytes))
     }
 
-    /// Method 2: returns the position to set where the shaft rests now.
+    /// Returns the position to set for method 2, with the shaft at its present rest position.
     ///
     /// # Errors
     /// States what is missing, or why the method cannot be used.
@@ -205,8 +205,8 @@ pub fn stored(staged: &Staged) -> Vec<Stored> {
     found
 }
 
-/// Checks that the position may be read because everything before is complete.
-pub fn may_read(commutation: &Commutation, ready: bool) -> Allowed {
+/// Checks whether the position may be read, which requires all previous steps to be complete.
+pub fn check_can_read(commutation: &Commutation, ready: bool) -> Allowed {
     commutation.form.prepared()?;
     if commutation.form.source == Source::Typed {
         commutation.form.phase()?;
@@ -225,7 +225,7 @@ fn electrical_deg(periods: f64, inputs: &OffsetInputs) -> f64 {
     periods * inputs.motor.electrical_step_deg()
 }
 
-/// Returns the offset at a position at which the electrical angle is that of the vector.
+/// Returns the offset that results if the electrical angle at a position equals that of the vector.
 fn angle(fine_periods: f64, inputs: &OffsetInputs) -> Option<ElectricalAngle> {
     let shaft = if inputs.reversed { -fine_periods } else { fine_periods };
     let vector = ElectricalAngle::from_turns(inputs.vector_turns)?;

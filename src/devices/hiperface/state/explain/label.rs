@@ -5,7 +5,7 @@ use crate::bits::hex;
 use crate::devices::hiperface::protocol::{ExtendedLabel, LabelPart};
 use crate::devices::hiperface::state::TEXTS;
 
-/// Bytes of the label with their meaning.
+/// Bytes of the extended label with their meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LabelRow {
     /// First and last address.
@@ -14,7 +14,7 @@ pub struct LabelRow {
     pub meaning: Text,
 }
 
-/// Returns the rows of a label without invalid limits; empty for bytes that are not a label.
+/// Returns the rows of a label without invalid limits, or no rows if the bytes are not a label.
 pub fn label(bytes: &[u8]) -> Vec<LabelRow> {
     let Ok(parts) = ExtendedLabel::parts(bytes) else { return Vec::new() };
     let flags = bytes.get(1).copied().unwrap_or(0);

@@ -66,7 +66,7 @@ fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> Oper
     }
 }
 
-/// Returns only the properties of a field that an operation changes.
+/// Returns the properties of a field that an operation changes, each with old and new value.
 fn differing(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
     let size = |status: DataFieldStatus| TEXTS.text("op.size").with("size", status.size().bytes());
     let code = |status: DataFieldStatus| TEXTS.text("op.code").with("code", status.code());

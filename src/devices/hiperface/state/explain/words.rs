@@ -80,7 +80,7 @@ pub fn geometry(geometry: Geometry) -> Text {
     }
 }
 
-/// Returns the turn and degrees, or millimetres.
+/// Describes a position as turn and degrees, or in millimetres.
 pub fn position(position: Position) -> Text {
     match (position.turns(), position.degrees(), position.millimetres()) {
         (Some(turn), Some(degrees), _) => {
@@ -91,7 +91,7 @@ pub fn position(position: Position) -> Text {
     }
 }
 
-/// Describes a position word with an unknown meaning.
+/// Describes a position word whose geometry is unknown.
 pub fn raw_position(raw: u32) -> Text {
     TEXTS.text("position.steps").with("steps", raw)
 }

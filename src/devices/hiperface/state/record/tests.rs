@@ -97,7 +97,8 @@ fn lines_break_between_stop_and_start() {
     assert_eq!(breaks, [false, false, true, false, false, true]);
 }
 
-/// Ten minutes at 1 kHz, at 600 rpm round the end of the range, with a pause of three seconds every ten thousand samples.
+/// Ten minutes at 1 kHz, at 600 rpm round the end of the range, with a pause of three seconds every ten thousand
+/// samples.
 #[test]
 fn a_long_recording_keeps_every_break_and_wrap() {
     let mut record = Record::default();

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use super::{ask, number};
+use super::{ask, number_ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, DeviceCommand, PendingEdits};
 use crate::devices::hiperface::state::commutation::{CommutationAction as Assistant, Form, Storage, Stored, stored};
@@ -62,7 +62,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
             }
         });
         let proposed = place.map(|place| place.address.to_string()).unwrap_or_default();
-        number(ui, theme, "commutation.address", &mut form.address, &proposed);
+        number_ui(ui, theme, "commutation.address", &mut form.address, &proposed);
         let bytes = encoder.commutation.bytes(encoder.geometry(), &encoder.staged);
         if let Ok((_, _, bytes)) = &bytes {
             // Eight per line: sixteen do not fit beside the other column.
@@ -124,7 +124,7 @@ pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &
                 .with_number("electrical", inputs.motor.electrical_step_deg(), 2);
             row(ui, theme, &say(theme, "commutation.step"), theme.mono(theme.words(&text)));
         }
-        number(ui, theme, "commutation.period", &mut form.period, "0");
+        number_ui(ui, theme, "commutation.period", &mut form.period, "0");
         let setting = encoder.commutation.setting(encoder.geometry());
         match &setting {
             Ok(setting) => {

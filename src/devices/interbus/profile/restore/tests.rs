@@ -88,8 +88,8 @@ fn a_kept_preset_must_be_within_the_range() {
     assert!(plan_restore(&profile(MINE), &other, RestoreOptions { with_mounting: true, ..options }).is_ok());
 }
 
-/// Issue 22.9: an encoder that reports its steps minus one, or that counts no turns, is of another type, which needs its
-/// own permission; another serial number needs the other one as well.
+/// Issue 22.9: an encoder that reports its steps minus one, or that counts no turns, is of another type, which needs
+/// its own permission; another serial number needs the other one as well.
 #[test]
 fn another_type_needs_a_separate_permission() {
     let mut own = device(MINE, &[("preset", Number(7))]);

@@ -22,7 +22,7 @@ const WORDS: [(Column, &[&str]); 5] = [
 ];
 
 impl Columns {
-    /// Identifies the columns by their header; returns `None` if the header names neither a start nor a stop.
+    /// Identifies the columns by their header, or returns `None` if the header names neither a start nor a stop.
     pub(super) fn of_header(cells: &[&str]) -> Option<Self> {
         let mut places: Vec<(Column, usize)> = Vec::new();
         for (place, cell) in cells.iter().enumerate() {
@@ -38,7 +38,7 @@ impl Columns {
         has_edge.then_some(Columns { places, cam_or_name })
     }
 
-    /// Guesses the columns of a table without a header from their number.
+    /// Infers the columns of a table without a header from their number.
     pub(super) fn from_column_count(count: usize) -> Self {
         use Column::{Cam, Name, Program, Start, Stop};
         let order: &[Column] = match count {
@@ -56,8 +56,8 @@ impl Columns {
     }
 }
 
-/// Returns the delimiter that occurs outside quotes on most lines. A comma has to be more frequent than the others,
-/// since it may be a decimal sign.
+/// Returns the delimiter that occurs outside quotes on most lines. A comma must be more frequent than the others,
+/// since it may be a decimal separator.
 pub(super) fn delimiter(text: &str) -> Delimiter {
     let has = |line: &str, sign: char| {
         let mut quoted = false;

@@ -10,9 +10,9 @@ use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::profile::{Outside, Placed, Unit};
 use crate::devices::interbus::protocol::{CamNumber, Program, ProgramNumber};
 
-/// Maximum number of rows in a cam table: eight programs of eight cams, with room for errors.
+/// Maximum number of rows in a cam table: enough for eight programs of eight cams, with room for errors.
 const MOST_ROWS: usize = 1000;
-/// Maximum number of characters of an invalid cell to show in a message.
+/// Maximum number of characters of an invalid cell that are shown in a message.
 const SHOWN: usize = 24;
 
 struct TableLine {
@@ -21,10 +21,10 @@ struct TableLine {
     cells: Vec<String>,
 }
 
-/// Row whose cam may still be undetermined.
+/// A row whose cam may still be undetermined.
 struct Draft {
     line: u64,
-    /// Column that named the cam, or else the first column.
+    /// Column of the cam entry, or else the first column.
     column: u64,
     program: ProgramNumber,
     cam: Option<CamNumber>,
@@ -93,7 +93,7 @@ impl CamTable {
         columns
     }
 
-    /// Assigns a cam to each row: first to the rows that name one, then the remaining cams to the other rows.
+    /// Assigns a cam to each row. Rows that name a cam come first, and the other rows receive the remaining cams.
     fn place(&mut self, drafts: Vec<Draft>) {
         let mut taken: Vec<(ProgramNumber, CamNumber, u64)> = Vec::new();
         let mut rows: Vec<Option<CamNumber>> = vec![None; drafts.len()];
@@ -127,7 +127,7 @@ impl CamTable {
         self.rows = placed.collect();
     }
 
-    /// Adds a note for each track with several pulses, since every pulse takes a cam.
+    /// Adds a note for each track with several pulses, since every pulse uses a cam.
     fn note_pulses(&mut self) {
         for program in ProgramNumber::all() {
             let mut tracks: Vec<(String, String, Vec<CamNumber>)> = Vec::new();
@@ -219,7 +219,7 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
     Ok(Draft { line: line.number, column, program, cam, name, start, stop })
 }
 
-/// Returns both edges in steps. A pulse that spans the whole range ends right before its start.
+/// Returns both edges in steps. A pulse that spans the whole range ends just before its start.
 fn edges(
     options: &TableOptions,
     start: f64,
@@ -241,8 +241,8 @@ fn edges(
     Ok((edge(start, first), edge(stop, last)))
 }
 
-/// Parses a number with a decimal point, or with a decimal comma if commas do not separate columns. A unit may follow
-/// the number.
+/// Parses a number with a decimal point, or with a decimal comma if commas do not separate columns. The number may be
+/// followed by a unit.
 fn number(text: &str, comma: bool) -> Option<f64> {
     let text = text.trim();
     let text =
@@ -271,5 +271,5 @@ fn excerpt(text: &str) -> String {
     excerpt
 }
 
-/// A table has room for every cam.
+/// Checks that a table has room for every cam.
 const _: () = assert!(MOST_ROWS >= Program::CAMS * ProgramNumber::COUNT);

@@ -22,7 +22,7 @@ impl Setting<'_> {
         Ok(())
     }
 
-    /// Activates cams. More than 8 are wrong data (reference 6.9, `U`).
+    /// Activates cams. A mask with more than 8 cams is invalid data (reference 6.9, `U`).
     pub(super) fn activate(&mut self, mask: u16) -> Result<(), Fault> {
         self.0.mask = u8::try_from(mask).map_err(|_| Fault::WrongData)?;
         Ok(())
@@ -42,7 +42,7 @@ impl Encoder {
         self.set(now, taken);
     }
 
-    /// Ends a read-out. With values that are set but not stored, the encoder returns to setting, where position and
+    /// Ends a read-out. If values are set but not stored, the encoder returns to setting, in which the position and
     /// outputs are invalid.
     pub(super) fn end_read_out(&mut self) {
         match self.unstored {

@@ -6,7 +6,7 @@ use crate::devices::interbus::sim::memory::PLACES;
 use crate::units::Moment;
 
 impl Encoder {
-    /// Sets the position to the preset. A preset beyond the range, possible after a gear change, wraps.
+    /// Sets the position to the preset. A preset beyond the range, which is possible after a gear change, wraps.
     pub(super) fn fire(&mut self, now: Moment) {
         let gear = self.memory.gear;
         let (steps, range) = (u64::from(gear.steps()), u64::from(gear.range()));
@@ -32,7 +32,7 @@ impl Encoder {
         Value::of_word((position % u64::from(gear.steps())) as u32)
     }
 
-    /// Returns the IN word in normal running.
+    /// Returns the IN word in normal operation.
     pub(super) fn live(&self, now: Moment) -> u32 {
         let position = self.position(now);
         match (self.class, self.mode) {

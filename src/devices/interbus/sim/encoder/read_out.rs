@@ -6,9 +6,9 @@ use crate::units::Moment;
 
 const VALUE: u32 = 0xA000_0000;
 const UNKNOWN: u32 = 0xA400_0000;
-/// Flag of an encoder that counts turns.
+/// Flag that indicates an encoder that counts turns.
 const MULTITURN: u32 = 2;
-/// Upper part of a chip register value (chosen); the lower part is the register number.
+/// Upper part of a chip register value, chosen for the simulation; the lower part is the register number.
 const CHIP: u32 = 0x40;
 
 impl Encoder {
@@ -18,7 +18,7 @@ impl Encoder {
         self.show(value);
     }
 
-    /// Handles 2020xxxxh, of the program that runs.
+    /// Handles 2020xxxxh, which reads the running program.
     pub(super) fn read_cams(&mut self, command: Command) {
         let StartupMode::Cams(number) = self.mode else { return };
         let program = self.memory.program(number);
@@ -34,7 +34,7 @@ impl Encoder {
         self.show(value);
     }
 
-    /// Sends a read-out value; `None` sends the error word for a nonexistent cam, register or number.
+    /// Sends a read-out value, or for `None` the error word for a nonexistent cam, register or number.
     pub(super) fn show(&mut self, value: Option<u32>) {
         let word = value.map_or(UNKNOWN, |value| VALUE | Value::of_word(value).get());
         self.turn_to(Activity::ReadingOut, InWordContent::Word(word));

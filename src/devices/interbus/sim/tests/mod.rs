@@ -1,5 +1,5 @@
-//! The virtual encoder as seen by a master, in virtual time. Expected words are the reference's; none is computed by the
-//! code under test.
+//! The virtual encoder as seen by a master, in virtual time. Expected words are the reference's; none is computed by
+//! the code under test.
 
 mod any;
 mod cams;

@@ -3,7 +3,7 @@
 use super::VisibleRange;
 use crate::devices::interbus::profile::{Scale, Unit};
 
-/// A line across the chart, at the beginning of a position.
+/// A grid line across the chart, at the start of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
     pub position: f64,
@@ -12,9 +12,9 @@ pub struct Tick {
     pub decimals: usize,
 }
 
-/// Degrees that divide a turn, and are read at a glance.
+/// Grid intervals in degrees, which divide a turn and are easy to read.
 const DEGREES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
-/// More lines than a chart has room for.
+/// Maximum number of grid lines, which is more than a chart has room for.
 const MOST_TICKS: usize = 400;
 
 /// Returns the smallest of 1, 2, 5, 10, 20, 50 … that is at least `at_least`.
@@ -45,7 +45,7 @@ pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<
     (0..MOST_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()
 }
 
-/// Returns the next or previous grid line from a position, in steps; lines continue beyond the range.
+/// Returns the next or previous grid line from a position, in steps. Lines continue beyond the range.
 pub fn next_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
     let around = lines_around(scale, apart, f64::from(position), 2);
     let position = i64::from(position);
@@ -57,7 +57,7 @@ pub fn next_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64
     }
 }
 
-/// Returns the grid lines around a position, `each` per side, rounded to whole steps and in ascending order.
+/// Returns the grid lines around a position, `each` on either side, rounded to whole steps and in ascending order.
 pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) -> Vec<f64> {
     let steps = scale.steps_in_unit() * round_units(scale.unit(), apart / scale.steps_in_unit());
     let zero = f64::from(scale.zero());

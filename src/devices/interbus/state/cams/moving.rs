@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 pub enum Hold {
     Edge(CamNumber, Edge),
     Whole(CamNumber),
-    /// The empty lane of a cam, where a new cam can be drawn.
+    /// An empty lane, in which a new cam can be drawn.
     New(CamNumber),
 }
 
@@ -38,7 +38,7 @@ pub fn pulled(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     with(cam, edge, i64::from(of_edge(cam, edge).get()) + by, whole)
 }
 
-/// Returns the whole cam moved by `by` steps. Parts beyond the range stay there.
+/// Returns the cam moved by `by` steps as a whole. Parts beyond the range stay there.
 pub fn moved(cam: Cam, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     if i64::from(cam.start.get()) >= whole || i64::from(cam.stop.get()) >= whole {

@@ -9,7 +9,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber};
 pub struct Snap {
     /// Reach in steps.
     pub reach: f64,
-    /// Minimum distance of the grid lines to snap to, in steps; `None` disables snapping to lines.
+    /// Minimum distance of the grid lines to snap to, in steps. If `None`, edges do not snap to grid lines.
     pub apart: Option<f64>,
     /// Whether to snap to the edges of other cams.
     pub edges: bool,
@@ -18,8 +18,8 @@ pub struct Snap {
 impl Snap {
     pub const OFF: Snap = Snap { reach: 0.0, apart: None, edges: false };
 
-    /// Creates settings that snap to everything in a chart with the given number of steps per point: within six points,
-    /// on a grid of at least ten.
+    /// Creates settings that snap to all targets in a chart with the given number of steps per point: within six
+    /// points, and on a grid of at least ten.
     pub const fn on(steps_in_point: f64) -> Self {
         Snap { reach: steps_in_point * REACH, apart: Some(steps_in_point * GRID), edges: true }
     }
@@ -30,8 +30,8 @@ const REACH: f64 = 6.0;
 /// Minimum distance between grid lines, in points.
 const GRID: f64 = 10.0;
 
-/// Returns the number of steps to move instead of `by`, so that an edge of the original cam snaps to the nearest target
-/// or else to a whole step.
+/// Returns the number of steps to move instead of `by`, so that an edge of the original cam snaps to the nearest
+/// target or, if there is none, to a whole step.
 pub fn snap(chart: &Chart, scale: &Scale, hold: Hold, cam: Cam, by: f64, snap: &Snap) -> i64 {
     let whole = by.round() as i64;
     let edges: &[Edge] = match hold {

@@ -21,7 +21,7 @@ pub fn layout(table: &CamTable) -> Text {
     TEXTS.text(id).with("count", table.rows.len()).with_text("delimiter", TEXTS.text(delimiter))
 }
 
-/// Describes a problem in a table, with its location.
+/// Describes a table problem and its location.
 pub fn problem(problem: &TableProblem) -> Text {
     let text = TEXTS.text("camtable.problem").with("line", problem.line).with("column", problem.column);
     text.with_text("what", wrong(&problem.kind))
@@ -72,7 +72,7 @@ pub fn rounding(row: &TableRow, scale: &Scale) -> Text {
     text.with_text("start", edge(row.start, scale)).with_text("stop", edge(row.stop, scale))
 }
 
-/// Describes an edge: as requested, as rounded, and the difference.
+/// Describes an edge by its requested value, its rounded value, and the difference.
 pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimals() + 1;
     let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };

@@ -39,7 +39,7 @@ pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     }
 }
 
-/// Formats a ruler value in the given unit.
+/// Formats a number on the ruler in the given unit.
 pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
     TEXTS.text("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
 }
@@ -65,7 +65,7 @@ pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
     beyond.into_iter().chain(clash).collect()
 }
 
-/// Describes an output indicator: whether the output is on, and any difference from the encoder.
+/// Describes an output indicator: whether the output is on, and whether it differs from the encoder's.
 pub fn lamp(lamp: OutputState) -> Text {
     let state = |on| TEXTS.text(if on { "cams.lamp_on" } else { "cams.lamp_off" });
     match (lamp.own, lamp.simulated) {
@@ -78,7 +78,7 @@ pub fn lamp(lamp: OutputState) -> Text {
     }
 }
 
-/// Returns the messages for the given marks; cams of one program that are beyond the measuring range share a message.
+/// Returns the messages for the given marks. Cams of one program that are beyond the measuring range share a message.
 pub fn marks(marks: &[Mark]) -> Vec<Text> {
     let beyond_in = |own: &Mark| matches!(own, Mark::Beyond { .. }).then(|| own.program()).flatten();
     let mut named = Vec::new();
@@ -123,7 +123,7 @@ fn mark(mark: &Mark) -> Text {
     }
 }
 
-/// Explains why an edit was refused and what to do.
+/// Explains why an edit was refused and how to remedy it.
 pub fn refused(error: &EditError) -> Text {
     let program = |id, program: ProgramNumber| TEXTS.text(id).with("program", program.get());
     match error {

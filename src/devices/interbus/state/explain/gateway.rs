@@ -32,7 +32,7 @@ pub(super) fn exception_name(exception: Exception) -> Text {
     })
 }
 
-/// Explains the most likely cause of an exception and what to do.
+/// Explains the most likely cause of an exception and the remedy.
 pub fn exception(exception: Exception) -> Text {
     TEXTS.text(match exception.code() {
         0x01 => "ib_exception.function",

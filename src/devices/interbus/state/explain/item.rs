@@ -17,7 +17,7 @@ pub fn parameter(parameter: Parameter) -> Text {
     })
 }
 
-/// Formats a parameter's value, by its meaning if it has one.
+/// Formats a parameter value, using its meaning if it has one.
 pub(super) fn number(parameter: Parameter, number: u32) -> Text {
     match Direction::of_code(number) {
         Some(own) if parameter == Parameter::Direction => direction(own),

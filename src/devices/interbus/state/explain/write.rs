@@ -93,7 +93,7 @@ fn of_types(id: &'static str, types: OtherType) -> Text {
     TEXTS.text(id).with_text("profile", profile).with_text("device", device)
 }
 
-/// Returns why something cannot be planned.
+/// Returns the reason why a change cannot be planned.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
@@ -132,7 +132,7 @@ pub fn plan(error: &PlanError) -> Text {
     }
 }
 
-/// Returns a warning about the limited EEPROM write cycles if the plan comes close to the limit.
+/// Returns a warning about the limited EEPROM write cycles if the plan approaches the limit.
 pub fn wear(prepared: &Prepared) -> Option<Text> {
     let (id, after) = match prepared.wear()? {
         Wear::Known(after) => ("ib_stores.known", after),

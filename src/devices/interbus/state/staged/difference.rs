@@ -9,7 +9,7 @@ pub enum ValueId {
     Parameter(Parameter),
     Shift,
     Edge(ProgramNumber, CamNumber, Edge),
-    /// Whether a cam is active: 1 or 0.
+    /// Whether a cam is active: 1 if active, or else 0.
     On(ProgramNumber, CamNumber),
 }
 
@@ -22,12 +22,12 @@ pub struct Differs {
     pub to: Option<u32>,
 }
 
-/// Parameters that can be set, in the manual's order.
+/// Parameters that can be set, in the order of the manual.
 const SET: [Parameter; 5] =
     [Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift];
 
 impl ValueId {
-    /// Iterates over all values: parameters, shift, then the cams by program and number.
+    /// Iterates over all values: parameters, the window shift, then the cams by program and number.
     pub fn all() -> impl Iterator<Item = ValueId> {
         let cams = ProgramNumber::all().flat_map(|program| CamNumber::all().map(move |cam| (program, cam)));
         let cams = cams.flat_map(|(program, cam)| {
@@ -42,7 +42,7 @@ impl ValueId {
 }
 
 impl EditedValues {
-    /// Returns a value, or `None` if unknown.
+    /// Returns a value, or `None` if it is unknown.
     pub fn value(&self, place: ValueId) -> Option<u32> {
         match place {
             ValueId::Parameter(parameter) => self.image.parameters.value(parameter),
@@ -76,7 +76,7 @@ impl Staged {
         base.cam(program, cam) != wanted.cam(program, cam) || base.is_on(program, cam) != wanted.is_on(program, cam)
     }
 
-    /// Returns whether anything of a program was edited, including a profile's names.
+    /// Returns whether any part of a program was edited, including a profile's names.
     pub fn is_program_edited(&self, program: ProgramNumber) -> bool {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
         let is_renamed = base.names.program(program) != wanted.names.program(program)

@@ -6,7 +6,7 @@ use super::{BaseSource, EditedValues, Staged, edit};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, ProgramNumber, Value, WindowShift};
 
-/// Edit in stored form: only the resulting value, with numbers as in the manual.
+/// An edit in stored form, which only contains the resulting value, with numbers as in the manual.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SavedEdit {
     /// Steps and turns, which together form one gear.
@@ -20,12 +20,12 @@ pub enum SavedEdit {
     /// 0 to 25.
     Shift(u8),
     Cam(u8, u8, u32, u32),
-    /// Program and cam to be removed from the profile.
+    /// Program and number of a cam to remove from the profile.
     NoCam(u8, u8),
     On(u8, u8, bool),
-    /// Program, cam, and the cam name, which may be empty.
+    /// Program, cam number, and cam name, which may be empty.
     Name(u8, u8, String),
-    /// Program and its name, which may be empty.
+    /// Program number and name, which may be empty.
     ProgramName(u8, String),
 }
 
@@ -43,8 +43,8 @@ impl Staged {
         kept
     }
 
-    /// Applies the edits of a draft as one step. Edits of a program that has not been read wait for it; invalid edits
-    /// are dropped.
+    /// Applies the edits of a draft as a single step. Edits of a program that has not been read wait for it, and
+    /// invalid edits are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);
@@ -60,7 +60,7 @@ impl Staged {
         self.step(wanted);
     }
 
-    /// Returns the programs for which edits of an earlier time wait.
+    /// Returns the programs for which earlier edits are waiting.
     pub fn waiting(&self) -> Vec<ProgramNumber> {
         let waits = |number: &ProgramNumber| self.waiting.iter().any(|kept| kept.program() == Some(*number));
         ProgramNumber::all().filter(waits).collect()
@@ -172,7 +172,7 @@ impl SavedEdit {
         }
     }
 
-    /// Returns whether the changed value was not read. A name needs no reading.
+    /// Returns whether the edit changes a value that has not been read. Names need not be read.
     fn concerns_unread_values(&self, wanted: &EditedValues, ground: BaseSource) -> bool {
         ground == BaseSource::Encoder
             && match self {

@@ -6,13 +6,13 @@ use crate::devices::interbus::protocol::{
     Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
 };
 
-/// Edit of the encoder's values. Each edit is a single undo step, however much it changes.
+/// An edit of the encoder's values. Each edit is a single undo step, however much it changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Edit {
     Steps(u32),
-    /// Turns until the position starts again.
+    /// Sets the number of turns after which the position repeats.
     Revolutions(u32),
-    /// Sets steps and turns together, for changes that are not possible one after the other.
+    /// Sets steps and turns together, for changes that cannot be made one after the other.
     Gear {
         steps: u32,
         revolutions: u32,
@@ -20,7 +20,7 @@ pub enum Edit {
     Direction(Direction),
     /// Sets the preset value in steps without firing the preset.
     Preset(u32),
-    /// The zero shift, in steps.
+    /// Sets the zero shift, in steps.
     ZeroShift(u32),
     Shift(WindowShift),
     Edge {
@@ -34,7 +34,7 @@ pub enum Edit {
         program: ProgramNumber,
         cam: CamNumber,
         start: u32,
-        /// Last position of the cam; lies before the start if the cam continues across the end of the measuring range.
+        /// Last position of the cam, which is before the start if the cam wraps around the end of the measuring range.
         stop: u32,
         /// Whether to activate the cam if it is not active yet.
         on: bool,
@@ -63,14 +63,14 @@ pub enum Edit {
         from: ProgramNumber,
         to: ProgramNumber,
     },
-    /// Mirrors a program, so that positions count from the other end of the range. Inactive cams are mirrored too,
+    /// Mirrors a program, so that positions count from the other end of the range. Inactive cams are also mirrored,
     /// unless they are beyond the range.
     Mirror(ProgramNumber),
-    /// Shifts a program by a number of steps; parts that leave the range at one end reappear at the other. Inactive
-    /// cams are shifted too, unless they are beyond the range.
+    /// Shifts a program by a number of steps. Parts that leave the range at one end reappear at the other. Inactive
+    /// cams are also shifted, unless they are beyond the range.
     Rotate {
         program: ProgramNumber,
-        /// Steps to shift towards later positions; negative for earlier ones.
+        /// Number of steps to shift towards later positions, or towards earlier positions if negative.
         by: i64,
     },
     /// Sets programs from an imported table.
@@ -84,7 +84,7 @@ pub enum EditError {
     NothingRead,
     #[error("cam program {} has not been read", .0.get())]
     NotRead(ProgramNumber),
-    /// The window's shift, which is read with a program, was not read.
+    /// The window shift, which is read with a program, was not read.
     #[error("the shift of the window has not been read")]
     ShiftNotRead,
     /// The profile does not contain the cam.
@@ -96,7 +96,7 @@ pub enum EditError {
     Parameter(#[from] OutOfRange),
     #[error("{to} is outside the measuring range, which ends at {last}")]
     Edge { edge: Edge, to: u32, last: u32 },
-    /// An active cam is beyond the measuring range, so its program can be neither mirrored nor shifted.
+    /// An active cam is beyond the measuring range, so its program cannot be mirrored or shifted.
     #[error("cam {} of program {} is outside the measuring range, which ends at {last}", cam.get(), program.get())]
     Beyond { program: ProgramNumber, cam: CamNumber, last: u32 },
     /// A name is too long or is not a single line.
@@ -197,7 +197,7 @@ fn position(edge: Edge, to: u32, wanted: &EditedValues) -> Result<Value, EditErr
     Value::new(to).filter(|_| to <= last).ok_or(EditError::Edge { edge, to, last })
 }
 
-/// Returns a program for editing. The first edit of a missing program adds it to the profile.
+/// Returns a program for editing. The first edit of a program missing in the profile adds it.
 pub(super) fn program_mut(
     after: &mut EditedValues,
     number: ProgramNumber,

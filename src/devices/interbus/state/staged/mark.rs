@@ -4,29 +4,29 @@ use super::EditedValues;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, ProgramNumber};
 
-/// Finding that the user should check. Edits can cause findings: with fewer steps, for example, cams may end up beyond
-/// the range.
+/// A finding that the user should check. Edits can cause findings: for example, fewer steps may leave cams beyond the
+/// range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Gear(GearError),
     Preset {
         last: u32,
     },
-    /// A cam that works has an edge beyond the measuring range.
+    /// An active cam has an edge beyond the measuring range.
     Beyond {
         program: ProgramNumber,
         cam: CamNumber,
-        /// The edge; the start if both are concerned.
+        /// The edge concerned, or the start if both are concerned.
         edge: Edge,
         last: u32,
     },
-    /// Two active cams of the same name overlap, although the pulses of one track should not. The encoder itself has no
+    /// Two active cams of the same name overlap, although the pulses of a track should not. The encoder itself has no
     /// such rule.
     Clash {
         program: ProgramNumber,
         first: CamNumber,
         second: CamNumber,
-        /// The first position at which both are on.
+        /// First position at which both cams are on.
         at: u32,
     },
 }

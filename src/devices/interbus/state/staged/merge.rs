@@ -4,7 +4,7 @@ use super::EditedValues;
 use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber};
 
-/// Overlays newly read values on the known ones, which remain wherever nothing was read.
+/// Overlays newly read values on the known values, which are kept wherever nothing was read.
 pub(super) fn over(known: &Image, read: Image) -> Image {
     let mut programs = read.programs;
     for (own, known) in programs.iter_mut().zip(&known.programs) {
@@ -55,7 +55,7 @@ fn rebase_program(program: &mut Program, was: &Program, is: &Program) {
     program.mask = program.mask & edited | is.mask & !edited;
 }
 
-/// Returns the new value, unless the old one was edited.
+/// Returns the new value, unless the old value was edited.
 fn follow<T: PartialEq + Clone>(own: &mut T, was: &T, is: &T) {
     if own == was {
         own.clone_from(is);

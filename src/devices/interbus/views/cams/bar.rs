@@ -43,13 +43,13 @@ pub(super) fn bar_ui(
             }
         }
         if encoder.staged.program(program).is_some() {
-            whole(ui, theme, encoder, program, &mut view.bar, actions);
+            whole_ui(ui, theme, encoder, program, &mut view.bar, actions);
         }
-        tables(ui, theme, encoder, program, actions);
+        tables_ui(ui, theme, encoder, program, actions);
     });
 }
 
-fn whole(
+fn whole_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,
@@ -94,7 +94,7 @@ fn whole(
     });
 }
 
-fn tables(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
+fn tables_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     icon_menu(ui, icons::TABLE, &say(theme, "ib_cams.tables"), |ui| {
         ui.set_max_width(300.0);

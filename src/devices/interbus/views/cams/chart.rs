@@ -14,7 +14,7 @@ use crate::ui::{Theme, icons};
 pub(super) struct CamChartUiState {
     ring: bool,
     snaps: bool,
-    /// Visible part of the range, or `None` for all of it.
+    /// Visible part of the range, or `None` for the whole range.
     stretch: Option<Stretch>,
     selected: Option<CamNumber>,
 }
@@ -25,7 +25,7 @@ impl Default for CamChartUiState {
     }
 }
 
-/// The largest side of the ring.
+/// Maximum side length of the ring.
 const RING: f32 = 420.0;
 
 pub(super) fn card_ui(
@@ -75,7 +75,7 @@ pub(super) fn card_ui(
             };
         });
         if sends.is_some() {
-            agreement(ui, theme, &encoder.preview);
+            agreement_ui(ui, theme, &encoder.preview);
         }
         paragraph(ui, theme.caption(say(theme, "ib_cams.chart_words")));
     });
@@ -96,8 +96,8 @@ pub(super) fn card_ui(
     }
 }
 
-/// Draws how the received outputs agree with the cams of the encoder.
-fn agreement(ui: &mut Ui, theme: &Theme, preview: &Preview) {
+/// Draws whether the received outputs agree with the encoder's cams.
+fn agreement_ui(ui: &mut Ui, theme: &Theme, preview: &Preview) {
     let Preview { same, other, last, .. } = preview;
     let Some(last) = last else {
         if *same > 0 {

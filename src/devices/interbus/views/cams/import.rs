@@ -40,14 +40,14 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
         paragraph(ui, theme.caption(theme.words(&table_words::layout(table))));
         egui::ScrollArea::vertical().id_salt("table").max_height(LIST).show(ui, |ui| {
             for problem in &table.problems {
-                line(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&table_words::problem(problem)));
+                line_ui(ui, icons::X_CIRCLE, theme.palette.bad, theme.words(&table_words::problem(problem)));
             }
             for note in &table.notes {
-                line(ui, icons::INFO, theme.palette.accent, theme.words(&table_words::note(note)));
+                line_ui(ui, icons::INFO, theme.palette.accent, theme.words(&table_words::note(note)));
             }
             for row in table.rounded() {
                 let words = theme.words(&table_words::rounding(row, &encoder.scale));
-                line(ui, icons::RULER, theme.palette.muted, words);
+                line_ui(ui, icons::RULER, theme.palette.muted, words);
             }
             if table.problems.is_empty() && table.rounded().next().is_none() {
                 paragraph(ui, theme.label(say(theme, "ib_table.exact")));
@@ -56,7 +56,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
         for filled in table.filled() {
             if encoder.staged.program(filled.program).is_none() && encoder.profile().is_none() {
                 let unread = crate::devices::interbus::state::EditError::NotRead(filled.program);
-                line(ui, icons::WARNING, theme.palette.warn, theme.words(&words::refused(&unread)));
+                line_ui(ui, icons::WARNING, theme.palette.warn, theme.words(&words::refused(&unread)));
             }
         }
         // Omitting a line would switch its cam off.
@@ -78,7 +78,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
     });
 }
 
-fn line(ui: &mut Ui, icon: &str, ink: crate::app::Rgb, words: String) {
+fn line_ui(ui: &mut Ui, icon: &str, ink: crate::app::Rgb, words: String) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(ink));
         paragraph(ui, words);

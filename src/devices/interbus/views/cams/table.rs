@@ -21,7 +21,7 @@ pub(super) struct CamTableUiState {
     drafts: BTreeMap<(ProgramNumber, CamNumber, Column), Draft>,
 }
 
-/// Entered text, and the reason if it was refused.
+/// Entered text, with the reason if it was refused.
 type Draft = Option<(String, Option<Text>)>;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -55,7 +55,7 @@ pub(super) fn card_ui(
             }
         });
         for lane in &chart.lanes {
-            ui.horizontal(|ui| row(ui, theme, encoder, (chart, lane), wide, view, actions));
+            ui.horizontal(|ui| row_ui(ui, theme, encoder, (chart, lane), wide, view, actions));
         }
         for lane in &chart.lanes {
             for column in [Column::Name, Column::Start, Column::Stop] {
@@ -76,7 +76,7 @@ fn cell<R>(ui: &mut Ui, width: f32, content: impl FnOnce(&mut Ui) -> R) -> R {
     cell.inner
 }
 
-fn row(
+fn row_ui(
     ui: &mut Ui,
     theme: &Theme,
     encoder: &Encoder,

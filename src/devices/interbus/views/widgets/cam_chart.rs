@@ -30,9 +30,9 @@ pub(crate) struct CamChart<'a> {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CamEvent {
-    /// Edges that the cam would get if the drag ended now. Sent in every frame until the drag ends.
+    /// Edges that the cam would have if the drag ended now. Sent in every frame until the drag ends.
     Preview(CamNumber, Cam),
-    /// The user moved the cam to edges that differ from the present ones.
+    /// The user moved the cam to edges that differ from the present edges.
     Moved {
         cam: CamNumber,
         to: Cam,
@@ -82,7 +82,7 @@ impl CamChart<'_> {
         }
     }
 
-    /// Returns the event of a drag: a preview while the pointer is down, then the result.
+    /// Returns the event of a drag: a preview while the pointer is down, and then the result.
     pub(super) fn drag_result(
         &self,
         ui: &Ui,
@@ -117,8 +117,8 @@ impl CamChart<'_> {
         Some(self.chart.with(drag.hold.cam(), drag.to?))
     }
 
-    /// Handles the arrow keys, which move a part by one step or to the next grid line, and the keys that switch a cam
-    /// on and off.
+    /// Handles the arrow keys, which move an edge or the cam by one step or to the next grid line, and the keys that
+    /// switch a cam on and off.
     pub(super) fn keys(&self, ui: &Ui, response: &Response, hold: Hold, apart: f64) -> Option<CamEvent> {
         if !response.has_focus() || !self.movable {
             return None;
@@ -159,7 +159,7 @@ impl CamChart<'_> {
         (to != own).then_some(CamEvent::Moved { cam, to, drawn: false })
     }
 
-    /// Describes an edge to screen readers and handles their input.
+    /// Describes an edge to screen readers and handles the input they send.
     pub(super) fn announce_edge(
         &self,
         ui: &Ui,
@@ -231,7 +231,7 @@ impl CamChart<'_> {
         });
     }
 
-    /// Draws the target of a drag as a label, always within the available area.
+    /// Draws the label of a drag's target, always within the available area.
     pub(super) fn ghost(&self, theme: &Theme, painter: &Painter, drag: &Drag, near: Pos2) {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;

@@ -37,8 +37,8 @@ struct LanePainter<'a> {
     base: Id,
 }
 
-/// Draws a part of the range and returns the user's action. Each `Ui` can hold one chart; further charts need their own
-/// id (`push_id`).
+/// Draws a part of the range and returns the user's action. Each `Ui` can hold one chart; additional charts need their
+/// own id (`push_id`).
 pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: VisibleRange) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_lanes");
     let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
@@ -67,7 +67,7 @@ impl LanePainter<'_> {
         Snap::on(self.place.steps_in_point())
     }
 
-    /// Handles the mouse wheel over the chart, which zooms and scrolls along the range.
+    /// Handles the mouse wheel over the chart, which zooms and scrolls the view.
     fn look(&self, range: u32) -> Option<CamEvent> {
         let pointer = self.ui.input(|input| input.pointer.hover_pos())?;
         if !self.place.plot.contains(pointer) || !self.ui.rect_contains_pointer(self.place.plot) {

@@ -24,15 +24,15 @@ use crate::devices::interbus::state::cams::{Chart, Hold, Lane, Snap, VisibleRang
 use crate::ui::Theme;
 use crate::ui::widgets::focus_ring;
 
-/// The least side of the square.
+/// Minimum side length of the square.
 const LEAST: f32 = 160.0;
 /// Radius of the innermost circle as a fraction of the outer radius.
 const INNER: f32 = 0.34;
-/// Margin around the ring for its numbers.
+/// Margin around the ring for the position numbers.
 const NUMBERS: f32 = 26.0;
 /// Width of an edge's grab area.
 const GRIP: f32 = 12.0;
-/// Maximum number of numbers around the ring.
+/// Maximum count of position numbers around the ring.
 const LINES: f64 = 12.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -43,20 +43,20 @@ struct Dial {
 }
 
 impl Dial {
-    /// Returns a point on a circle; the range begins at the top.
+    /// Returns a point on a circle. The range begins at the top.
     fn at(self, position: f64, radius: f32) -> Pos2 {
         let angle = (position / self.range * std::f64::consts::TAU) as f32;
         self.middle + Vec2::new(angle.sin(), -angle.cos()) * radius
     }
 
-    /// Returns the position in the direction of a point.
+    /// Returns the position in the direction of a point on the screen.
     fn position(self, place: Pos2) -> f64 {
         let from = place - self.middle;
         let part = f64::from(from.x.atan2(-from.y)) / std::f64::consts::TAU;
         part.rem_euclid(1.0) * self.range
     }
 
-    /// Returns the distance between adjacent circles: the width of one plus the gap.
+    /// Returns the distance between adjacent circles: the width of a circle plus the gap.
     fn pitch(self) -> f32 {
         self.radius * (1.0 - INNER) / Program::CAMS as f32
     }
@@ -65,18 +65,18 @@ impl Dial {
         self.radius - (f32::from(cam.get()) + 0.5) * self.pitch()
     }
 
-    /// Returns the cam on whose circle a point is.
+    /// Returns the cam on whose circle a point lies.
     fn cam(self, place: Pos2) -> Option<CamNumber> {
         let from_outside = (self.radius - place.distance(self.middle)) / self.pitch();
         if (0.0..Program::CAMS as f32).contains(&from_outside) { CamNumber::new(from_outside as u8) } else { None }
     }
 
-    /// Returns the signed distance from one position to another, the shorter way around the ring.
+    /// Returns the signed distance from one position to another along the shorter way around the ring.
     fn turned(self, from: f64, to: f64) -> f64 {
         (to - from + self.range / 2.0).rem_euclid(self.range) - self.range / 2.0
     }
 
-    /// Returns the steps in a point of the outermost circle.
+    /// Returns the number of steps per point on the outermost circle.
     fn steps_in_point(self) -> f64 {
         self.range / (std::f64::consts::TAU * f64::from(self.radius))
     }
@@ -91,7 +91,7 @@ struct Ring<'a> {
     base: Id,
 }
 
-/// Draws the ring and returns the user's action. Each `Ui` can hold one ring; further rings need their own id
+/// Draws the ring and returns the user's action. Each `Ui` can hold one ring; additional rings need their own id
 /// (`push_id`).
 pub(crate) fn cam_ring(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_ring");
@@ -190,7 +190,7 @@ impl Ring<'_> {
         Some(self.dial.at(f64::from(at + beyond), self.dial.circle(cam)))
     }
 
-    /// Handles a drag around the ring, following the pointer in every frame by the shorter way from its previous
+    /// Handles a drag around the ring, following the pointer in every frame along the shorter way from its previous
     /// position.
     fn pulled(&self, response: &Response, hold: Hold, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {

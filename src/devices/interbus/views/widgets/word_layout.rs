@@ -30,7 +30,7 @@ pub(crate) struct WordLayout<'a> {
     pub(crate) range: u32,
 }
 
-/// Adjacent bits of the same kind.
+/// A group of adjacent bits of the same kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Group {
     kind: Kind,
@@ -81,7 +81,7 @@ impl WordLayout<'_> {
         CamOutput::bit(bit, self.shift).unwrap_or(CamBit::Zero)
     }
 
-    /// Returns the groups from the highest bit on.
+    /// Returns the groups, starting with the highest bit.
     fn groups(&self) -> Vec<Group> {
         let mut groups: Vec<Group> = Vec::new();
         for bit in (0..BITS).rev() {
@@ -94,7 +94,7 @@ impl WordLayout<'_> {
         groups
     }
 
-    /// Returns the bits of the position under the window, the highest and the lowest.
+    /// Returns the highest and the lowest position bit in the window.
     fn window(&self) -> Option<(u8, u8)> {
         let mask = self.shift.mask();
         let high = mask.checked_ilog2()?;
@@ -114,7 +114,7 @@ impl WordLayout<'_> {
         }
     }
 
-    /// Returns the meaning of a bit, as a sentence.
+    /// Returns a sentence that describes a bit.
     fn says(&self, bit: u8) -> Text {
         let own = match self.bit(bit) {
             CamBit::Invalid => TEXTS.text("cams.word_invalid"),
@@ -153,7 +153,7 @@ impl Cells {
         Vec2::new(f32::from(self.columns) * self.cell, lines + CELL * f32::from(self.position_lines()))
     }
 
-    /// Returns the number of lines for the position's bits, which are right-justified below the word's.
+    /// Returns the number of lines required for the position bits, which are right-justified below the word.
     const fn position_lines(&self) -> u8 {
         POSITION.div_ceil(self.columns)
     }
@@ -221,7 +221,7 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
         own.widget_info(|| WidgetInfo::labeled(Role::Label, true, words));
         own.on_hover_text(words);
     }
-    position(ui.painter(), theme, layout, &cells);
+    paint_position(ui.painter(), theme, layout, &cells);
     ui.add(egui::Label::new(theme.caption(say(theme, "cams.word_of_position"))).wrap());
 }
 
@@ -276,8 +276,8 @@ fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells, group: G
     }
 }
 
-/// Draws the position's own bits: those sent, those left out, and those unused by the range.
-fn position(painter: &Painter, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells) {
+/// Draws the bits of the position: those sent, those left out, and those unused by the range.
+fn paint_position(painter: &Painter, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells) {
     let mask = layout.shift.mask();
     let last = layout.range.saturating_sub(1);
     let used = u32::BITS - last.leading_zeros();

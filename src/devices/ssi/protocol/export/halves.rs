@@ -44,10 +44,10 @@ struct Pair {
     low: Option<String>,
 }
 
-/// Returns a function block `SSI_DECODE` in structured text, with DWORD in place of LWORD.
+/// Returns a structured text function block `SSI_DECODE` that uses DWORD in place of LWORD.
 ///
 /// # Errors
-/// [`TooWideError`]: 32 bits do not suffice.
+/// [`TooWideError`] if 32 bits do not suffice.
 pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, TooWideError> {
     let halves = Halves::of(layout, Language::StructuredText)?;
     let mut text = String::new();
@@ -137,7 +137,7 @@ impl Halves {
         let next = if self.is_wide { vec![own("next_low", word)] } else { Vec::new() };
         let single = ["code", "digit"].map(|name| own(name, word));
         let all = [words, halves("fold"), next, single.to_vec()].concat();
-        let is_used = |name: &str| lines.iter().any(|line| mentions(line, name));
+        let is_used = |name: &str| lines.iter().any(|line| uses_name(line, name));
         let used: Vec<(String, &str)> = all.into_iter().filter(|(name, _)| is_used(name)).collect();
         section(auxiliary, &used);
     }
@@ -198,7 +198,7 @@ fn masked(a: Option<&String>, b: Option<&String>) -> Option<String> {
 }
 
 impl Pair {
-    /// Compares two words half by half, skipping halves that are zero in both.
+    /// Compares two words half by half, omitting halves that are zero in both words.
     fn compared(&self, other: &Pair, operator: &str, between: &str, none: &str) -> String {
         let halves = [(&self.high, &other.high), (&self.low, &other.low)].into_iter();
         let halves = halves.filter(|(a, b)| a.is_some() || b.is_some());
@@ -291,9 +291,9 @@ impl Dialect for Halves {
             (Some(high), low) => {
                 let (upper, lower) = (text(&value.high), text(&value.low));
                 // A half may be made of both that there were.
-                if !mentions(&upper, &low) {
+                if !uses_name(&upper, &low) {
                     vec![self.assign(&low, &lower), self.assign(&high, &upper)]
-                } else if !mentions(&lower, &high) {
+                } else if !uses_name(&lower, &high) {
                     vec![self.assign(&high, &upper), self.assign(&low, &lower)]
                 } else {
                     vec![self.assign("next_low", &lower), self.assign(&high, &upper), self.assign(&low, "next_low")]
@@ -324,7 +324,7 @@ impl Dialect for Halves {
 }
 
 /// Returns whether a line uses the given variable as a whole identifier rather than as part of a longer name.
-fn mentions(line: &str, name: &str) -> bool {
+fn uses_name(line: &str, name: &str) -> bool {
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     line.split(|c| !is_name(c)).any(|word| word == name)
 }

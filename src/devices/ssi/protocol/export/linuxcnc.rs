@@ -20,7 +20,7 @@ pub enum UnsupportedProperty {
     /// BCD code.
     #[error("BCD")]
     Bcd,
-    /// Zeros between multiturn and singleturn.
+    /// Zeros between the multiturn and the singleturn part.
     #[error("zeros between turns and steps")]
     Between,
     /// Swapped data wires.
@@ -115,8 +115,8 @@ enum Field {
     Bit(String),
 }
 
-/// Parses a format string. Bit fields become error bits that invalidate the position, which the user can change. The
-/// string does not divide the position into multiturn and singleturn: it is a single number.
+/// Parses a format string as a frame with a single undivided position. Bit fields become error bits that invalidate the
+/// position, which the user can change.
 ///
 /// # Errors
 /// [`FormatError`] with the invalid field.

@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 /// A picture on a white background.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Title, which is also the first label.
+    /// Title, which is also drawn as the first label.
     pub title: String,
     /// Width in picture units.
     pub width: u32,
@@ -18,9 +18,9 @@ pub struct Picture {
 /// A horizontal length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PictureLength {
-    /// A length on the grid.
+    /// Length in whole grid units.
     Whole(u32),
-    /// A length to scale; SVG output is rounded to hundredths.
+    /// Length drawn to scale, which SVG output rounds to hundredths.
     Scaled(f64),
 }
 
@@ -67,7 +67,7 @@ pub enum PathStep {
 /// A single line of text, placed by its baseline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureLabel {
-    /// Horizontal anchor: the left end or the middle.
+    /// Horizontal position of the label's left end or middle.
     pub x: PictureLength,
     /// Baseline.
     pub y: u32,
@@ -83,7 +83,7 @@ pub struct PictureLabel {
     pub text: String,
 }
 
-/// Distance of everything from the edges.
+/// Minimum distance between the picture's content and its edges.
 pub(super) const MARGIN: u32 = 16;
 pub(super) const FAINT: &str = "#555";
 

@@ -9,7 +9,7 @@ use crate::devices::ssi::protocol::range::{Fraction, Range};
 /// Syntax of a target language. A word holds all or part of a frame's bits; a number is plain text in every language.
 pub(super) trait Dialect {
     type Word;
-    /// Returns the variable as a word expression.
+    /// Returns the word expression that refers to a variable.
     fn name(&self, name: &'static str) -> Self::Word;
     fn hex(&self, value: u64) -> Self::Word;
     fn and(&self, a: &Self::Word, b: &Self::Word) -> Self::Word;
@@ -24,7 +24,7 @@ pub(super) trait Dialect {
     fn divided(&self, number: &str, by: u64) -> String;
     fn rest(&self, number: &str, by: u64) -> String;
     fn assign(&self, name: &str, value: &str) -> String;
-    /// Returns one or more statements that assign a word to a variable.
+    /// Returns the statements that assign a word to a variable.
     fn assign_word(&self, name: &'static str, value: &Self::Word) -> Vec<String>;
     fn when(&self, condition: &str, statement: &str) -> String;
     fn comment(&self, text: &str) -> String;
@@ -116,7 +116,7 @@ impl<D: Dialect> Writer<'_, D> {
             self.flag(&d.equal(&d.and(&d.name("fold"), &d.hex(1)), &d.hex(odd)), Flags::PARITY);
         }
         if descriptor.coded == Coded::AreaAndErrors {
-            self.ungray_inside(layout);
+            self.decode_inner_gray(layout);
         }
         for (index, (bit, own)) in layout.errors.iter().zip(&descriptor.errors).enumerate() {
             self.comment(&own.name);
@@ -132,7 +132,7 @@ impl<D: Dialect> Writer<'_, D> {
             self.set_word("word", &d.or(&moved, &d.and(&d.name("word"), &d.hex(ones(layout.behind_area)))));
         }
         if descriptor.coded == Coded::Area {
-            self.ungray_inside(layout);
+            self.decode_inner_gray(layout);
             if descriptor.shift_right {
                 self.set_word("word", &d.and(&d.name("word"), &d.hex(!(1 << layout.behind_area))));
             }
@@ -144,17 +144,17 @@ impl<D: Dialect> Writer<'_, D> {
     }
 
     /// Writes the Gray conversion of a code that occupies only part of the word.
-    fn ungray_inside(&mut self, layout: &Layout) {
+    fn decode_inner_gray(&mut self, layout: &Layout) {
         let d = self.dialect;
         let (bits, behind) = layout.gray;
         self.comment("Gray, zeros included");
         self.set_word("fold", &d.and(&d.right(&d.name("word"), behind), &d.hex(ones(bits))));
-        self.ungray("fold", bits);
+        self.gray_to_binary("fold", bits);
         let rest = d.and(&d.name("word"), &d.hex(!(ones(bits) << behind)));
         self.set_word("word", &d.or(&d.left(&d.name("fold"), behind), &rest));
     }
 
-    fn ungray(&mut self, name: &'static str, bits: u8) {
+    fn gray_to_binary(&mut self, name: &'static str, bits: u8) {
         let d = self.dialect;
         for shift in [1, 2, 4, 8, 16, 32].into_iter().filter(|shift| *shift < bits) {
             self.set_word(name, &d.xor(&d.name(name), &d.right(&d.name(name), shift)));
@@ -173,7 +173,7 @@ impl<D: Dialect> Writer<'_, D> {
         self.set_word("code", &code);
         if matches!(coding.code(), Code::Gray | Code::GrayExcess) {
             self.comment("Gray");
-            self.ungray("code", coding.bits());
+            self.gray_to_binary("code", coding.bits());
         }
         self.set("position", &d.number(&d.name("code")));
         match coding.code() {

@@ -10,7 +10,8 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::timing::Times;
 
-/// Locations of the position and the remaining bits, numbered as interface modules do: bit 0 is the last bit received.
+/// Locations of the position and the remaining bits, numbered as in interface modules, with bit 0 as the last bit
+/// received.
 struct Places {
     frame: u8,
     lowest: u8,
@@ -48,7 +49,7 @@ impl Places {
     }
 }
 
-/// Returns the settings of common modules, one paragraph each.
+/// Returns the settings for common interface modules, one paragraph per module.
 pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: Say<'_>) -> String {
     let places = Places::new(layout, say);
     let descriptor = layout.descriptor();
@@ -99,18 +100,18 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: 
 }
 
 enum Label {
-    /// A term of the module manual that is the same in every language.
+    /// Term from the module manual, identical in every language.
     Own(&'static str),
     Said(ExportText),
 }
 
 enum Setting {
-    /// A string that is the same in every language.
+    /// String that is identical in every language.
     Plain(String),
     Said(ExportText),
 }
 
-/// Returns the property that no module can decode.
+/// Returns the property of the frame that no module can decode, if any.
 fn obstacle(layout: &Layout) -> Option<ModuleObstacle> {
     let descriptor = layout.descriptor();
     match descriptor.code {

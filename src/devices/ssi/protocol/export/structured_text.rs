@@ -84,7 +84,7 @@ impl Dialect for StructuredText {
     }
 }
 
-/// Returns a function block `SSI_DECODE` for this layout.
+/// Returns a structured text function block `SSI_DECODE` for the layout.
 pub fn structured_text(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
     let title = title.replace("*)", "* )");

@@ -12,7 +12,7 @@ const CLOCK: &str = "#1a5fb4";
 const DATA: &str = "#26a269";
 const BITS: &str = "#b8dcff";
 
-/// Returns a field's print colour, light enough for black text.
+/// Returns the print colour of a field, which is light enough for black text.
 fn colour(role: Role) -> &'static str {
     match role {
         Role::Zero => "#eeeeee",
@@ -36,7 +36,7 @@ fn family(role: Role) -> &'static str {
     }
 }
 
-/// Returns the name of a clock's content, like [`Layout::role_name`] but with the given wording.
+/// Returns the name of a clock's content, like [`Layout::role_name`] but in the language of `say`.
 pub(super) fn role_name(layout: &Layout, role: Role, say: Say<'_>) -> String {
     match role {
         Role::Parity => say(&ExportText::ParityBit),

@@ -79,7 +79,7 @@ pub enum ExportText {
     Binary,
     /// Heading of the clock table.
     TableHeading,
-    /// Labels of the timing diagram.
+    /// Label of the clock line in the timing diagram.
     ClockLine,
     DataLine,
     BurstSpan {
@@ -102,7 +102,7 @@ pub enum ModuleObstacle {
     GrayOver,
     /// Swapped data wires.
     Inverted,
-    /// Zeros between multiturn and singleturn.
+    /// Zeros between the multiturn and the singleturn part.
     Between,
 }
 
@@ -120,7 +120,7 @@ pub enum SettingMeaning {
     Odd,
 }
 
-/// Converts a text to a string in the language of the caller.
+/// Function that converts a text to a string in the caller's language.
 pub type Say<'a> = &'a dyn Fn(&ExportText) -> String;
 
 /// Returns the English string, used by the command line.

@@ -4,10 +4,10 @@ use super::{Align, ErrorPlace, Family, Settings};
 use crate::devices::ssi::protocol::descriptor::Descriptor;
 use crate::devices::ssi::protocol::range::Range;
 
-/// A setting left as delivered.
+/// Function that resets one setting to its default.
 type Leave = fn(&mut Settings);
 
-/// Functions that clear one setting each, in the order in which they are tried.
+/// Functions that each reset one setting, in the order in which they are tried.
 const LEAVE: [Leave; 12] = [
     |settings| settings.clocks = None,
     |settings| settings.align = None,
@@ -51,7 +51,7 @@ impl Family {
         })
     }
 
-    /// Returns the settings that can be read off a frame, which is all but the bit alignment.
+    /// Returns the settings that can be derived from a frame, which are all except the bit alignment.
     fn shown_settings(&self, frame: &Descriptor) -> Settings {
         let asked = Settings {
             code: Some(frame.code),

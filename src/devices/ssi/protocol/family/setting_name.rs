@@ -3,7 +3,7 @@
 /// A setting of a family, as named in error messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingName {
-    /// Frame of the same width as the position.
+    /// The frame is exactly as wide as the position.
     #[error("frame")]
     Frame,
     /// Positions shifted to the right.
@@ -12,19 +12,19 @@ pub enum SettingName {
     /// Number of steps that is not a power of two.
     #[error("number of steps that is not a power of two")]
     AnySteps,
-    /// Width of the multiturn part as set.
+    /// Multiturn width that was set.
     #[error("mt")]
     Mt,
     /// Multiturn part.
     #[error("multiturn")]
     Multiturn,
-    /// Width of the multiturn part with its limits.
+    /// Multiturn width, with its limits.
     #[error("multiturn bits")]
     MultiturnBits,
-    /// Width of the singleturn part as set.
+    /// Singleturn width that was set.
     #[error("st")]
     St,
-    /// Width of the singleturn part with its limits.
+    /// Singleturn width, with its limits.
     #[error("singleturn bits")]
     SingleturnBits,
     /// Width of a linear position.
@@ -39,7 +39,7 @@ pub enum SettingName {
     /// Total number of steps.
     #[error("total number of steps")]
     StepsAltogether,
-    /// Steps of a round axis.
+    /// Number of steps on a round axis.
     #[error("steps over this number of revolutions")]
     StepsAround,
     /// Turns.
@@ -48,7 +48,7 @@ pub enum SettingName {
     /// Turns given without steps.
     #[error("number of turns without steps")]
     TurnsWithoutSteps,
-    /// Revolutions of a round axis.
+    /// Number of revolutions of a round axis.
     #[error("revolutions")]
     Revolutions,
     /// Numerator of the revolutions.

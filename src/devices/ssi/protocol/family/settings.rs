@@ -13,11 +13,11 @@ pub struct Settings {
     pub multiturn: Option<u8>,
     /// Width of the singleturn part, or of a linear position, in bits.
     pub singleturn: Option<u8>,
-    /// Number of steps that is not a power of two: per turn, or in total on a round axis.
+    /// Number of steps per turn, or in total on a round axis, that is not a power of two.
     pub steps: Option<u32>,
     /// Number of turns of `steps` steps each.
     pub turns: Option<u32>,
-    /// Number of turns over which `steps` are distributed.
+    /// Number of turns over which `steps` are distributed on a round axis.
     pub revolutions: Option<Fraction>,
     /// Position code.
     pub code: Option<Code>,
@@ -61,7 +61,7 @@ pub struct ResolvedFrame {
 pub enum Advice {
     /// The manual lists other codes for this family.
     Code(Code),
-    /// There are more clocks than frame bits; the content of the surplus ones is unknown.
+    /// The burst has more clocks than the frame has bits, and the content of the surplus clocks is unknown.
     Clocks {
         /// Number of bits in the frame.
         bits: u8,
@@ -73,7 +73,7 @@ pub enum Advice {
 /// The reason why settings are impossible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingsError {
-    /// The family does not have this setting.
+    /// The family lacks this setting.
     #[error("{family} has no {field}")]
     None {
         /// Name of the family.
@@ -81,7 +81,7 @@ pub enum SettingsError {
         /// The unavailable setting.
         field: SettingName,
     },
-    /// Two settings exclude each other.
+    /// The two settings are mutually exclusive.
     #[error("{0} and {1} exclude each other")]
     Both(SettingName, SettingName),
     /// A value is outside its limits.
@@ -145,7 +145,7 @@ impl Settings {
     /// Returns the frame that a family sends with these settings.
     ///
     /// # Errors
-    /// [`SettingsError`] with the reason why it cannot.
+    /// [`SettingsError`] with the reason why the family cannot send such a frame.
     pub fn resolve(&self, family: &Family) -> Result<ResolvedFrame, SettingsError> {
         let range = self.range(family)?;
         let preset = self.preset.unwrap_or(0);
@@ -311,7 +311,7 @@ fn fits(frame: &Frame, lead: u8, bits: u8) -> bool {
     lead + bits <= frame.area.unwrap_or(bits)
 }
 
-/// Returns the error bits of a frame with their clocks; `behind` is the position's last clock.
+/// Returns the error bits of a frame with their clocks. `behind` is the last clock of the position.
 fn placed(frame: &Frame, place: ErrorPlace, behind: u8) -> Vec<ErrorBit> {
     let first = frame.errors.iter().map(|bit| bit.clock).min().unwrap_or(1);
     let moved = |bit: &ErrorBit| match place {

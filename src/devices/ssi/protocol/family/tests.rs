@@ -1,7 +1,7 @@
 //! Golden frames of the reference, section 8, and its traps, section 6, by the families' settings.
 
 use super::*;
-use crate::devices::ssi::protocol::{Direction, Flags, FrameFinding, Location, Meaning, Range, ungray};
+use crate::devices::ssi::protocol::{Direction, Flags, FrameFinding, Location, Meaning, Range, gray_to_binary};
 
 fn resolve(text: &str) -> Result<ResolvedFrame, String> {
     let (key, settings) = Settings::parse(text).map_err(|error| error.to_string())?;
@@ -146,7 +146,7 @@ fn the_kh53_has_an_error_pattern() {
         );
         let suspicious = layout.decode(0x0F_FFFE);
         assert!(layout.is_valid(suspicious), "{code}");
-        assert_eq!(suspicious.position, if code == "gray" { ungray(0x0F_FFFE) } else { 0x0F_FFFE });
+        assert_eq!(suspicious.position, if code == "gray" { gray_to_binary(0x0F_FFFE) } else { 0x0F_FFFE });
         assert_eq!(layout.findings(layout.decode(0x0F_FFFC)), []);
     }
 }

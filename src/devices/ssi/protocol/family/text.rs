@@ -28,7 +28,7 @@ const NAMES: &[&str] = &[
 ];
 
 impl Settings {
-    /// Splits `ahm36,code=gray,st=12` into the key of the family and its settings.
+    /// Splits a specification such as `ahm36,code=gray,st=12` into the family key and its settings.
     ///
     /// # Errors
     /// [`SpecError`] with the valid values.
@@ -42,8 +42,7 @@ impl Settings {
         Ok((key, settings))
     }
 
-    /// Returns the family key and its settings as one word: `ahm36,code=gray,st=12`. Only explicit settings are
-    /// included.
+    /// Returns the family key and its explicit settings as one word, such as `ahm36,code=gray,st=12`.
     pub fn emit(&self, key: &str) -> String {
         fn word<T: ToString>(value: Option<T>) -> Option<String> {
             value.map(|value| value.to_string())
@@ -92,7 +91,7 @@ impl Settings {
     }
 }
 
-/// Keywords for a value: the preferred one, and accepted alternatives.
+/// Type whose values are written as keywords, each with a preferred one and accepted alternatives.
 trait Words: Copy + PartialEq + 'static {
     const ALL: &'static [(&'static str, Self)];
 
@@ -143,7 +142,7 @@ impl Words for ErrorPlace {
         &[("none", ErrorPlace::None), ("fix", ErrorPlace::Fix), ("following", ErrorPlace::Following)];
 }
 
-/// Defines the conversion between values and their keywords; the error lists the valid keywords.
+/// Defines the conversion between values and their keywords. Parse errors list the valid keywords.
 macro_rules! in_words {
     ($($type:ty: $expected:expr,)*) => {$(
         impl fmt::Display for $type {

@@ -73,7 +73,7 @@ pub(super) fn any_other(
     }
 }
 
-/// Returns the alternatives to a parity bit: a trailing zero, or an error bit covered by the code.
+/// Returns the alternatives to a parity bit, which are a trailing zero and an error bit covered by the code.
 fn parity_variants(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
     let none = Descriptor { parity: None, ..frame.clone() };
     let mut errors = frame.errors.clone();

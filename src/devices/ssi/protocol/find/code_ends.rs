@@ -6,7 +6,7 @@ use super::reading::{Read, Reading};
 use crate::devices::ssi::protocol::code::Code;
 
 const TRIED: usize = 40;
-/// Tolerance in bits within which a range end still counts as a fit.
+/// Tolerance in bits within which a range end fits as well as the best one.
 const AS_WELL_BITS: f64 = 10.0;
 
 /// Returns the candidate codes, each with the most usual and the last possible number of steps.
@@ -96,7 +96,7 @@ fn best(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u6
     Some((first, others.copied().unwrap_or(first)))
 }
 
-/// Returns the number of steps from the size that most jumps have.
+/// Returns the number of steps that the most frequent jump size implies.
 fn jump_size(motion: &Motion, whole: u64) -> Option<u64> {
     let mut jumps: Vec<u64> = motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     jumps.retain(|size| *size > motion.limit);
@@ -111,7 +111,7 @@ fn jump_size(motion: &Motion, whole: u64) -> Option<u64> {
     Some(whole.saturating_sub(median(&mut alike).unsigned_abs()))
 }
 
-/// Returns the numbers of steps that encoders are ordered with.
+/// Returns the numbers of steps with which encoders are usually ordered.
 fn usual(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
     let mut all: Vec<u64> = Vec::new();
     for step in [1, 2, 5, 25] {

@@ -15,7 +15,7 @@ const REPEAT_PERCENT: usize = 10;
 /// Minimum width in bits for a word to be recognized as repeated.
 const LEAST_WORD: u8 = 4;
 
-/// Frames with a common number of clocks, in the order received.
+/// Recorded frames with the same number of clocks, in the order received.
 pub(super) struct FrameSet {
     words: Vec<u64>,
     pub(super) clocks: u8,
@@ -41,7 +41,7 @@ impl FrameSet {
         FrameSet { words, clocks, bits }
     }
 
-    /// Returns the first words of frames that carry each word twice.
+    /// Returns the first words of frames that repeat each word.
     pub(super) fn first_words(&self, repeat: Repeat) -> Self {
         let words: Vec<u64> = self.words.iter().map(|word| word >> (self.clocks - repeat.word)).collect();
         FrameSet::new(&words, repeat.word)
@@ -59,7 +59,7 @@ impl FrameSet {
         (1..=self.clocks).map(|clock| (clock, self.bit(clock)))
     }
 
-    /// The line stays high or low.
+    /// Returns the level of a line that never changes, or `None` if the frames contain both 0 and 1.
     pub(super) fn stuck(&self) -> Option<bool> {
         let same = |word: u64| self.words.iter().all(|own| *own == word);
         if same(0) { Some(false) } else { same(ones(self.clocks)).then_some(true) }
@@ -129,7 +129,7 @@ impl Bit {
         Bit { usual, unusual, changes, moves: longest > SHORT || unusual * 100 > RARE_PERCENT * words.len() }
     }
 
-    /// Returns the information in bits needed to describe a bit that nothing else explains.
+    /// Returns the information in bits needed to describe a bit that is not explained by anything else.
     pub(super) fn cost(&self, frames: usize) -> f64 {
         entropy(self.changes, frames)
     }

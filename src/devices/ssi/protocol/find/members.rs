@@ -10,7 +10,7 @@ use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 use crate::devices::ssi::protocol::family::{Families, Settings};
 use crate::devices::ssi::protocol::layout::Layout;
 
-/// Weights of less probable properties; a changed setting is a little less than 1.
+/// Weight of a frame that belongs to no family. A changed setting weighs slightly less than 1.
 pub(super) const ANY_OTHER: f64 = 2.0;
 pub(super) const EXCHANGED: f64 = 2.0;
 pub(super) const PADDED: f64 = 1.5;
@@ -71,8 +71,8 @@ pub(super) fn detect_parity(reading: &Reading, inverted: bool) -> Option<Parity>
     reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
 }
 
-/// Returns the even parity bit after Gray that may just as well be a zero covered by the code: either looks like the
-/// lowest position bit.
+/// Returns an even parity bit after Gray code that might equally be a zero covered by the code. Either one looks like
+/// the lowest position bit.
 pub(super) fn crosses_zero(reading: &Reading, inverted: bool) -> Option<Parity> {
     detect_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }

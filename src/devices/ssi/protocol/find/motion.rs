@@ -1,16 +1,16 @@
 //! Measures how evenly a shaft turns when frames are read as certain numbers: the information required for each number,
 //! given the previous ones. A misread number jumps and requires its full information.
 
-/// Number of differences per median.
+/// Number of differences over which each median is taken.
 const BLOCK: usize = 16;
 /// Cost in bits of choosing a size group for the differences.
 const MODEL_BITS: f64 = 8.0;
-/// Information of a frame whose number is invalid, in bits.
+/// Information in bits of a frame without a valid number.
 const NONE_BITS: f64 = 16.0;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
-    /// Information needed in all, in bits.
+    /// Total information in bits.
     pub(super) bits: f64,
     pub(super) median: i64,
     /// Steps since the previous frame, for each frame but the first; `None` if either frame has no valid number.
@@ -19,7 +19,7 @@ pub(super) struct Motion {
     pub(super) uneven: Vec<i64>,
     pub(super) limit: u64,
     pub(super) jumps: usize,
-    /// Frames without a valid number.
+    /// Number of frames without a valid number.
     pub(super) nones: usize,
 }
 
@@ -95,7 +95,7 @@ fn cost(uneven: &[i64]) -> f64 {
     which + within as f64 + MODEL_BITS * met().count() as f64
 }
 
-/// Returns the shortest equivalent of a step, across the wrap-around if need be.
+/// Returns the shortest equivalent of a step, which may cross the wrap-around.
 pub(super) fn nearest(step: u64, round: u64) -> i64 {
     if round == 0 {
         return step as i64;

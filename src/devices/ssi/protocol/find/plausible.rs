@@ -23,7 +23,7 @@ const STEPS: [(u8, f64); 16] = [
 /// Bits of the revolutions.
 const TURNS: [(u8, f64); 9] =
     [(0, 0.0), (12, 0.0), (13, 0.6), (16, 0.6), (14, 1.0), (10, 1.4), (8, 1.4), (15, 1.6), (11, 1.6)];
-/// Bits of steps below which multiturn encoders are not built.
+/// Minimum number of step bits in multiturn encoders.
 const FEW_STEPS: u8 = 8;
 
 /// Returns how unusual a combination of turn bits and step bits is.

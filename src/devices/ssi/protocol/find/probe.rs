@@ -60,7 +60,7 @@ impl<'a> Probe<'a> {
         self.seen.clocks
     }
 
-    /// Tries a layout whose steps match the reading's, forwards or backwards, at full or half scale.
+    /// Tests whether a layout's steps match those of the reading, forwards or backwards, at full or half scale.
     pub(super) fn trial(&self, layout: &Layout) -> Option<Trial> {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let invalid = layout.descriptor().errors.iter().enumerate().filter(|(_, bit)| bit.meaning == Meaning::Invalid);

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use super::code_ends::{ends, unusual_step_cost};
 use super::frame_set::{FrameSet, entropy};
 use super::motion::Motion;
-use crate::devices::ssi::protocol::code::{Code, Coding, ones, ungray};
+use crate::devices::ssi::protocol::code::{Code, Coding, gray_to_binary, ones};
 use crate::devices::ssi::protocol::descriptor::Parity;
 
 /// Number of frames in the first trial of each reading, taken in runs of consecutive frames.
@@ -35,7 +35,7 @@ pub(super) struct Reading {
     pub(super) code: Code,
     /// The clock of the highest bit that moved.
     pub(super) first: u8,
-    /// The clock of the lowest bit.
+    /// Clock of the lowest bit.
     pub(super) last: u8,
     /// First and last clock of a gap within the position, if any.
     pub(super) gap: Option<(u8, u8)>,
@@ -50,9 +50,9 @@ pub(super) struct Read {
     /// Decoded numbers. For Gray excess, they are numbers of the full Gray code.
     pub(super) numbers: Vec<Option<u64>>,
     pub(super) motion: Motion,
-    /// Information needed in all, in bits.
+    /// Total information in bits.
     pub(super) bits: f64,
-    /// Clocks that move and are not explained.
+    /// Clocks whose bits change without an explanation.
     pub(super) unexplained: Vec<u8>,
     pub(super) closed: bool,
 }
@@ -105,7 +105,7 @@ impl Reading {
             let number = match (&digits, self.code) {
                 (Some(digits), _) => digits.decode(bits),
                 (None, Code::Binary) => Some(bits),
-                (None, _) => Some(ungray(bits)),
+                (None, _) => Some(gray_to_binary(bits)),
             };
             number.filter(|number| allowed.contains(number))
         };
@@ -131,7 +131,7 @@ impl Reading {
         Some((from, to))
     }
 
-    /// Returns the information in everything but the motion, in bits, and the unexplained clocks.
+    /// Returns the information in bits of everything except the motion, and the unexplained clocks.
     fn other_information(&self, seen: &FrameSet) -> (f64, Vec<u8>) {
         let frames = seen.words().len();
         let mut bits = 0.0;
@@ -182,7 +182,7 @@ impl Read {
         read
     }
 
-    /// Returns the information needed in all, including that for unusual properties.
+    /// Returns the total information in bits, including that of unusual properties.
     pub(super) fn cost(&self) -> f64 {
         self.bits - UNEXPLAINED_BITS * self.unexplained.len() as f64
     }
@@ -195,7 +195,7 @@ impl Read {
     }
 }
 
-/// Returns the number of frames in which a parity is right.
+/// Returns the number of frames in which the parity is correct.
 fn right(seen: &FrameSet, parity: Parity) -> usize {
     seen.words().iter().filter(|word| seen.is_right(**word, parity)).count()
 }

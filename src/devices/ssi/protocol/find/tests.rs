@@ -1,5 +1,5 @@
-//! Frames of turning, standing and disturbed shafts, made by the layouts that are to be found; and recordings of encoders
-//! made by other means.
+//! Frames of turning, standing and disturbed shafts, made by the layouts that are to be found; and recordings of
+//! encoders made by other means.
 
 #[path = "../../../../../tests/tools/ssi_recordings.rs"]
 mod recordings;
@@ -176,10 +176,10 @@ fn reads(proposal: &Proposal, frames: &[u64], meant: &[Option<u64>]) -> bool {
     frames.iter().zip(meant).all(read)
 }
 
-/// Issue 22.22: recordings of fifteen encoders, made in Python, with noise and disturbed frames. In the order of the file:
-/// whether the tick is allowed, since every bit is explained (a 1 before the position and its highest bit look the same
-/// until the end of the range is passed, so do a falling binary position and exchanged wires, and so do 3600 and 3598 steps
-/// as long as the shaft jumps over the first and the last).
+/// Issue 22.22: recordings of fifteen encoders, made in Python, with noise and disturbed frames. In the order of the
+/// file: whether the tick is allowed, since every bit is explained (a 1 before the position and its highest bit look
+/// the same until the end of the range is passed, so do a falling binary position and exchanged wires, and so do 3600
+/// and 3598 steps as long as the shaft jumps over the first and the last).
 #[test]
 fn independent_recordings_are_recognized() {
     let vectors = [

@@ -9,16 +9,16 @@ use crate::devices::ssi::protocol::range::Range;
 
 /// Minimum lead of the first class over the next, in bits.
 const LEAD_BITS: f64 = 100.0;
-/// Largest part of the numbers' bits that an even motion needs.
+/// Maximum share of the numbers' bits that an even motion may need.
 const EVEN: f64 = 0.7;
 /// Maximum share of the numbers' bits that an even motion may need for a certain result.
 const SURE_EVEN: f64 = 0.35;
 /// Percentage of frames that may jump or fail to fit.
 const DISTURBED_PERCENT: usize = 15;
-/// Minimum number of frames for a certain result, and of bits that moved.
+/// Minimum number of frames for a certain result.
 const SURE_FRAMES: usize = 200;
 const SURE_BITS: u8 = 5;
-/// Number of different frames for certainty.
+/// Minimum number of different frames for a certain result.
 const SURE_DIFFERENT: usize = 64;
 const MEMBERS: usize = 200;
 
@@ -39,7 +39,7 @@ pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
     (!proven).then_some(Uncertainty::Open)
 }
 
-/// Returns whether many jumps have a common size, which points to a wrong code rather than to disturbances.
+/// Returns whether many jumps are of equal size, which indicates a wrong code rather than disturbances.
 fn has_uniform_jumps(read: &Read) -> bool {
     let mut sizes: Vec<u64> = read.motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     sizes.retain(|size| *size > read.motion.limit);
@@ -108,7 +108,7 @@ fn steps(read: &Read) -> Option<(u64, u64)> {
     Some((one.min(other).min((last + 1 - first).saturating_sub(2 * unseen)), one.max(other)))
 }
 
-/// Returns whether step sizes vary enough that a lower bit would have been noticed.
+/// Returns whether step sizes vary enough to reveal a missing lower bit.
 pub(super) fn is_varied(read: &Read) -> bool {
     let even = read.motion.uneven.iter().filter(|uneven| uneven.unsigned_abs() <= read.motion.limit);
     let (mut all, mut other) = (0, 0);
@@ -154,7 +154,7 @@ fn evidence(words: &FrameSet, group: &Group, most: f64) -> Evidence {
     }
 }
 
-/// Returns the motions that would tell the members apart or prove them.
+/// Returns the motions that would distinguish or confirm the members.
 fn open(words: &FrameSet, group: &Group) -> Vec<Open> {
     let mut open = unproven_properties(words, group);
     let members = &group.members;

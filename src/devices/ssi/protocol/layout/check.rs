@@ -8,7 +8,7 @@ use crate::devices::ssi::protocol::range::{Range, RangeError};
 /// The reason why a frame is impossible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
-    /// The number of clocks is zero, or exceeds the capacity of an adapter or a number.
+    /// The number of clocks is zero, or exceeds what an adapter or a number can hold.
     #[error("a frame has 1 to 64 clocks, not {0}")]
     Clocks(u8),
     /// The range of positions is invalid.
@@ -37,10 +37,10 @@ pub enum LayoutError {
         /// Available number of clocks.
         area: u8,
     },
-    /// There are zeros between multiturn and singleturn although these have no separate bits.
+    /// Zeros are specified between multiturn and singleturn, although these have no separate bits.
     #[error("zeros between turns and steps require separate bits for both; here the position is a single number")]
     Between,
-    /// Two uses of the same clock.
+    /// The same clock is used twice.
     #[error("clock {clock} is used by both {first} and {second}")]
     Overlap {
         /// Clock number.
@@ -50,7 +50,7 @@ pub enum LayoutError {
         /// Second use.
         second: ClockUse,
     },
-    /// A bit is beyond the last clock.
+    /// The bit lies beyond the last clock.
     #[error("{name} is on clock {clock}, but the frame has only {clocks} clocks")]
     Behind {
         /// Use of the bit.
@@ -70,7 +70,7 @@ pub enum LayoutError {
         /// Given number.
         count: usize,
     },
-    /// A code over more than the position is not Gray.
+    /// Only a Gray code may cover more than the position.
     #[error("only Gray code can include zeros and error bits")]
     NotGray,
     /// An error or parity bit is within a part that is coded or shifted as a whole.
@@ -88,7 +88,7 @@ pub enum LayoutError {
     /// The lowest bit is lost, which the code does not allow.
     #[error("shifting right drops the lowest bit, and without it a word of this code is not a position")]
     Lost,
-    /// The repetition requires more clocks.
+    /// The frame has too few clocks for the repetition.
     #[error("the frame and its repetition need {needed} clocks, but there are only {clocks}")]
     Repeat {
         /// Required number of clocks.
@@ -96,7 +96,7 @@ pub enum LayoutError {
         /// Available number of clocks.
         clocks: u8,
     },
-    /// No frame can have this pattern.
+    /// The pattern cannot occur in any frame.
     #[error("the pattern {word:X} has more than {clocks} bits")]
     Pattern {
         /// The pattern.
@@ -115,7 +115,7 @@ pub enum ClockUse {
     /// The parity bit.
     #[error("the parity bit")]
     Parity,
-    /// The error bit with this name.
+    /// Error bit with the given name.
     #[error("{0}")]
     Error(String),
 }

@@ -180,7 +180,7 @@ fn gray_decodes_with_and_without_the_error_bit() {
     assert_eq!(whole.encode(0xAB_CDEF, Flags::error(0)), Some(0x1FC_5630));
     let mistaken = whole.decode(0x1FC_5631);
     assert_eq!(mistaken, FrameReading { position: 0xAB_CDEF, flags: Flags::NONE }, "the error bit upside down");
-    assert_eq!(ungray(0x1FC_5631), 0x157_9BDE);
+    assert_eq!(gray_to_binary(0x1FC_5631), 0x157_9BDE);
 }
 
 /// Zeros around the word belong to the Gray code or not: the frames differ whenever the lowest bit is 1 (section 2).

@@ -18,8 +18,8 @@ fn times(key: &str) -> Times {
     Families::built_in().named(key).unwrap().times
 }
 
-/// An encoder of no family: reference section 1 has tm 15…25 µs, 2 MHz and the table of cables for all of SSI, and 33 bits at
-/// 400 kHz take 82.5 µs. How often it makes positions is not known.
+/// An encoder of no family: reference section 1 has tm 15…25 µs, 2 MHz and the table of cables for all of SSI, and 33
+/// bits at 400 kHz take 82.5 µs. How often it makes positions is not known.
 #[test]
 fn any_encoder_has_the_general_times() {
     let reads = Reads { cable_metres: Some(80.0), ..reads(33, 400e3, 20) };

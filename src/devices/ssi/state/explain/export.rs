@@ -87,7 +87,7 @@ mod tests {
     use crate::app::Language::{English, German};
     use crate::devices::ssi::protocol::english;
 
-    /// The English of the catalogue is the English of the command line.
+    /// The English catalogue texts match those of the command line.
     #[test]
     fn both_languages_say_the_same() {
         let codes = [Code::Binary, Code::Gray, Code::GrayExcess, Code::Bcd].map(ExportText::CodeName);

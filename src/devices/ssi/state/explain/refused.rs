@@ -75,7 +75,7 @@ pub fn format(error: &FormatError) -> Text {
     refused(why)
 }
 
-/// A layout for which a controller of 32 bits has no decoder.
+/// Returns the message for a layout that has no decoder for 32-bit controllers.
 pub fn wide(error: TooWideError) -> Text {
     match error {
         TooWideError::Position { bits } => TEXTS.text("ssi.wide_position").with("bits", bits),

@@ -202,7 +202,7 @@ fn time_unit(name: &str, rate_hz: Option<f64>) -> Option<f64> {
     }
 }
 
-/// `24 MHz`, as sigrok writes a sample rate.
+/// Parses a sample rate as written by sigrok, such as `24 MHz`.
 fn frequency(text: &str) -> Option<f64> {
     let text = text.trim();
     let begins = text.find(|c: char| c.is_alphabetic())?;

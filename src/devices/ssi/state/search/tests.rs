@@ -45,8 +45,8 @@ fn a_line_that_is_no_frame_is_reported() {
     }
 }
 
-/// The heading and two rows of `position ssi --csv`; the second is reference section 8, AHM36 in Gray, 091D4B6h ungrayed by
-/// hand: raw 0D93EECh is 14237420.
+/// The heading and two rows of `position ssi --csv`; the second is reference section 8, AHM36 in Gray, 091D4B6h
+/// ungrayed by hand: raw 0D93EECh is 14237420.
 const OWN: &str =
     "t_s,raw,turns,steps,degrees,millimetres,valid\n0.000000,0,0,0,0,,true\n0.001000,14237420,291,10843,238.25,,true\n";
 

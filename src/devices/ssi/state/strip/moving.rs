@@ -94,12 +94,13 @@ pub(super) fn end(layout: &Layout) -> u8 {
     (descriptor.lead + descriptor.between + Parts::of(layout).bits() + late).min(descriptor.area)
 }
 
-/// Returns whether the end of the area matters for a frame.
+/// Returns whether the end of the area affects the frame.
 const fn area_counts(descriptor: &Descriptor) -> bool {
     descriptor.shift_right || !matches!(descriptor.coded, Coded::Position)
 }
 
-/// Returns the frame with a part moved between two clocks, valid or not, or `None` if the result cannot be expressed.
+/// Returns the frame with a part moved from one clock to another, which may be invalid, or `None` if it cannot be
+/// expressed.
 fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) -> Option<Descriptor> {
     let by = i16::from(to) - i16::from(at);
     let mut new = layout.descriptor().clone();

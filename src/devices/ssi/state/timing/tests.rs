@@ -75,7 +75,7 @@ fn a_long_pause_is_drawn_with_a_marked_break() {
     // The burst, the events after it up to 25 µs and two fifths of a burst; the same before the next burst.
     let pieces: Vec<_> = diagram.pieces().iter().map(|piece| (micros(piece.from), micros(piece.to))).collect();
     assert_eq!(pieces, [(0.0, 140.5), (82_549.5, 82_588.75)]);
-    assert_eq!(left_out(diagram.broken(0)).words(Language::German), "82,41 ms ausgelassen");
+    assert_eq!(skipped_operations(diagram.broken(0)).words(Language::German), "82,41 ms ausgelassen");
     assert_eq!(diagram.broken(1), 0.0);
 }
 

@@ -38,9 +38,9 @@ pub(crate) struct BitStrip<'a> {
     /// Bits to display, right-justified, if known.
     pub(crate) frame: Option<u64>,
     pub(crate) selected: Option<u8>,
-    /// Bits can be turned over.
+    /// Whether bits can be inverted.
     pub(crate) toggles: bool,
-    /// Boundaries and single bits can be moved.
+    /// Whether boundaries and single bits can be moved.
     pub(crate) movable: bool,
     /// Whether error and parity bits directly after the position move with its end.
     pub(crate) following: bool,
@@ -48,9 +48,9 @@ pub(crate) struct BitStrip<'a> {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StripEvent {
-    /// The clock to which the part would move, sent in every frame of a drag.
+    /// The part would move to the given clock. Sent in every frame of a drag.
     Preview(Handle, u8),
-    /// The part was moved to a reachable clock other than its current one.
+    /// The part was moved to a different, reachable clock.
     Moved(Handle, u8),
     Selected(u8),
     /// The bit at the given clock is to be inverted.
@@ -99,7 +99,7 @@ struct StripContext<'a> {
     theme: &'a Theme,
     model: &'a BitStrip<'a>,
     shown: &'a Strip,
-    /// The frame's bits, if known.
+    /// Bits of the frame, if known.
     cells: &'a [CellState],
     rows: &'a Rows,
     base: Id,
@@ -122,7 +122,7 @@ impl StripContext<'_> {
         if !response.has_focus() {
             return None;
         }
-        keep_arrows(ui, id);
+        reserve_arrow_keys(ui, id);
         let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
         let at = selected.unwrap_or(0);
         let mut to = at;
@@ -156,7 +156,7 @@ impl StripContext<'_> {
         self.cells.get(usize::from(clock.checked_sub(1)?)).copied()
     }
 
-    /// Returns the number of a clock's bit, 0 the lowest.
+    /// Returns the number of the bit at a clock, where 0 is the lowest.
     fn number(&self, clock: u8) -> Option<u8> {
         let cell = self.shown.cells().get(usize::from(clock.checked_sub(1)?))?;
         match cell.role {
@@ -218,7 +218,7 @@ fn tells(cells: &[CellState], clocks: std::ops::RangeInclusive<u8>) -> Option<Me
 }
 
 /// Keeps the horizontal arrow keys from moving the focus away from the given widget.
-fn keep_arrows(ui: &Ui, id: Id) {
+fn reserve_arrow_keys(ui: &Ui, id: Id) {
     let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
 }

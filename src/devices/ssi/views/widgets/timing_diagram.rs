@@ -21,7 +21,7 @@ use egui::{Color32, FontId, Galley, Painter, Rangef, Rect, Sense, Shape, Stroke,
 use super::bit_strip::field_ink;
 use crate::app::Text;
 use crate::devices::ssi::state::strip::{CellState, bare, short};
-use crate::devices::ssi::state::timing::{Diagram, left_out};
+use crate::devices::ssi::state::timing::{Diagram, skipped_operations};
 use crate::ui::Theme;
 
 use axis::Axis;
@@ -35,7 +35,7 @@ pub(crate) struct TimingDiagram<'a> {
     pub(crate) frame: Option<u64>,
 }
 
-/// Row heights of the signal lines, the labels and the time lanes.
+/// Height of a signal row.
 const ROW: f32 = 24.0;
 const WORDS: f32 = 15.0;
 const LANE: f32 = 19.0;
@@ -54,10 +54,10 @@ struct Rows {
 }
 
 pub(crate) fn timing_diagram(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
-    theme.sunken().show(ui, |ui| draw(ui, theme, model));
+    theme.sunken().show(ui, |ui| draw_ui(ui, theme, model));
 }
 
-fn draw(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
+fn draw_ui(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let diagram = model.diagram;
     let caption = |text: &Text, colour: Color32| {
         ui.painter().layout_no_wrap(theme.words(text), FontId::proportional(theme.sizes.caption), colour)
@@ -70,7 +70,7 @@ fn draw(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let axis = Axis::new(diagram.pieces(), room);
 
     let breaks = axis.breaks();
-    let left_out = (0..breaks.len()).map(|piece| caption(&left_out(diagram.broken(piece)), muted));
+    let left_out = (0..breaks.len()).map(|piece| caption(&skipped_operations(diagram.broken(piece)), muted));
     let moments = diagram.marks().iter().map(|mark| (axis.x(mark.at), caption(&mark.event.words(), text)));
     let mut flags: Vec<(f32, Arc<Galley>, bool)> = moments.map(|(x, galley)| (x, galley, true)).collect();
     flags.extend(breaks.iter().zip(left_out).map(|(gap, galley)| (gap.center(), galley, false)));
@@ -177,7 +177,8 @@ impl Picture<'_> {
         self.painter.add(Shape::line(points, Stroke::new(1.5, self.theme.palette.text)));
     }
 
-    /// High, the bits, low for tm, high again, and the first bits of the next burst.
+    /// Draws the data line, which is high, carries the bits, stays low for tm, returns high, and carries the first bits
+    /// of the next burst.
     fn data(&self, from: f32) {
         let diagram = self.model.diagram;
         let (row, stroke) = (self.rows.data, Stroke::new(1.5, self.theme.palette.text));

@@ -126,8 +126,8 @@ fn drives_of_a_hub_have_consecutive_classes() {
     four.is_asking("0E 03 20 64 24 01 30 0D", "8E 00 00 00 10 48 49 50 45 52 44 52 49 56 45 20 48 55 42 2D 34");
 }
 
-/// Worked out by hand: vendor 03F2, type 000C, code 1, revision 1.2, status, serial 4711 = 1267, "HIPERDRIVE SINGLE" has 17
-/// characters.
+/// Worked out by hand: vendor 03F2, type 000C, code 1, revision 1.2, status, serial 4711 = 1267, "HIPERDRIVE SINGLE"
+/// has 17 characters.
 const IDENTITY: &str =
     "F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 11 48 49 50 45 52 44 52 49 56 45 20 53 49 4E 47 4C 45";
 

@@ -111,7 +111,8 @@ fn replies_and_packets_can_be_lost_or_damaged() {
     }
 }
 
-/// A fifth of the packets is lost in both directions: the connection survives, since eight in a row would have to be lost.
+/// A fifth of the packets is lost in both directions: the connection survives, since eight in a row would have to be
+/// lost.
 #[test]
 fn a_lossy_line_does_not_lose_the_master() {
     let mut host = Host::opened("seed=3");

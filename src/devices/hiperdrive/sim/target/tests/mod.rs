@@ -132,7 +132,8 @@ impl Host {
         self.target.on_datagram(self.now, FROM, &packet.concat());
     }
 
-    /// Sends the data of the reference for the one drive of an adapter: a control word, full speed and torque, 2.5 turns.
+    /// Sends the data of the reference for the one drive of an adapter: a control word, full speed and torque, 2.5
+    /// turns.
     fn word(&mut self, sequence: u32, control: u16) {
         let [low, high] = control.to_le_bytes();
         self.packet(sequence, 1, &[low, high, 100, 100, 0, 0x80, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0]);

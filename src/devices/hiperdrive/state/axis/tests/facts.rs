@@ -10,7 +10,7 @@ fn back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
     axis.look(seen);
     assert_eq!((axis.step(), axis.invalidated_text()), (shown, Some(step)), "the page is left by a press alone");
     assert_eq!(axis.reached(step), Reached::Failed);
-    assert_eq!(axis.may_go_on(seen).unwrap_err().id(), "hd_axis.fallen");
+    assert_eq!(axis.check_can_continue(seen).unwrap_err().id(), "hd_axis.fallen");
     assert_eq!(axis.may_move(seen).unwrap_err().id(), "hd_axis.fallen");
     axis.back(seen);
     assert_eq!((axis.step(), axis.invalidated_text()), (step, None));
@@ -24,10 +24,10 @@ fn limits_are_confirmed_with_the_scale_of_the_drive() {
     // Another master has changed the scale.
     seen.scale = Some(PositionScale::FACTORY);
     back_to(&mut axis, &seen, AxisStep::Scale);
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_scale");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_scale");
     press(&mut axis, &mut seen, Button::Do);
     next(&mut axis, &seen, AxisStep::Confirm);
-    assert!(axis.may_go_on(&seen).is_err(), "what was confirmed before was for another scale");
+    assert!(axis.check_can_continue(&seen).is_err(), "what was confirmed before was for another scale");
     // Locked, although it was confirmed once: the lock counts.
     press(&mut axis, &mut seen, Button::Confirm);
     next(&mut axis, &seen, AxisStep::Jog);
@@ -89,13 +89,13 @@ fn steps_after_a_changed_value_are_undone() {
     next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(done(&axis), 5);
     assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""));
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "entry.missing");
     // Another lower limit: the test was between other limits.
     let (mut axis, mut seen) = tested();
     (0..2).for_each(|_| axis.back(&seen));
     axis.edit(Entries { lower: "-9".to_owned(), ..axis.entries().clone() });
     next(&mut axis, &seen, AxisStep::Upper);
-    assert!(axis.outcome(TestTarget::Middle).is_none() && axis.may_go_on(&seen).is_err());
+    assert!(axis.outcome(TestTarget::Middle).is_none() && axis.check_can_continue(&seen).is_err());
     assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(158, -900), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
     assert_eq!(axis.invalidated_text(), None, "the review of their plan confirms them");
@@ -117,7 +117,10 @@ fn only_motion_while_the_pad_is_held_is_a_jog() {
         at(&mut seen, position);
         axis.look(&seen);
     }
-    assert_eq!((axis.travel(), axis.may_go_on(&seen).unwrap_err().id()), (Travel::default(), "hd_axis.needs_up"));
+    assert_eq!(
+        (axis.travel(), axis.check_can_continue(&seen).unwrap_err().id()),
+        (Travel::default(), "hd_axis.needs_up")
+    );
     // The first packets while a button is held: none of them contains a position yet.
     seen.held = Some((7, Direction::Clockwise));
     seen.position = None;
@@ -152,10 +155,10 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
     again(&mut axis, &seen);
     assert!(!axis.survived() && axis.reached(AxisStep::PowerCycle) == Reached::Failed);
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_proof");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_proof");
     press(&mut axis, &mut seen, Button::Restarted);
     assert!(
-        axis.survived() && found(&axis, &seen).contains("confirmed by hand, not detected"),
+        axis.survived() && found(&axis, &seen).contains("You confirmed the power-off. The program did not detect it"),
         "{}",
         found(&axis, &seen)
     );
@@ -163,13 +166,13 @@ fn a_power_cycle_is_detected_or_confirmed_by_the_user() {
     let (mut axis, mut seen) = until_power();
     press(&mut axis, &mut seen, Button::Do);
     again(&mut axis, &seen);
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.not_restarted");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
     // Then it really is off.
     axis.lose();
     seen.values.insert(182, 1000);
     axis.surveyed(&seen, false);
-    assert!(axis.survived() && found(&axis, &seen).contains("The restart was detected"));
+    assert!(axis.survived() && found(&axis, &seen).contains("The drive has restarted"));
     // Another master has changed it before: that proves it as well.
     let (mut axis, mut seen) = until_power();
     seen.values.insert(182, 500);
@@ -199,8 +202,8 @@ fn a_fault_is_shown_and_can_be_acknowledged() {
     }
 }
 
-/// Issue 21.6 (d, h): differences from the saved values are reported, written back and compared; a position is set at its
-/// place.
+/// Issue 21.6 (d, h): differences from the saved values are reported, written back and compared; a position is set at
+/// its place.
 #[test]
 fn differences_from_saved_values_are_shown_and_restored() {
     let (mut axis, mut seen) = (run(), fresh());
@@ -208,27 +211,35 @@ fn differences_from_saved_values_are_shown_and_restored() {
     seen.values.extend([(154, 400), (156, 256), (158, -1000), (198, 128)]);
     seen.unsaved = BTreeMap::from([(154, 256), (156, 1), (158, -1000), (198, 0)]);
     let told = words::differences(&seen).unwrap().words(Language::English);
-    assert!(told.contains("154 is 400 instead of 256") && told.contains("156 is 256 instead of 1"), "{told}");
-    assert!(told.contains("198 is 128 instead of 0 (set the position again") && !told.contains("158"), "{told}");
+    assert!(
+        told.contains("parameter 154 is 400 instead of 256") && told.contains("parameter 156 is 256 instead of 1"),
+        "{told}"
+    );
+    assert!(
+        told.contains("parameter 198 is 128 instead of 0 (set the position again") && !told.contains("158"),
+        "{told}"
+    );
     let back = vec![(154, 256), (156, 1)];
     assert_eq!(axis.ask(Button::Recall, &seen), Ok(DriveRequest::Restore(back.clone())));
     axis.begin(DriveRequest::Restore(back), &seen);
     axis.written();
-    let returned = |seen: &DriveFacts| words::returned(&axis, seen).unwrap().words(Language::English);
+    let returned = |seen: &DriveFacts| words::write_back_text(&axis, seen).unwrap().words(Language::English);
     assert!(returned(&seen).contains("0 of 2"), "nothing was read yet");
     seen.values.extend([(154, 256), (156, 1)]);
     assert!(returned(&seen).contains("2 of 2 parameters have their previous values"));
     // Manual, 198: "the actual position to be shown at the present position": elsewhere the old number is a wrong zero.
     let told = words::place_left(&axis, &seen).unwrap().words(Language::English);
     assert!(
-        told.starts_with("The position (198) is not written back because it applies to the current location"),
+        told.starts_with(
+            "The previous position (parameter 198) is not restored, because it would set a wrong zero point"
+        ),
         "{told}"
     );
     assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.place_left", "and not that nothing differs");
     axis.cancel(&seen, "");
     let device = Device { name: String::new(), variant: None, serial_number: String::new() };
     let text = report(&axis, &seen, &device, Language::German).unwrap();
-    assert!(text.contains("Die Position (198) wird nicht zurückgeschrieben"), "{text}");
+    assert!(text.contains("Die vorherige Position (Parameter 198) wird nicht wiederhergestellt"), "{text}");
     seen.values.insert(198, 0);
     assert_eq!(words::place_left(&axis, &seen), None);
     assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
@@ -244,9 +255,9 @@ fn millimetres_need_a_confirmed_pitch() {
     // A drive with 400 steps per turn of an unknown spindle: no pitch is proposed that would fit it by accident.
     seen.scale = PositionScale::new(400, 256).ok();
     assert_eq!(axis.entries().pitch, "");
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "entry.missing");
     type_spindle(&mut axis);
-    assert_eq!((position(&seen), axis.may_go_on(&seen)), ("400 steps".to_owned(), Ok(())));
+    assert_eq!((position(&seen), axis.check_can_continue(&seen)), ("400 steps".to_owned(), Ok(())));
     confirm_spindle(&mut axis, &mut seen);
     assert_eq!(position(&seen), "4.00 mm");
     let pitch = Some(Length { nanometres: 8_000_000 });
@@ -276,7 +287,7 @@ fn a_run_ends_with_a_report() {
         "HIPERDRIVE HUB-4 · 16, drive 1",
         "serial number 77",
         "Spindle pitch: 4.000 mm per turn",
-        "7. Upper limit: done\n   The drive's limits are -10.00 mm … 20.00 mm.",
+        "7. Upper limit: done\n   The drive's limits are -10.00 mm to 20.00 mm.",
         "The test moves used 10 % speed and 25 % torque.",
         "Lower limit: reached -10.01 mm (-0.01 mm off target)",
         "The virtual supply was switched off and on.",

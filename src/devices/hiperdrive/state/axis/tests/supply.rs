@@ -43,7 +43,7 @@ fn an_interrupted_write_of_the_mark_is_read_back() {
     assert_eq!(off_and_on(&mut axis, &mut seen), (Restart::Read, true, true));
     // It has not arrived: the check can be prepared once more, without leaving the step.
     let (mut axis, mut seen) = cut_off(1000);
-    assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_proof");
+    assert_eq!(axis.check_can_continue(&seen).unwrap_err().id(), "hd_axis.needs_proof");
     assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(182, 1001)]));
     assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(off_and_on(&mut axis, &mut seen), (Restart::Read, true, true));

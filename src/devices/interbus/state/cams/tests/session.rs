@@ -1,5 +1,5 @@
-//! A long session of edits: chart and table stay equal, and both agree with an independent model. The model stores a cam as
-//! its first position and its length around the range, and undoes by a list of all earlier states.
+//! A long session of edits: chart and table stay equal, and both agree with an independent model. The model stores a
+//! cam as its first position and its length around the range, and undoes by a list of all earlier states.
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -66,7 +66,7 @@ impl Model {
     }
 
     /// Applies a step; nothing if it is refused or changes nothing.
-    fn play(&mut self, step: &Step) {
+    fn play_event(&mut self, step: &Step) {
         let range = self.range;
         let wrap = |at: i64| at.rem_euclid(i64::from(range)) as u32;
         let mut next = *self.now();
@@ -143,7 +143,7 @@ fn stop(start: u32, length: u32, range: u32) -> u32 {
 }
 
 /// Applies the same step to the tested code.
-fn play(staged: &mut Staged, step: &Step, range: u32) {
+fn play_event(staged: &mut Staged, step: &Step, range: u32) {
     let edit = match *step {
         Step::Undo => {
             staged.undo();
@@ -228,8 +228,8 @@ fn chart_and_table_agree_after_ten_thousand_edits() {
             let mut staged = Staged::of_profile(image, Names::default());
             let mut model = Model { range, past: vec![[[(0, 1, false); 8]; 8]], at: 0 };
             for (count, step) in steps.iter().enumerate() {
-                play(&mut staged, step, range);
-                model.play(step);
+                play_event(&mut staged, step, range);
+                model.play_event(step);
                 compare(&staged, &model, count % 8);
             }
             (0..8).for_each(|program| compare(&staged, &model, program));

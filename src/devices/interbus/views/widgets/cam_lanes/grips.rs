@@ -124,8 +124,8 @@ impl LanePainter<'_> {
         event
     }
 
-    /// Returns an edge's grab area and drawing position. An invisible edge is placed at the end of its lane, for the
-    /// keyboard only.
+    /// Returns an edge's grab area and drawing position. An invisible edge is placed at the end of its lane, for
+    /// keyboard use only.
     fn grip(&self, cam: Cam, lane: &Lane, edge: Edge) -> Option<(Rect, f32)> {
         let chart = self.model.chart;
         let at = self.model.chart.edge(lane.cam, edge)?.min(chart.range);

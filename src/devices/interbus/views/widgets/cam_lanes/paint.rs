@@ -118,7 +118,7 @@ impl LanePainter<'_> {
         }
     }
 
-    /// Draws arrows on a cam that continues across the end of the range.
+    /// Draws arrows on a cam that wraps around the end of the range.
     fn draw_wrapped_part(&self, painter: &Painter, lane: &Lane, bar: Rect, at_first: bool, at_last: bool) {
         if !lane.edges.is_some_and(|cam| cam.wraps()) {
             return;

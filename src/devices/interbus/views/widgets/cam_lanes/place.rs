@@ -7,15 +7,15 @@ use crate::devices::interbus::state::cams::{Stretch, VisibleRange};
 
 const RULER: f32 = 20.0;
 const LANE: f32 = 28.0;
-/// Maximum width of the heads before the lanes.
+/// Maximum width of the lane headers.
 const HEAD: f32 = 208.0;
 const HEAD_PART: f32 = 0.34;
-/// Space after the lanes for half a number of the ruler.
+/// Space to the right of the lanes, for half of a ruler number.
 const BEHIND: f32 = 16.0;
 /// Width of an edge's grab area.
 const GRIP: f32 = 9.0;
 
-/// Chart area with the heads on the left and the visible part of the range on the right.
+/// Chart area with the lane headers on the left and the visible part of the range on the right.
 #[derive(Clone, Debug)]
 pub(super) struct PlotArea {
     pub(super) head: Rect,

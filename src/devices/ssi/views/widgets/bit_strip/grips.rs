@@ -4,15 +4,15 @@ use egui::accesskit::Role;
 use egui::{CursorIcon, Id, Key, Modifiers, Rect, Response, Sense, Ui, Vec2, WidgetInfo};
 
 use super::rows::Rows;
-use super::{Drag, StripContext, StripEvent, keep_arrows, paint};
+use super::{Drag, StripContext, StripEvent, paint, reserve_arrow_keys};
 use crate::devices::ssi::state::strip::{self, Handle, Strip};
 
-/// Offset of a handle's grab area from its edge, and width of the area.
+/// Offset of a handle's grab area from its edge.
 const BESIDE: f32 = 7.0;
 const WIDTH: f32 = 14.0;
 /// Space after the last clock.
 const ROOM: f32 = 9.5;
-/// Offset of a handle's visible tab, and of the tab of a second handle at the same edge.
+/// Offset of a handle's visible tab from its edge.
 const TAB: f32 = 3.0;
 const SECOND_TAB: f32 = 8.0;
 /// Fraction at each end of a field that does not drag the field as a whole.
@@ -165,13 +165,13 @@ fn pulled(
     to.map(|to| StripEvent::Preview(handle, to))
 }
 
-/// Handles keyboard input: moves the handle by one clock, or as far as possible.
+/// Handles keyboard input by moving the handle by one clock, or as far as possible.
 fn keys(view: &StripContext<'_>, response: &Response, handle: Handle, at: u8) -> Option<StripEvent> {
     if !response.has_focus() {
         return None;
     }
     let (ui, model) = (view.ui, view.model);
-    keep_arrows(ui, response.id);
+    reserve_arrow_keys(ui, response.id);
     let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
     let to = if pressed(Key::ArrowLeft) {
         at.saturating_sub(1)

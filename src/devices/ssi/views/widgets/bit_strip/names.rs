@@ -26,7 +26,7 @@ pub(super) struct Tag {
 }
 
 const APART: f32 = 6.0;
-/// Longer names are truncated; the field's tooltip contains the whole name.
+/// Maximum width of a name. Longer names are truncated, and shown in full in the tooltip.
 const WIDEST: f32 = 160.0;
 /// Maximum number of rows of names before the last, which is the number of error bits in a frame.
 const LEVELS: usize = 8;
@@ -36,7 +36,7 @@ struct OverflowingName {
     index: usize,
     line: usize,
     x: f32,
-    /// Whether neither neighbour is wider than its field.
+    /// Whether the names of both neighbours fit their fields.
     alone: bool,
     /// Whether the name starts at its leader line instead of ending there.
     begins: bool,
@@ -171,7 +171,7 @@ pub(super) fn tags(
     (tags, levels)
 }
 
-/// Returns how serious a meaning is for the position.
+/// Returns how severely a meaning affects the position.
 pub(super) const fn verdict(meaning: Meaning) -> Verdict {
     match meaning {
         Meaning::Invalid => Verdict::Fault,

@@ -2,10 +2,10 @@
 
 use egui::{Pos2, Rect, Vec2, pos2};
 
-/// Widths of a cell; below the minimum the strip wraps.
+/// Minimum width of a cell, below which the strip wraps.
 const LEAST: f32 = 17.0;
 const MOST: f32 = 28.0;
-/// Heights of the clock numbers, the cells, the bracket lane and a row of names.
+/// Height of the clock numbers.
 const NUMBERS: f32 = 15.0;
 const CELL: f32 = 26.0;
 const LANE: f32 = 16.0;
