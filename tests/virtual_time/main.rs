@@ -1,9 +1,10 @@
-//! The worker, the procedures and the virtual encoder together, in virtual time: the same code as with real hardware, with
-//! every moment of the line under the control of the test. One module per behaviour.
+//! The worker, the procedures and the virtual encoder together, in virtual time: the same code as with real hardware,
+//! with every moment of the line under the control of the test. One module per behaviour.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod biss;
 mod echo;
+mod faults;
 mod find;
 mod hiperdrive;
 mod hiperdrive_motion;

@@ -1,4 +1,5 @@
-//! Test support: a virtual kit encoder in virtual time, a link to it with configurable faults, and a record of its data.
+//! Test support: a virtual kit encoder in virtual time, a link to it with configurable faults, and a record of its
+//! data.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
@@ -20,6 +21,7 @@ use encoder_studio::store::Store;
 use encoder_studio::units::{Moment, SupplyVoltage};
 use encoder_studio::worker::{Event, JobId, Progress, Session};
 
+use crate::faults::{FaultyLink, Schedule};
 use crate::support::{MARGIN, Tap, TestLink, folder};
 
 /// The configuration pin of an encoder, with the host's side of it.
@@ -221,7 +223,8 @@ impl Bench {
         Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
     }
 
-    /// Streams sine and cosine over the adapter, as the Signals tab does; returns whether the encoder had power meanwhile.
+    /// Streams sine and cosine over the adapter, as the Signals tab does; returns whether the encoder had power
+    /// meanwhile.
     pub(crate) fn stream_signals(&self, supply: Option<SupplyVoltage>) -> bool {
         let End::Bus(adapter) = &self.end else { panic!("no adapter") };
         let mut link = TestLink::new(adapter.clone(), self.clock.clone(), Arc::default());
@@ -235,8 +238,8 @@ impl Bench {
         has_power
     }
 
-    /// Returns the same as [`reconnected`](Self::reconnected), with the supply switched on again and this setting for its
-    /// end.
+    /// Returns the same as [`reconnected`](Self::reconnected), with the supply switched on again and this setting for
+    /// its end.
     pub(crate) fn supplied_again(&self, after: SupplyAfter) -> Self {
         Self::with_supply(self.end.clone(), after, self.clock.clone(), self.folder.clone())
     }
@@ -269,6 +272,20 @@ impl Bench {
             End::Bus(adapter) => End::Bus(Arc::new(Mutex::new(adapter.lock().unwrap().clone()))),
         };
         Self::plugged(end, self.session.station().transport, clock, Store::at(folder.path()), folder)
+    }
+
+    /// Returns a copy whose link has faults.
+    pub(crate) fn copied_with(&self, schedule: Arc<Mutex<Schedule>>) -> Bench {
+        let mut bench = self.copied();
+        let (supplied, clock) = (bench.handle(), bench.clock.clone());
+        let cut_power = move |_| supplied.with(|encoder, now| encoder.power_cycle(now));
+        let link = match &bench.end {
+            End::Pin(port) => FaultyLink::new(port.clone(), clock.clone(), schedule, cut_power),
+            End::Bus(adapter) => FaultyLink::new(adapter.clone(), clock.clone(), schedule, cut_power),
+        };
+        let (station, motor) = (Station::new(self.session.station().transport, MARGIN), bench.motor());
+        bench.session = Session::over(Box::new(link), clock, station, bench.store(), Some(motor));
+        bench
     }
 
     /// Calls a function with the encoder.

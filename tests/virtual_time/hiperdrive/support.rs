@@ -12,11 +12,12 @@ use encoder_studio::devices::hiperdrive::procedures::{Station, Survey};
 use encoder_studio::devices::hiperdrive::profile::Image;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 use encoder_studio::devices::hiperdrive::sim::{Config, Target};
-use encoder_studio::link::{Clock, SimPort, VirtualClock};
+use encoder_studio::link::{ByteLink, Clock, SimPort, VirtualClock};
 use encoder_studio::profile::Consent;
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
 
+use crate::faults::{FaultyLink, Schedule};
 use crate::support::{MARGIN, Tap, TestLink, folder};
 
 /// A virtual device with a session on it.
@@ -54,6 +55,19 @@ impl Stand {
         let tap = Arc::<Mutex<Tap>>::default();
         let connection = target.connection(Ipv4Addr::UNSPECIFIED);
         let wire = Box::new(TestLink::new(Arc::new(Mutex::new(connection)), clock.clone(), tap.clone()));
+        Self::over(wire, tap, target, clock)
+    }
+
+    /// Creates another session with a device, over a link with these faults.
+    pub(crate) fn with_faults(target: Target, clock: Arc<VirtualClock>, schedule: Arc<Mutex<Schedule>>) -> Self {
+        let connection = Arc::new(Mutex::new(target.connection(Ipv4Addr::UNSPECIFIED)));
+        let supplied = target.clone();
+        let cut_power = move |now| supplied.with(|station| station.power_cycle(now));
+        let wire = Box::new(FaultyLink::new(connection, clock.clone(), schedule, cut_power));
+        Self::over(wire, Arc::default(), target, clock)
+    }
+
+    fn over(wire: Box<dyn ByteLink>, tap: Arc<Mutex<Tap>>, target: Target, clock: Arc<VirtualClock>) -> Self {
         let port = SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone());
         let folder = folder();
         let store = Store::at(folder.path());
