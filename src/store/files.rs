@@ -11,16 +11,17 @@ use std::time::Duration;
 use tempfile::NamedTempFile;
 
 use super::file_error::{FileError, FileProblem, FileTask};
+use super::leftovers;
 
-/// Maximum number of bytes read by [`read_text`]: 16 MiB. The largest profile is a hundredth of that.
+/// Maximum number of bytes read by [`read_text`], 16 MiB. The largest profile is a hundredth of that size.
 pub const MAX_TEXT: u64 = 16 << 20;
 
-/// The byte order mark that some editors write before a text.
+/// Byte order mark that some editors write at the beginning of a file.
 const MARK: &str = "\u{FEFF}";
 
-/// Writes a file so that a crash or a full disk leaves either the old content or the new one.
+/// Writes a file so that a crash or a full disk leaves either the old content or the new content.
 ///
-/// An existing file keeps its permissions; a link stays a link, and its target is replaced. A device or a pipe
+/// An existing file keeps its permissions. A link stays a link, and its target is replaced. A device or a pipe
 /// (`/dev/stdout`) has no content to protect and is written to directly.
 ///
 /// # Errors
@@ -33,7 +34,7 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_with(path, |file| file.write_all(content))
 }
 
-/// Writes a text like [`write_atomically`] does, but preserves an existing byte order mark from an editor.
+/// Writes a text as [`write_atomically`] does, but preserves an existing byte order mark.
 ///
 /// # Errors
 /// Returns the errors of [`write_atomically`].
@@ -44,7 +45,7 @@ pub fn overwrite_text(path: &Path, text: &str) -> Result<(), FileError> {
     write_atomically(path, [mark, text].concat().as_bytes())
 }
 
-/// Writes a file like [`write_atomically`] does, with content that `write` produces in parts. If `write` fails, the old
+/// Writes a file as [`write_atomically`] does, with content that `write` produces in parts. If `write` fails, the old
 /// file remains.
 ///
 /// # Errors
@@ -67,7 +68,7 @@ pub fn write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
 
-/// Writes a new file like [`write_atomically`] does, but never replaces an existing one, even if another program writes
+/// Writes a new file as [`write_atomically`] does, but never replaces an existing file, even if another program writes
 /// at the same time.
 ///
 /// # Errors
@@ -89,7 +90,7 @@ pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     })
 }
 
-/// Writes one of the program's own files like [`write_atomically`] does, in a folder that is created if missing.
+/// Writes one of the program's own files as [`write_atomically`] does, in a folder that is created if missing.
 ///
 /// # Errors
 /// Returns an error if the folder cannot be created, and the errors of [`write_atomically`].
@@ -100,7 +101,7 @@ pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_atomically(path, content)
 }
 
-/// Reads a text like [`read_text`] does, but only from a regular file, since reading a pipe could block forever.
+/// Reads a text as [`read_text`] does, but only from a regular file, because reading a pipe could block forever.
 ///
 /// # Errors
 /// Returns the errors of [`read_text`], and an error for a pipe or a device.
@@ -111,7 +112,7 @@ pub fn read_file(path: &Path) -> Result<String, FileError> {
     }
 }
 
-/// Reads a text of at most [`MAX_TEXT`] bytes, without the byte order mark that some editors write.
+/// Reads a text of at most [`MAX_TEXT`] bytes and removes the byte order mark that some editors write.
 ///
 /// # Errors
 /// Returns an error if the file is missing, a folder, too large or not UTF-8.
@@ -137,8 +138,8 @@ fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes to a file directly. A pipe without a reader would block forever, so after a time it is abandoned along with
-/// the waiting thread.
+/// Writes directly to a file. A pipe without a reader would block forever, so the write and its thread are abandoned
+/// after a time limit.
 fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     const PATIENCE: Duration = Duration::from_secs(8);
     let (sender, written) = mpsc::channel();
@@ -151,9 +152,9 @@ fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     written.recv_timeout(PATIENCE).unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "nobody reads it")))
 }
 
-/// Returns the file at the end of a chain of links; the file need not exist.
+/// Returns the file at the end of a chain of links. The file need not exist.
 fn resolve_links(path: &Path) -> io::Result<PathBuf> {
-    /// Maximum number of links followed, as in Linux.
+    /// Maximum number of links to follow, as in Linux.
     const MOST: usize = 40;
     let mut target = path.to_owned();
     for _ in 0..MOST {
@@ -174,14 +175,15 @@ fn folder_of(path: &Path) -> Result<&Path, FileProblem> {
     }
 }
 
-/// Writes and flushes a temporary file in the target's folder; the file is removed when dropped.
+/// Writes and flushes a temporary file in the target's folder. The file is removed when dropped.
 fn stage(
     folder: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     permissions: Option<Permissions>,
 ) -> io::Result<NamedTempFile> {
+    leftovers::remove_from(folder);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".encoder-studio-").suffix(".tmp");
+    builder.prefix(leftovers::PREFIX).suffix(leftovers::SUFFIX);
     if permissions.is_none() {
         platform::with_usual_permissions(&mut builder);
     }
@@ -201,7 +203,7 @@ mod platform {
     use std::os::unix::fs::PermissionsExt;
     use std::path::Path;
 
-    /// Gives a new file the usual permissions, subject to the umask; a temporary file is otherwise private to its
+    /// Gives a new file the usual permissions, subject to the umask. Without this, a temporary file is private to its
     /// owner.
     pub(super) fn with_usual_permissions(builder: &mut tempfile::Builder<'_, '_>) {
         builder.permissions(Permissions::from_mode(0o666));

@@ -10,6 +10,7 @@ mod file_lock;
 mod file_names;
 mod files;
 mod folders;
+mod leftovers;
 mod log_file;
 mod logbook;
 
@@ -38,12 +39,12 @@ pub struct Store {
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StoreError {
-    /// The system does not report a home folder for this user.
+    /// The system does not report a home folder for the user.
     #[error("this user has no home folder")]
     NoHome,
     #[error(transparent)]
     File(#[from] FileError),
-    /// One of the user's own device files is invalid; the error comes from its kind of device.
+    /// One of the user's device files is invalid. The error comes from its kind of device.
     #[error("{0}")]
     Refused(Cause),
 }
@@ -66,6 +67,12 @@ impl Store {
         Store { data: root.join("data"), config: root.join("config") }
     }
 
+    /// Removes temporary files that were left behind in the program's folders by a program that was killed.
+    pub fn remove_leftovers(&self) {
+        leftovers::remove_below(&self.data);
+        leftovers::remove_below(&self.config);
+    }
+
     pub fn backups(&self) -> Backups {
         Backups::in_folder(self.data.join("backups"))
     }
@@ -75,17 +82,17 @@ impl Store {
         Drafts::in_folder(self.data.join("drafts"))
     }
 
-    /// Returns the device modes in effect before a job changed them, as one text per device until the mode is restored.
+    /// Returns the device modes to restore after a job has changed them, one text per device.
     pub fn excursions(&self) -> Drafts {
         Drafts::in_folder(self.data.join("excursions"))
     }
 
-    /// Returns the path of the program's settings; the file need not exist.
+    /// Returns the path of the program's settings. The file need not exist.
     pub fn settings_path(&self) -> PathBuf {
         self.config.join("settings.ron")
     }
 
-    /// Returns the path of the program's own log; the file need not exist.
+    /// Returns the path of the program's own log. The file need not exist.
     pub fn log_path(&self) -> PathBuf {
         self.data.join("encoder-studio.log")
     }
@@ -95,12 +102,12 @@ impl Store {
         self.data.join("logbook.sqlite")
     }
 
-    /// Returns the path of the file in which a user may describe devices of the given kind; the file need not exist.
+    /// Returns the path of the file in which a user may describe devices of the given kind. The file need not exist.
     pub fn device_file(&self, kind: &str) -> PathBuf {
         self.config.join("devices").join(kind).with_extension("ron")
     }
 
-    /// Returns the path of the folder in which a user may describe devices of the given kind, one per `*.ron` file; the
+    /// Returns the path of the folder in which a user may describe devices of the given kind, one per `*.ron` file. The
     /// folder need not exist.
     pub fn device_folder(&self, kind: &str) -> PathBuf {
         self.config.join("devices").join(kind)

@@ -1,6 +1,7 @@
 //! Opening the window: its requirements, and the one-line error without a display.
 
 use std::sync::{Arc, OnceLock};
+use std::thread;
 use std::time::Instant;
 
 use super::{TabViews, Window, end, install_fonts};
@@ -19,6 +20,9 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
     }
     let store = Store::for_user().map_err(|error| explain::store(&error).terminal())?;
     let log = LogFile::begin(&store.log_path());
+    let cleaned = store.clone();
+    // Not awaited: a slow disk does not delay the window.
+    thread::spawn(move || cleaned.remove_leftovers());
     let look = ThemeData::built_in().map_err(|why| format!("assets/theme.ron: {why}"))?;
     // The window exists only after the studio: until then there is nothing to wake.
     let context: Arc<OnceLock<egui::Context>> = Arc::default();

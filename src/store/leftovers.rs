@@ -1,0 +1,90 @@
+//! Temporary files that a program left behind because it was killed while it wrote.
+
+use std::fs::{self, DirEntry};
+use std::path::Path;
+use std::time::Duration;
+
+/// Beginning and end of the name of every temporary file.
+pub(super) const PREFIX: &str = ".encoder-studio-";
+pub(super) const SUFFIX: &str = ".tmp";
+
+/// Age from which a temporary file is considered left behind. A write takes seconds.
+const LEFT: Duration = Duration::from_secs(3600);
+
+/// Levels of folders in the program's own data: kind of device, serial number.
+const DEPTH: usize = 3;
+
+/// Removes the files left behind in one folder. Files that cannot be removed do no harm and stay.
+pub(super) fn remove_from(folder: &Path) {
+    entries(folder).filter(is_left).for_each(remove);
+}
+
+/// Removes the files left behind in a folder of the program and the folders below.
+pub(super) fn remove_below(folder: &Path) {
+    remove_to(folder, DEPTH);
+}
+
+fn remove_to(folder: &Path, depth: usize) {
+    for entry in entries(folder) {
+        match entry.file_type() {
+            Ok(kind) if kind.is_dir() && depth > 0 => remove_to(&entry.path(), depth - 1),
+            Ok(kind) if kind.is_file() && is_left(&entry) => remove(entry),
+            _ => {}
+        }
+    }
+}
+
+fn entries(folder: &Path) -> impl Iterator<Item = DirEntry> {
+    fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok)
+}
+
+fn is_left(entry: &DirEntry) -> bool {
+    let name = entry.file_name();
+    let is_temporary = name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
+    let modified = || entry.metadata().and_then(|data| data.modified()).ok();
+    is_temporary && modified().and_then(|at| at.elapsed().ok()).is_some_and(|age| age >= LEFT)
+}
+
+fn remove(entry: DirEntry) {
+    if let Err(error) = fs::remove_file(entry.path()) {
+        tracing::warn!("{}: {error}", entry.path().display());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::SystemTime;
+
+    use super::*;
+    use crate::store::{Store, write_atomically};
+
+    fn create(path: &Path, age: Duration) {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        let file = fs::File::create(path).unwrap();
+        file.set_modified(SystemTime::now() - age).unwrap();
+    }
+
+    #[test]
+    fn only_old_temporary_files_are_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let data = folder.path().join("data");
+        let (old, new) = (2 * LEFT, Duration::from_secs(5));
+        let left = [data.join(".encoder-studio-a1.tmp"), data.join("backups/biss/77/.encoder-studio-b2.tmp")];
+        let kept = [data.join("backups/biss/77/1.ron"), data.join("x.tmp"), data.join(".encoder-studio-c.ron")];
+        let fresh = data.join(".encoder-studio-d4.tmp");
+        left.iter().chain(&kept).for_each(|path| create(path, old));
+        create(&fresh, new);
+        Store::at(folder.path()).remove_leftovers();
+        assert!(left.iter().all(|path| !path.exists()));
+        assert!(kept.iter().all(|path| path.exists()) && fresh.exists(), "another program may be writing it");
+    }
+
+    #[test]
+    fn a_write_removes_what_was_left_beside_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let left = folder.path().join(".encoder-studio-a1.tmp");
+        create(&left, 2 * LEFT);
+        write_atomically(&folder.path().join("a.ron"), b"new").unwrap();
+        assert!(!left.exists() && folder.path().join("a.ron").exists());
+    }
+}
