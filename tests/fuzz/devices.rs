@@ -1,0 +1,53 @@
+//! Virtual devices that receive anything: they neither panic nor send without end.
+
+use std::time::Duration;
+
+use encoder_studio::buses::bridge::sim::Adapter;
+use encoder_studio::devices::{biss, hiperdrive, hiperface, interbus};
+use encoder_studio::kinds::at_adapter;
+use encoder_studio::sim::ByteDevice;
+use encoder_studio::units::Moment;
+
+use crate::{fuzz, hex_lines};
+
+/// Most bytes that a device sends in a second and a half: an adapter that streams as fast as it can.
+const MOST: usize = 1_500_000;
+
+/// Sends an input in parts, polls the device for another second, and returns the number of bytes that it sent.
+fn receive(device: &mut dyn ByteDevice, bytes: &[u8]) -> usize {
+    let (mut now, mut sent) = (Moment::START, 0);
+    device.connect(now);
+    for part in bytes.chunks(9) {
+        device.on_bytes(now, part);
+        now = now + Duration::from_millis(30);
+        sent += device.poll(now).len();
+    }
+    sent + device.poll(now + Duration::from_secs(1)).len()
+}
+
+#[test]
+fn virtual_devices() {
+    let lines = [
+        include_str!("corpus/bridge.txt"),
+        include_str!("corpus/ubicom.txt"),
+        include_str!("corpus/ethernet_ip.txt"),
+        include_str!("corpus/interbus.txt"),
+    ];
+    let vectors: Vec<&str> =
+        include_str!("../vectors/hiperface.txt").lines().filter_map(|line| line.strip_prefix("> ")).collect();
+    let examples = [lines.map(hex_lines).concat(), hex_lines(&vectors.join("\n"))].concat();
+    fuzz("virtual devices", &examples, |bytes| {
+        let mut bus = hiperface::sim::Bus::new(&hiperface::sim::Config::from_pairs(&[]).unwrap());
+        let mut port = biss::sim::Port::new(&biss::sim::Config::from_pairs(&[]).unwrap());
+        let mut adapter = Adapter::from_pairs(&[], at_adapter()).unwrap();
+        let gateway = interbus::sim::Gateway::new(&interbus::sim::Config::from_pairs(&[]).unwrap());
+        let target = hiperdrive::sim::Target::new(&hiperdrive::sim::Config::from_pairs(&[]).unwrap());
+        let mut connection = target.connection(std::net::Ipv4Addr::LOCALHOST);
+        let devices: [&mut dyn ByteDevice; 5] =
+            [&mut bus, &mut port, &mut adapter, &mut gateway.connection(), &mut connection];
+        for device in devices {
+            let sent = receive(device, bytes);
+            assert!(sent <= MOST, "{sent} bytes");
+        }
+    });
+}
