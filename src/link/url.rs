@@ -156,7 +156,7 @@ impl FromStr for LinkUrl {
         let (scheme, _) =
             Scheme::ALL.into_iter().find(|(_, known)| known.eq_ignore_ascii_case(word)).ok_or_else(scheme_error)?;
         let (target, query) = rest.split_once('?').unwrap_or((rest, ""));
-        let mut target = target.to_owned();
+        let mut target = target.trim_end().to_owned();
         let port = match scheme {
             Scheme::Modbus => MODBUS_PORT,
             Scheme::Enip => ENIP_PORT,
@@ -233,9 +233,9 @@ impl FromStr for Query {
 
     fn from_str(text: &str) -> Result<Self, UrlError> {
         let mut query = Query::default();
-        for parameter in text.split('&').filter(|parameter| !parameter.is_empty()) {
+        for parameter in text.split('&').map(str::trim).filter(|parameter| !parameter.is_empty()) {
             let (name, value) = parameter.split_once('=').ok_or_else(|| UrlError::Parameter(parameter.to_owned()))?;
-            let name = name.to_ascii_lowercase();
+            let (name, value) = (name.trim_end().to_ascii_lowercase(), value.trim_start());
             if query.get(&name).is_some() {
                 return Err(UrlError::Twice(name));
             }

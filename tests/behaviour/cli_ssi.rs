@@ -86,7 +86,7 @@ fn layouts_are_exported() {
     let any = ["ssi", "export", "--layout", "frame,st=13", "--format", "timing", "--clock", "500000", "--pause", "20"];
     let any = bench.run(&any);
     assert!(any.out.contains("13 clocks, 26.00 µs") && any.out.contains("tm up to 25 µs"), "{}", any.out);
-    assert!(any.err.contains("General SSI times") && any.err.contains("more than 25 µs"), "{}", any.err);
+    assert!(any.err.contains("The general SSI timing applies") && any.err.contains("more than 25 µs"), "{}", any.err);
     let file = bench.file("decoder.c");
     bench.run(&["ssi", "export", "--layout", "atm60", "--format", "c", "-o", &file]);
     assert!(bench.read("decoder.c").starts_with("/* SSI decoder: atm60\n"));

@@ -108,7 +108,7 @@ fn swapped_words_suggest_the_other_word_order() {
     let bench = Bench::new();
     for order in [["--order=low-first", "order=high-first"], ["--order=high-first", "order=low-first"]] {
         for (position, found) in [
-            ("--position=4097", "the word order may be swapped"),
+            ("--position=4097", "plausible only with its words swapped"),
             ("--position=0", "Check output= and the word order (order=)"),
         ] {
             let Some(encoder) = bench.gateway(&[order[0], position]) else { return };

@@ -69,7 +69,7 @@ fn every_item_is_read_by_name() {
     for (item, value, unit) in cases {
         let ran = ask(&bench, &encoder, &["read", "interbus", item]);
         assert_eq!(
-            ran.err.contains("Reading a cam program selects it"),
+            ran.err.contains("To read a cam program, the encoder must select it"),
             item.contains("cam") || item == "shift",
             "{ran:?}"
         );
@@ -125,7 +125,7 @@ fn words_without_a_position_are_not_printed_as_one() {
     let Some(encoder) = bench.gateway(&["--lost"]) else { return };
     let told = ask(&bench, &encoder, &["status", "interbus"]).json();
     assert_eq!((&told["ok"], &told["errors"][0]["code"]), (&json!(false), &json!(3)), "{told}");
-    assert!(told["errors"][0]["text"].as_str().unwrap().contains("Restore a profile"), "{told}");
+    assert!(told["errors"][0]["text"].as_str().unwrap().contains("Restore them from a profile"), "{told}");
     let told = ask(&bench, &encoder, &["position", "interbus"]).json();
     assert_eq!((&told["raw"], &told["valid"], &told["turns"]), (&json!(0x8600_0000_u32), &json!(false), &Value::Null));
 }
@@ -151,7 +151,7 @@ fn a_saved_profile_matches_the_encoder() {
     let file = bench.file("saved.ron");
     let ran = ask(&bench, &encoder, &["save", "interbus", "-o", &file]);
     assert_eq!(ran.json()["programs"], json!(8));
-    assert!(ran.err.contains("Reading a cam program selects it"), "{ran:?}");
+    assert!(ran.err.contains("To read a cam program, the encoder must select it"), "{ran:?}");
     let text = bench.read("saved.ron");
     for line in ["steps: 3600,", "preset: 500,", "(cam: 0, start: 3000, stop: 200),", "mask: 0x80,", "startup_mode: 5,"]
     {
@@ -222,7 +222,7 @@ fn reading_cam_programs_needs_confirmation() {
         // Without a terminal.
         let ran = bench.run(command);
         // Other programs are only in the encoder: `diff` reports them.
-        assert!(matches!(ran.status, Some(0 | 3)) && ran.err.contains("outputs of the encoder switch"), "{ran:?}");
+        assert!(matches!(ran.status, Some(0 | 3)) && ran.err.contains("The outputs switch to each program"), "{ran:?}");
         assert!(selects(), "{command:?}");
         assert!(bench.run(&[command[0], "--help"]).out.contains("live outputs"), "{command:?}");
         let ran = requested_frame(&bench, command, "n\n");

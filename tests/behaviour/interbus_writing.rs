@@ -147,7 +147,7 @@ fn each_item_is_written_by_name() {
     }
     // Cams that were not read may be outside a shorter range.
     let shorter = ask(&bench, &encoder, &["write", "interbus", "steps", "2048", "--yes"]);
-    assert!(shorter.status == Some(0) && shorter.err.contains("may be outside the range"), "{shorter:?}");
+    assert!(shorter.status == Some(0) && shorter.err.contains("may then be outside the range"), "{shorter:?}");
     assert_eq!(written(&encoder), ["W 02000800", "STORE parameters"]);
     let again = ask(&bench, &encoder, &["write", "interbus", "direction", "4", "--yes"]).json();
     assert_eq!((&again["written"], &again["write_cycles"]), (&json!(0), &json!(0)), "it is so already: {again}");

@@ -63,7 +63,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     // The profile defines how it is read; without a family, the general times of SSI apply.
     let general = bench.run(&["ssi", "export", "--layout", &file, "--format", "timing"]);
     assert!(general.out.contains("13 clocks, 130.00 µs"), "{general:?}");
-    assert!(general.err.starts_with("General SSI times"), "{general:?}");
+    assert!(general.err.starts_with("The general SSI timing applies"), "{general:?}");
     let with_family = LAYOUT.replace("frame:", "family: \"ahm36\", frame:");
     let file = bench.write("with-family.ron", &with_family);
     let drawn = bench.run(&["ssi", "export", "--layout", &file, "--format", "timing"]);
@@ -155,7 +155,7 @@ fn user_families_are_loaded_and_broken_ones_reported() {
     fs::write(folder.join("broken.ron"), family.replace("codes: [gray]", "codes: [grey]")).unwrap();
     let told = bench.run(&["ssi", "encode", "--layout", "feeder", "--position", "1"]);
     assert_eq!(told.status, Some(0));
-    for said in ["broken.ron", "line 3, column ", "grey", "all other families remain available"] {
+    for said in ["broken.ron", "line 3, column ", "grey", "All other families remain available"] {
         assert!(told.err.contains(said), "{said}: {}", told.err);
     }
     bench

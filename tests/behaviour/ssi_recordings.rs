@@ -102,11 +102,14 @@ fn what_is_no_recording_is_refused_with_the_line_and_a_way_out() {
         bench.run(&["ssi", "find", &path]).fails(1, told);
         bench.run(&[&LAYOUT[..], &[&format!("@{path}")]].concat()).fails(1, told);
     };
-    refused("Time [s],Channel 0\n0.0,1\n0.1,0\n", &["one channel", "Record the clock and the data"]);
-    refused("Time [s],Channel 0,Channel 1\n0.0,1,1\n0.000001,0", &["line 3", "2 columns instead of 3", "cut off"]);
+    refused("Time [s],Channel 0\n0.0,1\n0.1,0\n", &["one channel", "Record both the clock and the data"]);
+    refused(
+        "Time [s],Channel 0,Channel 1\n0.0,1,1\n0.000001,0",
+        &["line 3", "2 columns instead of 3", "file is incomplete"],
+    );
     refused("Time [s],Channel 0,Channel 1\n0,000001,1,1\n", &["Line 2", "4 columns", "decimal point"]);
     refused("Time [s],Channel 0,Channel 1\n0.0,3.31,0.02\n", &["Line 2", "3.31", "digital channels"]);
-    refused("t_s,raw,turns,steps,degrees,millimetres,valid\n0.0,17\n", &["line 2", "cut off"]);
+    refused("t_s,raw,turns,steps,degrees,millimetres,valid\n0.0,17\n", &["line 2", "file is incomplete"]);
     refused("date,price\nmonday,17\n", &["no frames", "time, clock and data"]);
     let other = bench.write("other.txt", "101010101\n");
     bench.run(&[&LAYOUT[..], &[&format!("@{other}")]].concat()).fails(1, &["other.txt", "9 bits", "27 clocks"]);

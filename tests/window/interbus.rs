@@ -116,7 +116,7 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     wish(&mut desk, DeviceCommand::Redo);
     // One parameterisation and one program.
     let cost = write(&mut desk);
-    assert!(cost.starts_with("EEPROM write cycles: 2. This computer has counted 9 of"), "{cost}");
+    assert!(cost.starts_with("EEPROM write cycles required: 2. This computer has counted 9 of"), "{cost}");
     let own = encoder(&desk);
     assert!(!own.is_dirty());
     let wanted = own.staged.device().unwrap().program(program(2)).unwrap().cams[5].unwrap();

@@ -43,9 +43,9 @@ fn the_input_circuit_is_computed_while_typing() {
     for words in ["102.400 kHz", "17578.1 rpm", "16.825°", "1.496/32", "0.95719", "338.6 kHz"] {
         assert!(screen.shows(words), "{words}");
     }
-    assert!(screen.shows("The signal is within the bandwidth of 150 kHz."));
+    assert!(screen.shows("The signal frequency is within the bandwidth of 150 kHz."));
     screen.retype("input.speed", "18000");
-    assert!(screen.shows("The signal frequency is above the bandwidth of 150 kHz"));
+    assert!(screen.shows("The signal frequency exceeds the bandwidth of 150 kHz"));
     screen.retype("input.capacitance", "47 pigs");
     assert!(screen.shows("\"47 pigs\" is not between 1 fF and 1 mF"));
     assert!(!screen.shows("338.6 kHz"), "nothing is shown that is not reckoned");

@@ -111,7 +111,7 @@ fn a_pasted_table_is_previewed_before_it_is_accepted() {
     let text = "name;start;stop\nfeed;100;200\nglue;300;350\nglue;700;750\n";
     screen.paste(&format!("{text}late;3600;10\n"));
     assert!(screen.shows("Program 1: glue has 2 pulses, which use cams 1, 2."));
-    assert!(screen.shows("Line 5, column 2: The start 3600 is outside the measuring range 0 to 3599."));
+    assert!(screen.shows("Line 5, column 2: The value 3600 for start is outside the measuring range 0 to 3599."));
     assert_eq!(screen.cam(0), before);
     screen.check_language();
     screen.act(Action::SetLanguage(Language::German));
@@ -132,11 +132,13 @@ fn conflicts_and_out_of_range_cams_are_marked_in_their_lanes() {
     for number in [1, 2] {
         screen.edit_cams(Edit::Name { program: program(), cam: cam(number), name: "glue".to_owned() });
     }
-    assert!(!screen.shows("are pulses on the same track"));
+    assert!(!screen.shows("their pulses overlap at"));
     let (start, _) = screen.cam(2);
     let (own, _) = screen.cam(1);
     screen.edit_cams(Edit::Cam { program: program(), cam: cam(1), start: own, stop: start, on: true });
-    assert!(screen.shows(&format!("Program 1: cams 1 and 2 are pulses on the same track and overlap at {start}.")));
+    assert!(
+        screen.shows(&format!("Program 1: cams 1 and 2 are on the same track, and their pulses overlap at {start}."))
+    );
     screen.edit_cams(Edit::Steps(3200));
     assert!(screen.shows("Program 1: cam 7 is outside the measuring range, which ends at 3199."));
     // Issue 22.28: the cams of a program that are beyond it in one line, so that the chart stays visible.

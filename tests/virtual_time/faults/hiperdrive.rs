@@ -1,5 +1,5 @@
-//! HIPERDRIVE: parameters with and without a save, a scale with its limits, the position, and services, over EtherNet/IP.
-//! TCP neither damages nor inserts bytes.
+//! HIPERDRIVE: parameters with and without a save, a scale with its limits, the position, and services, over
+//! EtherNet/IP. TCP neither damages nor inserts bytes.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;

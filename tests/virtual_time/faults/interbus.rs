@@ -1,5 +1,5 @@
-//! INTERBUS: parameters, cams and masks, start-up mode and preset, over a gateway. Modbus/TCP neither damages nor inserts
-//! bytes, so replies are lost or late, the link falls silent or ends, and the encoder loses its power.
+//! INTERBUS: parameters, cams and masks, start-up mode and preset, over a gateway. Modbus/TCP neither damages nor
+//! inserts bytes, so replies are lost or late, the link falls silent or ends, and the encoder loses its power.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -120,8 +120,8 @@ fn changes() -> Vec<(&'static str, Change)> {
     ]
 }
 
-/// Follows a change without faults. At each request the encoder may be cut off, or lose its power and with it what has not
-/// been stored.
+/// Follows a change without faults. At each request the encoder may be cut off, or lose its power and with it what has
+/// not been stored.
 fn case(name: &'static str, change: Change) -> Case {
     let mut rig = Rig::new();
     let job = rig.commit_job(change.clone()).unwrap();

@@ -1,5 +1,5 @@
-//! Fault campaign: seeded faults on the line at any request of any operation that writes, one or two in a run. After each
-//! run, no value is wrong, the device equals a state of the plan, and a second run completes the change.
+//! Fault campaign: seeded faults on the line at any request of any operation that writes, one or two in a run. After
+//! each run, no value is wrong, the device equals a state of the plan, and a second run completes the change.
 //!
 //! `ENCODER_STUDIO_FAULT_RUNS` sets the number of runs of all kinds together, `ENCODER_STUDIO_FAULT_SEED` repeats a
 //! single run of each kind.
@@ -34,8 +34,8 @@ pub(crate) enum End {
     NotBegun,
 }
 
-/// Carries out seeded runs in all threads and prints how they ended; `share` is the part of all runs in thousandths. A panic
-/// names the seed that repeats it.
+/// Carries out seeded runs in all threads and prints how they ended; `share` is the part of all runs in thousandths. A
+/// panic names the seed that repeats it.
 pub(crate) fn campaign(kind: &str, share: u64, run: impl Fn(&mut Rng) -> End + Sync) {
     let setting = |name| std::env::var(name).ok().map(|text: String| text.parse::<u64>().expect(name));
     let (first, runs) = match setting("ENCODER_STUDIO_FAULT_SEED") {

@@ -4,7 +4,7 @@ use crate::devices::biss::protocol::{Descriptions, KIND};
 use crate::profile::Cause;
 use crate::store::{Store, StoreError, read_folder};
 
-/// Returns the descriptions of encoders, user-defined ones before the built-in ones, and the errors of unusable ones (a
+/// Returns the encoder descriptions, with user-defined ones first, and an error for each unusable file (a
 /// `DescriptionError` each).
 pub fn descriptions(store: &Store) -> (Descriptions, Vec<StoreError>) {
     let (files, unread) = read_folder(&store.device_folder(KIND), "ron");

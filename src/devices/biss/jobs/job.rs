@@ -18,37 +18,37 @@ use crate::devices::biss::protocol::{Area, DeviceMode, Filter, KIND, PresetValue
 use crate::store::{DeviceKey, StoreError};
 use crate::worker::commit::{ApprovedPlan, wear};
 
-/// Number of persistent writes at which an encoder has reached its limit (manual 6.1: "1000 write cycles should not be
+/// Limit for the number of persistent writes to an encoder (manual 6.1: "1000 write cycles should not be
 /// exceeded").
 pub const WEAR_LIMIT: u64 = 1000;
-/// Number of persistent writes from which the user is warned.
+/// Number of persistent writes at which the user is first warned.
 pub const WEAR_WARNING: u64 = 800;
 
 #[derive(Debug)]
 pub enum BissJob {
-    /// Read everything that is displayed after connecting.
+    /// Reads everything that is displayed after connecting.
     Survey,
     Identify,
-    /// Mode, errors, warnings, temperature, filter.
+    /// Reads mode, errors, warnings, temperature and filter.
     Status,
-    /// Check the encoder against its description, its data sheet and the line, with a verdict for each item.
+    /// Checks the encoder against its description, its data sheet and the line, with a verdict for each item.
     Check,
     Position,
-    /// Read consecutive registers; those of a data area only at standstill.
+    /// Reads consecutive registers. Registers of a data area are read only at standstill.
     Read(RegisterRange),
     /// Reads all direct registers, 40h…7Fh.
     ReadDirect,
     ReadBank(u8),
     /// Reads all registers of a data area, at standstill.
     ReadArea(Area),
-    /// Reads everything that can be restored, at standstill. Values that were never saved are marked.
+    /// Reads everything that can be restored, at standstill. Values that were never saved in the encoder are marked.
     Save,
-    /// Save for a comparison, which is refused if there may be values that were never saved.
+    /// Reads the encoder for a comparison, which is refused if some values may never have been saved.
     SaveToCompare,
-    /// Prepare a plan without writing.
+    /// Prepares a plan without writing.
     Prepare(Change),
     Commit(Box<Commit>),
-    /// Return the encoder to operation and clear the password, whoever changed the mode.
+    /// Returns the encoder to operation and clears the password, even if another program changed the mode.
     LeadBack,
 }
 
@@ -58,10 +58,10 @@ pub enum Change {
         profile: Box<BissProfile>,
         options: RestoreOptions,
     },
-    /// Write registers, given as addresses and bytes. Those of a data area are saved together.
+    /// Writes registers, given as addresses and bytes. Registers of a data area are saved together.
     Write(Vec<(RegisterRange, Vec<u8>)>),
     SelectFilter(Filter),
-    /// Store this preset value, if given; then set the given parts of the position at the present shaft angle to the
+    /// Stores the preset value, if given; then sets the given parts of the position at the present shaft angle to the
     /// stored value.
     Preset {
         value: Option<PresetValue>,
@@ -76,16 +76,16 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
     Restore,
-    /// Edited bytes; those not yet written remain edits.
+    /// A write of edited bytes. Bytes that were not written remain as edits.
     Bytes,
-    /// Guided procedures; incomplete ones are started again.
+    /// Guided procedures. An incomplete procedure has to be started again.
     Guided,
-    /// Guided procedures including a calibration, whose table no backup contains.
+    /// Guided procedures that include a calibration, whose table is not part of any backup.
     Calibration,
-    /// Only the Wiegand test, which stores nothing but its result.
+    /// The Wiegand test alone, which stores nothing but its result.
     WiegandTest,
     Filter,
-    /// Preset: its value, its execution, or both.
+    /// Storing a preset value, setting the position to it, or both.
     Preset,
 }
 
@@ -108,23 +108,24 @@ pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: BissPlan,
     pub identity: Identity,
-    /// Number of persistent writes to the encoder recorded on this computer, or `None` if the logbook has no record.
+    /// Number of persistent writes to the encoder recorded on this computer, or `None` if there is no record.
     pub cycles_seen: Option<u64>,
     /// Number of registers that already have the intended value.
     pub unchanged: u64,
     /// Settings of a profile that the encoder does not have.
     pub missing: Vec<String>,
-    /// Values of the mounting that differ and are left alone.
+    /// Values of the mounting that differ and are not written.
     pub mounting_left: Vec<RegisterRange>,
-    /// Device mode in which the profile to restore was read, if it may contain values that were never saved.
+    /// Device mode in which the profile was read, if the profile may contain values that were never saved in the
+    /// encoder.
     pub unsaved: Option<DeviceMode>,
     pub other_type: Option<OtherType>,
-    /// Written values that belong to the mounting of another device and must be set up again.
+    /// Written values that belong to the mounting of another encoder and must be adjusted for this one.
     pub mounting_written: Vec<RegisterRange>,
 }
 
 impl Prepared {
-    /// Returns the minimum number of write cycles of the flash, if the user should be warned.
+    /// Returns the minimum number of flash write cycles already used, if the user should be warned.
     pub fn wear(&self) -> Option<u64> {
         wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
@@ -136,7 +137,7 @@ pub struct Commit {
     pub attendance: OperatorPresence,
 }
 
-/// Presence of an operator at the motor while a plan is carried out.
+/// Whether an operator is at the motor while a plan is carried out.
 #[derive(Clone, Debug)]
 pub enum OperatorPresence {
     Attended(OperatorChannel),
@@ -166,15 +167,15 @@ pub struct ReadRegisters {
     pub start: RegisterAddress,
     /// Values in address order.
     pub bytes: Vec<u8>,
-    /// Device mode during the reading, if the registers may show values that were never saved.
+    /// Device mode during the reading, if the registers may show values that were never saved in the encoder.
     pub unsaved: Option<DeviceMode>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
-    /// Frames with a wrong checksum that belong to no reading.
+    /// Number of frames with a wrong checksum that belong to no reading.
     CrcErrors(u32),
-    /// Descriptions of the user's own that cannot be used.
+    /// User-defined descriptions that cannot be used.
     Descriptions(Vec<StoreError>),
 }
 
@@ -205,7 +206,7 @@ pub enum BissOutput {
     Registers(ReadRegisters),
     Area {
         banks: Vec<Bank>,
-        /// Device mode during the reading, if the registers may show values that were never saved.
+        /// Device mode during the reading, if the registers may show values that were never saved in the encoder.
         unsaved: Option<DeviceMode>,
     },
     Saved(Box<BissProfile>),

@@ -37,10 +37,10 @@ pub struct Biss {
     wire: Box<dyn ByteLink>,
     station: Station,
     types: Arc<Descriptions>,
-    /// The user's own descriptions that cannot be used; reported once.
+    /// Errors of unusable user-defined descriptions, which are reported once.
     broken: Vec<StoreError>,
     motor: Option<Motor>,
-    /// Interval of streamed frames in microseconds, if it is shorter than single requests allow.
+    /// Interval between streamed frames in microseconds, if shorter than single requests allow.
     streamed_us: Option<u32>,
 }
 
@@ -58,7 +58,8 @@ impl Biss {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 
-    /// Identifies the encoder if this session has not done so yet, since frame and registers depend on its identity.
+    /// Identifies the encoder unless this session has already done so, since frame and registers depend on its
+    /// identity.
     fn ensure_identified(&mut self, context: &mut SessionContext) -> Result<(), Error> {
         if self.station.description.is_none() {
             let types = self.types.clone();
@@ -69,8 +70,8 @@ impl Biss {
 }
 
 impl Session<Biss> {
-    /// Creates a session on an open connection, with the descriptions of `store`. A motor denotes a virtual encoder in
-    /// this process, whose writes are counted separately.
+    /// Creates a session on an open connection, with the descriptions of `store`. With a motor, the encoder is
+    /// simulated in this process and its writes are counted separately.
     pub fn over(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -233,7 +234,7 @@ impl Biss {
         Ok(BissOutput::Registers(ReadRegisters { start, bytes, unsaved }))
     }
 
-    /// Returns the device mode in which registers may show values that were never saved.
+    /// Returns the device mode if registers may show values that were never saved in the encoder.
     fn unsaved(&mut self, context: &mut SessionContext) -> Result<Option<DeviceMode>, Error> {
         let mut master = self.master(context);
         let description = master.description()?;

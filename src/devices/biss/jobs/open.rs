@@ -14,7 +14,7 @@ use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, margin, open_bytes, wrong_target_error};
 use crate::worker::{OpenError, Session};
 
-/// Link parameter for schemes that do not reveal whether there is an adapter.
+/// Link parameter that selects an adapter for schemes that do not imply one.
 const BRIDGE: &str = "bridge";
 /// Checks a link to a BiSS encoder without opening it.
 ///
@@ -42,7 +42,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     Ok(Session::over(wire, clock, station, store, motor))
 }
 
-/// Parses the line settings and the virtual encoder, which is only relevant for a link to one.
+/// Parses the line settings and, for a link to a virtual encoder, its settings.
 fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     let way = transport(url)?;
     let is_virtual = url.scheme == Scheme::Sim;
@@ -92,7 +92,7 @@ fn check_virtual(query: &Query, way: Transport) -> Result<(), UrlError> {
     Err(UrlError::Unknown { name, scheme: Scheme::Sim.word(), known: known.join(", ") })
 }
 
-/// A virtual encoder created from its parameters, behind the pin or the adapter.
+/// A virtual encoder created from its parameters, connected to the configuration pin or an adapter.
 enum Simulated {
     Pin(Box<Config>),
     Bus(Box<Adapter>),

@@ -15,16 +15,16 @@ pub type BissStepResult = check::StepResult<CheckStep, CheckFinding>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStep {
     Identity,
-    /// Errors, warnings, device mode, password.
+    /// Checks errors, warnings, device mode and password.
     Status,
-    /// Position with its error and warning bits.
+    /// Checks the position with its error and warning bits.
     Position,
-    /// Checksums of the data sheet, and its frame.
+    /// Checks the checksums and the frame layout of the data sheet.
     DataSheet,
-    /// Temperature and supply, compared with the limits of the data sheet.
+    /// Compares temperature and supply with the limits in the data sheet.
     Limits,
     Wiegand,
-    /// Position readings, and the number of damaged ones.
+    /// Counts position readings and damaged ones.
     Readings,
     Wear,
 }
@@ -34,11 +34,11 @@ pub enum CheckFinding {
     Name(String),
     SerialNumber(String),
     Firmware(Firmware),
-    /// No description matches the encoder.
+    /// No description matches the encoder exactly.
     Mismatch(Mismatch),
     Error(u8, Option<Name>),
     Warning(u8, Option<Name>),
-    /// The encoder has no registers for errors and warnings, or not with this firmware.
+    /// The encoder does not report errors and warnings, or not with this firmware.
     NotTold,
     Mode(DeviceMode),
     Open,
@@ -47,16 +47,16 @@ pub enum CheckFinding {
     WarningBit,
     NoPosition,
     SumsFit,
-    /// A bank of the data sheet, or both together, cannot be relied upon.
+    /// A bank of the data sheet, or the combination of both banks, is unreliable.
     Sheet(EdsError),
-    /// The encoder has no data sheet known to this program.
+    /// The encoder has no data sheet that this program knows.
     NoSheet,
     /// The frames of the data sheet and the description differ in the widths of multiturn and singleturn.
     OtherFrame {
         sheet: (u8, u8),
         description: (u8, u8),
     },
-    /// Degrees Celsius, and the limits of the data sheet.
+    /// Temperature in degrees Celsius and the limits in the data sheet.
     Temperature {
         celsius: f64,
         low: i32,
@@ -68,28 +68,28 @@ pub enum CheckFinding {
         low: u32,
         high: u32,
     },
-    /// Milliamperes measured by the adapter, and the limit of the data sheet.
+    /// Current in milliamperes, measured by the adapter, and the limit in the data sheet.
     Current {
         milliampere: u16,
         high: u32,
     },
     Wiegand(WiegandResult),
-    /// No test result has been saved.
+    /// No test result is saved in the encoder.
     NotTested,
     /// Number of position readings, and of damaged frames or replies.
     Readings {
         requested: u32,
         damaged: u64,
     },
-    /// Recorded write cycles, and the limit of the flash.
+    /// Number of recorded write cycles and the limit of the flash.
     Wear {
-        /// Minimum number of write cycles.
+        /// Minimum number of write cycles used so far.
         seen: u64,
         limit: u64,
     },
 }
 
-/// Number of position readings for assessing the line.
+/// Number of position readings used to assess the line.
 const READINGS: u32 = 50;
 
 /// Runs the check, which ends early only if the line fails. `wear` is called once the encoder has been identified.
@@ -193,7 +193,7 @@ mod offset {
     pub(super) const MOST_CURRENT: u8 = 0x38;
 }
 
-/// Checks the limits of the data sheet, as far as they can be measured, or returns `None` if nothing can be compared.
+/// Compares measured values with the limits in the data sheet. Returns `None` if nothing can be compared.
 fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult> {
     let sheet = survey.identity.data_sheet.as_ref()?.encoder.eds.as_ref().ok()?;
     let judge = |fits: bool| if fits { Verdict::Good } else { Verdict::Attention };
@@ -223,7 +223,7 @@ fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
     sheet.values().find(|(field, _)| field.offset == offset).map(|(_, value)| value)
 }
 
-/// Checks the saved test result, or returns `None` for an encoder without one.
+/// Checks the saved result of the Wiegand test. Returns `None` if the encoder has none.
 fn wiegand(survey: &Survey) -> Option<BissStepResult> {
     let saved = survey.wiegand_saved?;
     let finding = match saved.emit() {
@@ -235,7 +235,7 @@ fn wiegand(survey: &Survey) -> Option<BissStepResult> {
     Some(BissStepResult::of(CheckStep::Wiegand, vec![finding]))
 }
 
-/// Reads the position repeatedly. A missing reading counts as damaged.
+/// Reads the position repeatedly and counts a missing reading as damaged.
 fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     let before = master.station().line.damaged;
     let told_by_line = master.station().transport == Transport::ConfigPin;

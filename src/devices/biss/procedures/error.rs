@@ -34,12 +34,12 @@ pub enum Error {
     NoReply {
         requested: RequestedItem,
         tries: u32,
-        /// Whether the sent bytes came back: the adapter echoes, so the line itself works.
+        /// Whether the sent bytes were echoed by the adapter, which shows that the line itself works.
         echo_heard: bool,
     },
     #[error("damaged reply while {requested} (attempts: {tries}): {cause}")]
     Damaged { requested: RequestedItem, tries: u32, cause: Damage },
-    /// Bytes keep arriving during the required silence.
+    /// Bytes keep arriving during a required period of silence.
     #[error("the line is never silent")]
     NeverSilent,
     #[error(transparent)]
@@ -47,14 +47,14 @@ pub enum Error {
     #[error("no encoder acknowledges on the bus (attempts: {tries})")]
     NoAcknowledge {
         tries: u32,
-        /// Whether the adapter could supply the encoder, but was not told to.
+        /// Whether the adapter could supply the encoder but was not told to do so.
         supply_off: bool,
     },
     #[error("the data line stays low (attempts: {tries})")]
     StuckLow { tries: u32 },
     #[error("the data line stays high (attempts: {tries})")]
     StuckHigh { tries: u32 },
-    /// No frame ever had a correct checksum: the widths do not match the encoder.
+    /// No frame has ever had a correct checksum, so the assumed widths do not match the encoder.
     #[error("{frames} frames in a row have a wrong CRC: the encoder's have not {data_bits}+{crc_bits} bits")]
     WrongWidths {
         frames: u32,
@@ -63,7 +63,7 @@ pub enum Error {
         /// Assumed width of the checksum in bits.
         crc_bits: u8,
     },
-    /// The widths of the frame are not known, and no length fits.
+    /// The frame widths are unknown, and no frame length fits the checksums.
     #[error("no length of the frames fits their CRC")]
     WidthsUnknown { moving: bool },
     #[error("the encoder has no register {address}")]
@@ -75,10 +75,10 @@ pub enum Error {
     Refused {
         address: RegisterAddress,
         value: u8,
-        /// Value of the register instead, if the connection reveals it.
+        /// Actual value of the register, if the connection reveals it.
         reads: Option<u8>,
     },
-    /// It is unknown whether a value was accepted: reading the register back does not reveal it, or is not possible.
+    /// It is unknown whether a value was accepted, because reading the register back is not possible or shows nothing.
     #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
     Unclear {
         address: RegisterAddress,
@@ -88,10 +88,10 @@ pub enum Error {
     },
     #[error("cancelled")]
     Cancelled,
-    /// Neither byte order of a register number yields a reply that the manual defines.
+    /// With neither byte order of the register number does the encoder send a reply that the manual defines.
     #[error("the encoder's answer 0x{answer:02X} does not tell the byte order of register numbers")]
     OrderUnknown { answer: u8 },
-    /// A position with more bits than the known frame of the encoder.
+    /// The position has more bits than the encoder's known frame.
     #[error("the position 0x{word:X} has more than {multiturn}+{singleturn} bits")]
     TooWide {
         /// As received.
@@ -102,7 +102,7 @@ pub enum Error {
     /// The registers extend beyond the last address.
     #[error("{count} registers from {start} on are more than there can be")]
     OutOfRange { start: RegisterAddress, count: usize },
-    /// There is neither a description for this encoder nor a general one.
+    /// There is no description for this encoder, and no general one either.
     #[error("no description fits the encoder, which says {0}")]
     NoDescription(Identity),
     #[error("the encoder was not identified")]
@@ -120,7 +120,7 @@ pub enum Error {
     Changed { item: String },
     #[error("{requested}: the reply is of another kind: {reply}")]
     OtherReply { requested: RequestedItem, reply: String },
-    /// The adapter reports a status of the frame that the bridge protocol does not have.
+    /// The adapter reports a frame status that the bridge protocol does not define.
     #[error("the adapter reports the unknown status 0x{status:02X} of a frame")]
     FrameStatus {
         /// The status byte.
@@ -148,7 +148,7 @@ pub(super) fn requested_register(number: u16) -> RegisterAddress {
     RegisterAddress::from_global(number).unwrap_or(RegisterAddress::BANK_SELECT)
 }
 
-/// Returns exactly the requested registers.
+/// Returns the registers as an array of the requested size.
 ///
 /// # Errors
 /// [`Error::TooFew`] if their number differs.
@@ -163,13 +163,13 @@ pub enum Damage {
     /// The frame is not a reply to the request.
     #[error(transparent)]
     Reply(#[from] ReplyError),
-    /// A reply arrived before the echo, or the echo was changed.
+    /// The reply arrived before the echo, or the echo was altered.
     #[error("no correct echo before the reply")]
     Echo,
-    /// The checksum of a control frame, as reported by the adapter.
+    /// The received frame is invalid.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The checksum of a control frame, as the adapter says.
+    /// The adapter reports a wrong checksum in a control frame.
     #[error("the encoder's reply to the register access has a wrong CRC")]
     ControlFrame,
     #[error("two readings differ")]
@@ -198,7 +198,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// Returns whether the encoder is out of reach, so that further attempts are useless.
+    /// Returns whether the encoder cannot be reached, so that further attempts are useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_)

@@ -17,10 +17,11 @@ pub(super) struct Flags {
     errors_last: bool,
 }
 
-/// Interval of reading one of the two registers while positions are polled; hardly any position is lost for it.
+/// Interval at which one of the two registers is read during position polling, short enough to cost hardly any
+/// position.
 const EVERY: Duration = Duration::from_millis(500);
 
-/// Reads the position once, with the present errors and warnings of the encoder.
+/// Reads the position once, together with the encoder's current errors and warnings.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -33,7 +34,7 @@ pub fn read_position(master: &mut Master<'_>) -> Result<PositionReading, Error> 
     with_flags(master, reading)
 }
 
-/// Adds the flags read last to the position; reads one of the registers if it is due.
+/// Adds the last known flags to the position, after reading one of the registers if it is due.
 pub(super) fn with_flags(master: &mut Master<'_>, reading: PositionReading) -> Result<PositionReading, Error> {
     let now = master.now();
     let flags = match master.station().flags {

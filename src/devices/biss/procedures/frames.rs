@@ -8,12 +8,12 @@ use crate::buses::bridge::protocol::{BissData, BissStatus};
 use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 use crate::units::Moment;
 
-/// Why a frame of a stream has no reading.
+/// The reason why a streamed frame contains no position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameReadingError {
     #[error("no encoder acknowledges on the bus")]
     NoAcknowledge,
-    /// The bits are not a frame: the checksum is wrong, or the line does not change.
+    /// The bits are not a valid frame, because the checksum is wrong or the line does not change.
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// The adapter reports an unknown status.
@@ -23,10 +23,10 @@ pub enum FrameReadingError {
 
 pub type Frame = Result<PositionData, FrameReadingError>;
 
-/// Consecutive frames of a stream at equal intervals.
+/// A run of consecutive stream frames at equal intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameRun {
-    /// Number of the first frame, counted from the start of the stream, including missing ones.
+    /// Number of the first frame, counted from the start of the stream. Missing frames are counted as well.
     pub first: u64,
     pub at: Moment,
     pub period_ns: i64,
@@ -35,15 +35,15 @@ pub struct FrameRun {
     /// Frames; at least one.
     pub frames: Vec<Frame>,
     pub layout: Arc<Layout>,
-    /// Whether the number of turn bits is known.
+    /// Whether the width of the multiturn is known.
     pub is_split_known: bool,
     pub clock_hz: u32,
-    /// The frames cannot have the requested interval.
+    /// Whether the adapter cannot send frames at the requested interval.
     pub is_limited: bool,
 }
 
 impl FrameRun {
-    /// Creates the frames of a packet, requested at the given interval.
+    /// Creates the run from the frames of a packet, which were requested at the given interval.
     pub(super) fn new(
         portion: &Portion,
         frames: Vec<Frame>,
@@ -62,7 +62,7 @@ impl FrameRun {
         self.first == self.lost
     }
 
-    /// Returns each frame with the moment at which it was taken.
+    /// Returns each frame with its sampling time.
     pub fn timed(&self) -> impl Iterator<Item = (Moment, &Frame)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.frames).map(move |(number, frame)| (self.at + period * number, frame))
@@ -92,7 +92,8 @@ fn frame(layout: &Layout, status: BissStatus, raw: u64) -> Frame {
 mod tests {
     use super::*;
 
-    /// BiSS reference 2: a good frame, the same with an error, the same with a flipped bit.
+    /// Frames from BiSS reference 2: a valid frame, the same frame with the error bit, and the same frame with a
+    /// flipped bit.
     #[test]
     fn a_frame_yields_a_reading_or_an_error() {
         let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };

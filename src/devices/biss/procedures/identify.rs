@@ -19,20 +19,20 @@ use crate::profile::Unknown;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
     pub kind: Kind,
-    /// Serial number in decimal, assuming big-endian bytes (`U`); empty if there is no register for it.
+    /// Serial number in decimal, assuming big-endian bytes (`U`), or empty if the encoder has no register for it.
     pub serial_number: String,
     /// Bytes of the serial number as received.
     pub serial_bytes: Vec<u8>,
-    /// Firmware, or `None` if there are no registers for it.
+    /// Firmware version, or `None` if the encoder has no registers for it.
     pub firmware: Option<Firmware>,
     pub description: Arc<Description>,
-    /// A description of the same manufacturer for another device ID, if there is one.
+    /// Difference from a description of the same manufacturer for another device ID, if there is such a description.
     pub mismatch: Option<Mismatch>,
-    /// Data sheet, or `None` if there is none known to this program.
+    /// Data sheet, or `None` if the encoder has none that this program knows.
     pub data_sheet: Option<DataSheet>,
     pub layout: Layout,
     pub source: FrameSource,
-    /// Adapter, if the encoder is connected over one.
+    /// Adapter through which the encoder is connected, if any.
     pub adapter: Option<Hello>,
     /// Byte order of register numbers over the configuration pin.
     pub order: Option<ByteOrder>,
@@ -43,7 +43,7 @@ pub enum FrameSource {
     DataSheet,
     Description,
     Given,
-    /// Checksums of frames while the shaft turned; the width of the multiturn is unknown.
+    /// Checksums of frames received while the shaft turned. They do not reveal the width of the multiturn.
     Checksum,
     Assumed,
 }
@@ -106,10 +106,10 @@ impl Identity {
     }
 }
 
-/// Offset in the common bank of the encoder bank's number.
+/// Offset, in the common bank, of the number of the encoder bank.
 const ENCODER_BANK: usize = 0x14;
 
-/// Identifies the encoder and its frame; both are known from then on.
+/// Identifies the encoder and its frame, both of which are known to the session from then on.
 ///
 /// # Errors
 /// Errors of the exchange.
@@ -117,7 +117,7 @@ pub fn identify(master: &mut Master<'_>, types: &Descriptions) -> Result<Identit
     identify_with(master, types, &mut Registers::default())
 }
 
-/// Identifies the encoder like [`identify`] and keeps everything that was read.
+/// Identifies the encoder like [`identify`], and stores everything that was read in `registers`.
 pub(super) fn identify_with(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -164,8 +164,8 @@ pub(super) fn identify_with(
     })
 }
 
-/// Determines an unknown frame: that of the kit encoder if its checksum matches, otherwise the result of a search.
-/// Frames cannot be observed over the configuration pin.
+/// Determines an unknown frame layout. The layout of the kit encoder is used if its checksum matches, otherwise the
+/// result of a search. Frames cannot be observed over the configuration pin.
 fn detect_frame_source(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     if master.station().transport == Transport::ConfigPin {
         return Ok(FrameSource::Assumed);
@@ -215,7 +215,7 @@ fn firmware_of(description: &Description, registers: &Registers) -> Option<Firmw
     }
 }
 
-/// Reads both banks, if the profile is the one whose data sheet this program supports.
+/// Reads both banks of the data sheet, provided that the program supports the data sheet of this profile.
 fn read_data_sheet(
     master: &mut Master<'_>,
     profile: ProfileId,

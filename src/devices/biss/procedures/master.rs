@@ -23,8 +23,8 @@ use crate::link::Ctx;
 use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
 
-/// Number of missing replies, while another register replies, after which a register is considered missing, since a bad
-/// line loses single replies.
+/// Number of missing replies after which a register is considered missing, provided that another register replies. A
+/// bad line may lose single replies.
 const SILENCES: u32 = 3;
 
 /// Host side of the line to a BiSS encoder, over either transport.
@@ -33,14 +33,14 @@ pub struct Master<'a> {
     station: &'a mut Station,
 }
 
-/// An exchange that gave no answer.
+/// The reason why an exchange yielded no answer.
 enum ExchangeError {
-    /// No reply, except possibly the echo.
+    /// No reply arrived, except possibly the echo.
     Silence {
         echo_heard: bool,
     },
     Damage(Damage),
-    /// The bus has no frame.
+    /// The bus delivered no frame.
     NoFrame(NoFrame),
 }
 
@@ -49,7 +49,7 @@ type Attempt<T> = Result<Result<T, ExchangeError>, Error>;
 
 enum WriteReaction {
     Yes,
-    /// The encoder refused; with the value that the register returns, if the connection reveals it.
+    /// The encoder refused the value. Contains the actual register value, if the connection reveals it.
     No(Option<u8>),
 }
 
@@ -78,7 +78,7 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// Waits; ends early when cancelled.
+    /// Waits for the given duration, or until the job is cancelled.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -86,7 +86,7 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(duration)?)
     }
 
-    /// Runs `work`, which returns the device to a safe state; cancellation is ignored meanwhile.
+    /// Runs `work`, which returns the device to a safe state, and ignores cancellation until it is done.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.shield(true);
         let result = work(self);
@@ -99,7 +99,7 @@ impl<'a> Master<'a> {
         self.line.shield(shielded)
     }
 
-    /// Runs `work`, during which the encoder may not reply for `patience`; reads are repeated until then.
+    /// Runs `work`, during which the encoder may not reply for up to `patience`. Reads are repeated for this time.
     pub fn with_patience<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.patience.replace(patience);
         let result = work(self);
@@ -107,7 +107,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Runs `work`, which reads values to be stored; every register must yield the same value twice.
+    /// Runs `work`, which reads values to be stored. Every register must yield the same value twice.
     pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -143,8 +143,8 @@ impl<'a> Master<'a> {
         places.into_iter().map(|address| self.read(address)).collect()
     }
 
-    /// Writes a register. If no reply confirms the value, it is read back where that can show it; it is sent again only
-    /// if it was not accepted.
+    /// Writes a register. If no reply confirms the value, the register is read back where that shows the value, and is
+    /// written again only if the value was not accepted.
     ///
     /// # Errors
     /// [`Error::Refused`]; [`Error::Unclear`] if nothing shows whether the value was accepted, as with a command, or it
@@ -205,7 +205,8 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reads a frame of the given widths over an adapter, unchecked and right-justified.
+    /// Reads a frame of the given widths over an adapter. The frame is right-justified and its checksum is not
+    /// verified.
     pub(super) fn frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
         self.ensure_bus_ready_for(data_bits, crc_bits)?;
         self.ask(RequestedItem::Position, |master| master.read_frame_once()).map(|(raw, _)| raw)
@@ -225,7 +226,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Prepares the first access: determines the byte order of register numbers, or configures the bus.
+    /// Prepares the first access, by determining the byte order of register numbers or configuring the bus.
     fn ensure_ready(&mut self) -> Result<(), Error> {
         match self.station.transport {
             Transport::Adapter => self.ensure_bus_ready(),
@@ -242,7 +243,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Sends a request that changes nothing in the encoder, and repeats it when the line fails.
+    /// Sends a request that changes nothing in the encoder, with retries if the line fails.
     fn ask<T>(&mut self, requested: RequestedItem, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
         let mut tries = 0;
         loop {
@@ -260,7 +261,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sends a request like [`ask`](Self::ask); if the line has damaged anything before, the same reply must arrive
+    /// Sends a request like [`ask`](Self::ask). If the line has damaged any data before, the same reply must arrive
     /// twice.
     fn read_confirmed(
         &mut self,
@@ -290,7 +291,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Prepares the line for the next attempt, or returns `failed` if none is left.
+    /// Prepares the line for another attempt, or returns `failed` if no attempts are left.
     fn may_try_again(&mut self, tries: u32, trouble: ExchangeError, failed: Error) -> Result<(), Error> {
         self.station.noisy |= matches!(trouble, ExchangeError::Damage(_));
         let quality = &mut self.station.line.quality;
@@ -316,8 +317,8 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Checks, after a register gave no reply, whether another one replies repeatedly, so that only this one is
-    /// missing. Skipped if the encoder may be silent for long.
+    /// Returns whether a register that gave no reply is the only one, because another register replies repeatedly. The
+    /// check is skipped if the encoder may be silent for long.
     fn is_silent_only_at(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
             return Ok(false);

@@ -13,21 +13,22 @@ use crate::devices::biss::profile::{Bank, BissProfile, DataImage, ListedBank, Pr
 use crate::devices::biss::protocol::{Area, Descriptions, DeviceMode, RegisterAddress};
 use crate::profile::Unknown;
 
-/// Number of positions for detecting standstill; the interval is below.
+/// Number of position readings for detecting standstill.
 const READINGS: usize = 3;
 const BETWEEN: Duration = Duration::from_millis(100);
-/// Width of a multiturn, in bits, whose range a motor cannot complete unnoticed between readings: at 12,000 rpm it
-/// turns forty times.
+/// Minimum multiturn width in bits for measuring a speed. A motor cannot complete this range unnoticed between
+/// readings, since at 12,000 rpm it turns forty times.
 const COUNTED: u8 = 7;
-/// Reciprocal of the motion, in revolutions, up to which a shaft is considered at rest despite jitter (`U`).
+/// Reciprocal of the largest movement, in revolutions, of a shaft that is still considered at rest despite jitter
+/// (`U`).
 const TREMBLE: u64 = 8192;
 
-/// Treatment of values that were entered in a device mode and never saved, which the encoder shows as if they were
+/// Treatment of values that were entered in a device mode but never saved. The encoder shows them as if they were
 /// stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsaved {
     Marked,
-    /// Refused, because they would be compared as the content of the encoder.
+    /// Values are refused, because a comparison would treat them as the contents of the encoder.
     Refused,
 }
 
@@ -166,8 +167,8 @@ pub fn save(
     })
 }
 
-/// Reads again if the line has damaged anything in the meantime, because more damage may have gone unnoticed; then
-/// everything must be read twice with the same result.
+/// Repeats the reading if the line has damaged any data in the meantime, because more damage may have gone unnoticed.
+/// In that case, everything must be read twice with the same result.
 fn certainly<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,

@@ -11,20 +11,20 @@ use crate::units::Moment;
 pub struct PositionReading {
     /// Time at which the encoder sampled the position.
     pub at: Moment,
-    /// Number of revolutions, limited by the width of the multiturn.
+    /// Number of revolutions, limited by the multiturn width.
     pub turns: u32,
     /// Position within the revolution, in fractions of 2 to the power of [`singleturn_bits`](Self::singleturn_bits).
     pub steps: u32,
-    /// Error bit: the position is invalid; `None` if unknown. Over the configuration pin it is read from a register in
-    /// addition to the position.
+    /// Whether the error bit marks the position as invalid, or `None` if unknown. Over the configuration pin, the bit
+    /// is read from a register in addition to the position.
     pub error: Option<bool>,
-    /// Warning bit, or `None` if unknown.
+    /// Whether the warning bit is set, or `None` if unknown.
     pub warning: Option<bool>,
     /// Number of frames with a wrong CRC since the previous reading.
     pub crc_errors: u32,
-    /// Bits of the revolutions, 0…32.
+    /// Width of the revolution count in bits, 0…32.
     pub multiturn_bits: u8,
-    /// Bits within a revolution, 0…32.
+    /// Width of the position within a revolution in bits, 0…32.
     pub singleturn_bits: u8,
     /// Whether the width of the multiturn is known; otherwise turns and steps are merely the upper and lower part of
     /// the position.
@@ -34,7 +34,7 @@ pub struct PositionReading {
 }
 
 impl PositionReading {
-    /// Creates a reading without the data that only one transport provides.
+    /// Creates a reading without the data that is available over one transport only.
     pub(super) fn new(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             at,
@@ -76,12 +76,12 @@ impl PositionReading {
         self.is_split_known.then(|| self.degrees())
     }
 
-    /// Returns the degrees within the revolution, from 0 up to 360.
+    /// Returns the angle within the revolution in degrees, from 0 up to 360.
     pub fn degrees(&self) -> f64 {
         f64::from(self.steps) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
-    /// Returns whether nothing marks the position as wrong.
+    /// Returns whether there is no indication that the position is wrong.
     pub fn is_valid(&self) -> bool {
         self.error != Some(true)
     }
@@ -106,7 +106,7 @@ pub enum Sample {
 pub struct WatchedReading {
     pub at: Moment,
     pub range: RegisterRange,
-    /// Values in address order, or the reason why there are none: the register does not exist, or belongs to a data
+    /// Values in address order, or the reason for their absence. The register may not exist or may belong to a data
     /// area.
     pub value: Result<Vec<u8>, Error>,
 }
@@ -126,7 +126,7 @@ pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
     }
 }
 
-/// Reads watched registers once. Missing registers, or registers of a data area, are a valid result.
+/// Reads watched registers once. If registers are missing or belong to a data area, this is a valid result.
 ///
 /// # Errors
 /// Errors of the exchange.

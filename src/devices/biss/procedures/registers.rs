@@ -13,13 +13,13 @@ impl Registers {
         self.0.get(&address).copied()
     }
 
-    /// Returns consecutive registers by global address, or `None` if any of them has not been read.
+    /// Returns consecutive registers by global address, or `None` unless all of them have been read.
     pub fn run(&self, start: RegisterAddress, count: u8) -> Option<Vec<u8>> {
         let first = start.global();
         (first..first.saturating_add(count.into())).map(|at| self.get(RegisterAddress::from_global(at)?)).collect()
     }
 
-    /// Returns the bytes of a described register, or `None` if any of them has not been read.
+    /// Returns the bytes of a described register, or `None` unless all of them have been read.
     pub fn bytes(&self, register: &Register) -> Option<Vec<u8>> {
         self.run(register.address, register.width)
     }

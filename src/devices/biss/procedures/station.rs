@@ -19,7 +19,7 @@ use crate::parameter::{Checked, Maybe, Milliseconds, Millivolts, Parameters, Ref
 use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
-/// Byte order of a register number; `None` to detect it.
+/// Words for the byte order of a register number, where `None` means detection.
 pub const ORDERS: Words<Option<ByteOrder>> =
     Words(&[("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst))]);
 
@@ -30,10 +30,10 @@ parameters! {
         pub baud: Baud = FORMAT.baud, "baud" => Checked(Expected::BitRate { low: 300, high: 4_000_000 }, read_baud),
             "settings_card.baud" like "115200";
         pub parity: Parity = FORMAT.parity, "parity" => Parity::WORDS;
-        /// Byte order of register numbers; `None` to detect it.
+        /// Byte order of register numbers, or `None` to detect it.
         pub order: Option<ByteOrder> = None, "order" => ORDERS;
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
-        /// Reply time-out, not counting transmission time and the margin.
+        /// Time limit for a reply, not counting transmission time and the margin.
         pub timeout: Duration = REPLY_TIME_OUT, "timeout" => Milliseconds(1..=10_000);
     }
 }
@@ -70,9 +70,9 @@ parameters! {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transport {
-    /// UBICOM over the configuration pin: registers are selected by global address.
+    /// UBICOM over the configuration pin, which selects registers by global address.
     ConfigPin,
-    /// BiSS over an adapter: registers are selected by bank and address.
+    /// BiSS over an adapter, which selects registers by bank and address.
     Adapter,
 }
 
@@ -99,12 +99,12 @@ pub struct Station {
     pub timeout: Duration,
     /// Requested BiSS clock frequency in hertz; the adapter uses the nearest supported one.
     pub clock_hz: u32,
-    /// BiSS clock frequency set by the adapter, in hertz; `None` until it has been set.
+    /// BiSS clock frequency set by the adapter in hertz, or `None` until it has been set.
     pub actual_clock_hz: Option<u32>,
     /// Encoder supply, if the adapter is to switch it.
     pub supply: Option<Supply>,
     pub adapter: AdapterState,
-    /// Register description of the encoder; `None` before identification.
+    /// Register description of the encoder, or `None` before identification.
     pub description: Option<Arc<Description>>,
     /// Firmware version found during identification.
     pub firmware: Option<Firmware>,
@@ -112,13 +112,13 @@ pub struct Station {
     pub layout: Option<Layout>,
     /// Frame layout given by the user, for an encoder that does not report it.
     pub given: Option<Layout>,
-    /// Source of the frame layout; `None` before identification.
+    /// Source of the frame layout, or `None` before identification.
     pub(super) source: Option<FrameSource>,
-    /// Whether values about to be stored are being read: each must be read twice, even on a line that seems good.
+    /// Whether values to be stored are being read. If so, each must be read twice, even on a line without errors.
     pub(super) thorough: bool,
     pub(super) noisy: bool,
     pub(super) bus: Option<Bus>,
-    /// The bank selected over BiSS, and when that was last certain.
+    /// The bank selected over BiSS, and when the selection was last certain.
     pub(super) bank: Option<(u8, Moment)>,
     /// Number of frames with a wrong checksum since the last reading.
     pub(super) crc_errors: u32,

@@ -11,7 +11,7 @@ use crate::devices::biss::protocol::{
     Area, Description, Filter, Firmware, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
-/// First firmware that can preset singleturn or multiturn alone (manual 6.7).
+/// First firmware that can preset the singleturn or multiturn part separately (manual 6.7).
 const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
 
 /// The motor that turns the shaft during a procedure.
@@ -23,14 +23,14 @@ pub enum MotorSource {
     ThisEncoder,
 }
 
-/// The steps of mounting an encoder in one run, performed in field order.
+/// The steps of mounting an encoder, performed in field order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MountingRun {
     /// Whether to calibrate the singleturn position.
     pub calibrate: bool,
     /// Whether to save the result of the Wiegand test; `None` to skip the test.
     pub wiegand: Option<bool>,
-    /// Value to set at the current shaft position, and the parts that it applies to.
+    /// Value to set at the current shaft position, and the parts of the position to set.
     pub preset: Option<(PresetValue, PresetParts)>,
     /// Profile whose plain data is written, if any.
     pub data: Option<Box<BissProfile>>,
@@ -54,16 +54,16 @@ impl MountingRun {
     }
 }
 
-/// The way in which a register is written.
+/// The way in which a register has to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind<'d> {
-    /// Part of a data area, which is opened and saved as a whole.
+    /// The register is part of a data area, which is opened and saved as a whole.
     Data(&'d Area),
     /// Written individually.
     Register,
 }
 
-/// Returns how a register is written.
+/// Returns the way in which a register has to be written.
 ///
 /// # Errors
 /// [`PlanError::ReadOnly`]; [`PlanError::Guarded`] for registers that only the procedures write.
@@ -78,7 +78,7 @@ pub fn place(description: &Description, address: RegisterAddress) -> Result<Regi
     Ok(area.map_or(RegisterKind::Register, RegisterKind::Data))
 }
 
-/// Returns whether a register holds the device mode or the password, or belongs to a procedure; plain data is not
+/// Returns whether a register holds the device mode or the password, or belongs to a procedure. Plain data is never
 /// guarded.
 fn is_guarded(description: &Description, address: RegisterAddress) -> bool {
     let locks = description.lock().is_some_and(|lock| [lock.password_at, lock.mode_at].contains(&address));
@@ -163,7 +163,7 @@ pub fn plan_edits(
     Ok(BissPlan { base, ops })
 }
 
-/// Returns the number of persistent writes that storing a value costs; at most one is assumed if the register is not
+/// Returns the number of persistent writes needed to store a value, which is at most one if the register is not
 /// described.
 fn cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 {
     description.at(address).map_or(1, |register| u8::from(register.is_save(value)))
@@ -182,7 +182,7 @@ pub fn plan_filter(description: &Description, device: &DeviceState, to: Filter) 
     Ok(BissPlan { base, ops: if from == to { vec![] } else { vec![Op::SelectFilter { from, to }] } })
 }
 
-/// Plans to store a preset value, if one is given that is not stored yet; with `parts`, also plans to set the current
+/// Plans to store the preset value if it is given and not stored yet. With `parts`, also plans to set the current
 /// shaft position to the stored value.
 ///
 /// # Errors
@@ -210,7 +210,7 @@ pub fn plan_preset(
     Ok(BissPlan { base: Base { preset: Some(from), ..Base::default() }, ops })
 }
 
-/// Plans a run of guided procedures.
+/// Plans the guided procedures of a mounting.
 ///
 /// # Errors
 /// See [`PlanError`]; a motor that depends on this encoder is refused if the run needs a motor.

@@ -35,7 +35,7 @@ pub enum EntryError {
     /// The string is not a firmware release.
     #[error("{0:?} is not of the form 1.6.0")]
     Release(String),
-    /// The string does not name a markable item.
+    /// The string does not name an item that can be marked.
     #[error("{0:?} is neither calibration nor of the form 0x24:0x10+3")]
     Marked(String),
 }

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use crate::devices::biss::protocol::RegisterAddress;
 
-/// A range of consecutive registers, either direct or within one bank.
+/// A range of consecutive registers, either direct registers or registers of one bank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterRange {
     start: RegisterAddress,

@@ -6,8 +6,8 @@ use crate::bits::hex_compact;
 use crate::devices::biss::protocol::{Description, Filter, PresetValue};
 
 impl Op {
-    /// Returns the changes with old and new values. Only the first of many consecutive registers are included; the
-    /// backup contains all of them.
+    /// Returns a description of the changes with old and new values. If many registers change, only the first are
+    /// listed; the backup contains all of them.
     pub fn note(&self, description: &Description) -> String {
         match self {
             Op::StoreData { area, registers } => {
@@ -35,7 +35,7 @@ impl Op {
     }
 }
 
-/// Maximum number of ranges listed.
+/// Maximum number of ranges listed in a note.
 const RUNS: usize = 8;
 /// Maximum number of registers per range that are listed with their values.
 const VALUES: usize = 8;

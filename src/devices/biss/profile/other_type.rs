@@ -28,7 +28,7 @@ pub enum OtherType {
     },
 }
 
-/// Multiturn and singleturn widths of a position in bits, as far as known.
+/// Multiturn and singleturn widths of a position in bits, if known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Width {
     /// Multiturn width in bits, if known.
@@ -57,7 +57,7 @@ impl fmt::Display for Width {
     }
 }
 
-/// Returns how the types of a profile and an encoder differ, or `None` if they match. An unknown part matches any
+/// Returns how the types of a profile and an encoder differ, or `None` if they match. An unknown width matches any
 /// value.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
     let (of_profile, of_device) = (profile.kind(), device.kind());

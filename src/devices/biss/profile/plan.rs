@@ -7,25 +7,25 @@ use crate::profile::{Operation, Plan};
 /// A plan of writes to a BiSS encoder.
 pub type BissPlan = Plan<Base, Op>;
 
-/// The values that a plan is based on: everything that its operations change and that can be read.
+/// The current values on which a plan is based, for everything readable that its operations change.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
-    /// Plain data banks that the plan touches.
+    /// Plain data banks that the plan changes.
     pub banks: Vec<Bank>,
     /// Filter in use.
     pub filter: Option<Filter>,
     /// Preset value stored in the encoder.
     pub preset: Option<PresetValue>,
-    /// Individual registers that the plan touches, with their values.
+    /// Individual registers that the plan changes, with their current values.
     pub registers: Vec<(RegisterAddress, u8)>,
 }
 
-/// An operation, from entering its device mode to leaving it.
+/// An operation of a plan, which enters the required device mode and leaves it again.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// Writes registers of one area and saves them together (manual 6.5).
     StoreData {
-        /// The area; its `open` field is the command that opens the area.
+        /// The area, which the command in its `open` field opens.
         area: Area,
         /// Register changes in ascending order of address.
         registers: Vec<RegisterChange>,
@@ -41,7 +41,7 @@ pub enum Op {
     FirePreset {
         /// Parts of the position that are set.
         parts: PresetParts,
-        /// Preset value stored by the time of the operation.
+        /// Preset value that is stored when the operation runs.
         value: PresetValue,
     },
     /// Selects the position filter (manual 6.6).
@@ -66,7 +66,7 @@ pub enum Op {
         old: Option<u8>,
         /// Value to write.
         new: u8,
-        /// Number of persistent writes spent.
+        /// Number of persistent writes used by the operation.
         cycles: u8,
     },
 }
@@ -129,7 +129,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// Returns whether the operation needs a motor to turn the shaft.
+    /// Returns whether the operation needs a motor that turns the shaft.
     pub fn turns(&self) -> bool {
         matches!(self, Op::Calibrate | Op::WiegandTest { .. })
     }
@@ -147,8 +147,8 @@ impl Op {
         }
     }
 
-    /// Returns the name of the item that the operation changes, in the form that `read` accepts if the item can be
-    /// read.
+    /// Returns the name of the item that the operation changes. If the item can be read, `read` accepts this
+    /// name.
     pub fn item(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
@@ -158,7 +158,7 @@ impl Op {
         }
     }
 
-    /// Returns the number of changes as counted by a comparison: the registers of an area, or one.
+    /// Returns the number of changes that a comparison would count: the changed registers of an area, otherwise one.
     pub fn weight(&self) -> u64 {
         match self {
             Op::StoreData { registers, .. } => registers.len() as u64,

@@ -29,7 +29,7 @@ pub struct BissProfile {
 /// The identity of an encoder, as saved in a profile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileIdentity {
-    /// Serial number from the encoder's identification; empty if not available.
+    /// Serial number reported by the encoder, or empty if not available.
     pub serial_number: String,
     /// Profile ID (registers 42h and 43h).
     pub profile_id: ProfileId,
@@ -39,13 +39,13 @@ pub struct ProfileIdentity {
     pub manufacturer: [u8; 2],
     /// Firmware version (registers 74h to 76h); `None` if the encoder has no such registers.
     pub firmware: Option<Firmware>,
-    /// Name of the description with which the encoder was read.
+    /// Name of the encoder description used for reading.
     pub description: String,
     /// Multiturn width in bits; `None` if unknown.
     pub multiturn_bits: Option<u8>,
     /// Singleturn width in bits, if known.
     pub singleturn_bits: Option<u8>,
-    /// Entries unknown to this program.
+    /// Profile entries unknown to this program.
     pub unknown: Unknown,
 }
 
@@ -54,7 +54,7 @@ pub struct ProfileIdentity {
 pub struct PresetSetting {
     /// Stored preset value.
     pub value: PresetValue,
-    /// Entries unknown to this program.
+    /// Profile entries unknown to this program.
     pub unknown: Unknown,
 }
 
@@ -71,9 +71,10 @@ pub struct Recorded {
     pub wiegand_saved: Option<WiegandResult>,
     /// Value of the calibration status register (bank 0, 01h).
     pub calibration_status: Option<u8>,
-    /// Device mode during the reading, unless it was operation: the profile may contain values that were never saved.
+    /// Device mode during the reading, unless the encoder was in operation. In another mode, the profile may contain
+    /// values that were never saved in the encoder.
     pub device_mode: Option<DeviceMode>,
-    /// Entries unknown to this program.
+    /// Profile entries unknown to this program.
     pub unknown: Unknown,
 }
 
@@ -90,7 +91,7 @@ pub enum MountingItem {
 }
 
 impl MountingItem {
-    /// Name of the calibration item, which has no registers.
+    /// Name of the calibration item, which has no readable registers.
     pub(super) const CALIBRATION: &str = "calibration";
 }
 
@@ -117,7 +118,7 @@ pub struct Bank {
 pub struct ListedBank {
     /// Number and contents of the bank.
     pub bank: Bank,
-    /// Entries unknown to this program.
+    /// Profile entries unknown to this program.
     pub unknown: Unknown,
 }
 
@@ -134,12 +135,12 @@ pub struct DataImage {
     pub empty: Option<u8>,
     /// Listed banks in ascending order.
     pub listed: Vec<ListedBank>,
-    /// Entries unknown to this program.
+    /// Profile entries unknown to this program.
     pub unknown: Unknown,
 }
 
 impl BissProfile {
-    /// Registers of a kit encoder's preset value: singleturn, then multiturn.
+    /// Registers of a kit encoder's preset value, singleturn first.
     pub const PRESET: &'static str = "0x01:0x02+6";
     /// Filter register of a kit encoder.
     pub const FILTER: &'static str = "0x6E";
@@ -194,7 +195,7 @@ impl BissProfile {
 }
 
 impl ProfileIdentity {
-    /// Returns the identity that determines the kind of encoder.
+    /// Returns the identity that determines the encoder type.
     pub fn kind(&self) -> Identity {
         Identity { profile: self.profile_id, manufacturer: self.manufacturer, device_id: self.device_id }
     }
@@ -209,7 +210,7 @@ impl Bank {
         Bank { number, bytes: [byte; Self::SIZE] }
     }
 
-    /// Returns the byte found in every register, or `None` if the registers differ.
+    /// Returns the byte that all registers have in common, or `None` if they differ.
     fn only_byte(&self) -> Option<u8> {
         let [first, ..] = self.bytes;
         self.bytes.iter().all(|byte| *byte == first).then_some(first)

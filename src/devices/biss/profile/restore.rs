@@ -7,14 +7,14 @@ use super::other_type::{OtherType, other_type};
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{Area, Filter, Firmware, PresetValue, ProcedureKind, RegisterAddress};
 
-/// The present state of an encoder, as far as a plan requires.
+/// The current state of an encoder, as far as planning requires it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// Identity of the encoder.
     pub identity: ProfileIdentity,
-    /// Filter in use, or `None` if the firmware offers no choice.
+    /// Filter in use, or `None` if the encoder offers no choice.
     pub filter: Option<Filter>,
-    /// Stored preset value, or `None` if the firmware has none.
+    /// Stored preset value, or `None` if the encoder has none.
     pub preset: Option<PresetValue>,
     /// Plain data areas of the encoder.
     pub areas: Vec<Area>,
@@ -28,7 +28,7 @@ pub type Restore = crate::profile::Restore<BissPlan, RegisterRange>;
 /// The reason why a change cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
-    /// The profile was read from another encoder.
+    /// The profile was read from an encoder with another serial number.
     #[error("the profile is of serial number {profile:?}, the encoder has {device:?}")]
     OtherDevice {
         /// Serial number in the profile.
@@ -36,7 +36,7 @@ pub enum PlanError {
         /// Serial number of the encoder.
         device: String,
     },
-    /// The profile was read from another type of encoder.
+    /// The profile was read from an encoder of another type.
     #[error(transparent)]
     OtherType(#[from] OtherType),
     /// The encoder has no such plain data bank, or the bank cannot be written.
@@ -48,7 +48,7 @@ pub enum PlanError {
     /// The preset value is wider than the position.
     #[error("the preset value {value} needs more than the {bits} {part} bits that the encoder has")]
     PresetTooWide {
-        /// Part of the position: `singleturn` or `multiturn`.
+        /// Part of the position that is too narrow, `singleturn` or `multiturn`.
         part: &'static str,
         /// Requested preset value.
         value: u32,
@@ -99,7 +99,7 @@ pub enum PlanError {
         /// Number of bytes given.
         count: usize,
     },
-    /// A calibration requires the balanced filter, but another one is in use.
+    /// The calibration requires the balanced filter, but another filter is in use.
     #[error("the calibration needs the balanced filter, and 0x{code:02X} is in force")]
     NotBalanced {
         /// Code of the filter in use.
@@ -116,7 +116,7 @@ pub fn banks_needed(profile: &BissProfile, areas: &[Area]) -> Vec<u8> {
     profile.banks().map(|bank| bank.number).filter(there).collect()
 }
 
-/// Plans a restore. Nothing is written.
+/// Plans a restore without writing anything.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -146,8 +146,8 @@ pub fn plan_data(profile: &BissProfile, device: &DeviceState) -> Result<Restore,
     Ok(planner.finish())
 }
 
-/// Refuses an encoder that the profile was not read from. An encoder without a serial number never counts as the
-/// original one.
+/// Refuses an encoder other than the one from which the profile was read. An encoder without a serial number is always
+/// refused.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
@@ -155,8 +155,8 @@ pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Refuses an encoder that the profile was not read from, unless the options allow it. Permission for another serial
-/// number does not include another type of encoder, whose registers may have other meanings.
+/// Refuses an encoder other than the one from which the profile was read, unless the options allow it. Permission for
+/// another serial number does not include another encoder type, whose registers may have other meanings.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
@@ -246,7 +246,7 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// Plans a single save for all differences in an area.
+    /// Plans to write all differences of an area with a single save.
     fn data(&mut self) -> Result<(), PlanError> {
         let mut areas: Vec<(&Area, Vec<RegisterChange>)> = Vec::new();
         for wanted in self.profile.banks() {

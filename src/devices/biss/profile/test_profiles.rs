@@ -15,7 +15,7 @@ pub(super) fn areas() -> [Area; 2] {
     [area("EDS motor data", 0x04, 0x23, 1), area("OEM data", 0x24, 0x43, 2)]
 }
 
-/// Returns the profile of an encoder as delivered, with the latest known firmware.
+/// Returns the profile of a factory-new encoder with the latest known firmware.
 pub(super) fn profile(serial_number: &str) -> BissProfile {
     let empty = |area: &Area| DataImage::of(area, area.banks().map(|number| Bank::filled(number, 0)).collect());
     BissProfile {
@@ -38,7 +38,7 @@ pub(super) fn profile(serial_number: &str) -> BissProfile {
     }
 }
 
-/// Changes bytes in a bank, adding the bank to the listed ones if necessary.
+/// Changes bytes in a bank, which is added to the listed banks if necessary.
 pub(super) fn with_bytes(profile: &mut BissProfile, number: u8, bytes: &[(usize, u8)]) {
     let mut bank = profile.bank(number).unwrap_or_else(|| Bank::filled(number, 0));
     for (at, byte) in bytes {

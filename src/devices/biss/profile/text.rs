@@ -11,7 +11,7 @@ use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Writer, quoted};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-/// Range of a preset value, which occupies three registers.
+/// Range of each part of a preset value, which occupies three registers.
 const PRESET_NUMBER: Expected = Expected::between(0, 16_777_215);
 
 impl Profile for BissProfile {

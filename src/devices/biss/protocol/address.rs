@@ -4,7 +4,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// The address of a register. Direct registers sort before those in banks, in the order of their global addresses.
+/// The address of a register. Direct registers sort before registers in banks, which sort by global address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterAddress(u16);
 
@@ -18,11 +18,11 @@ impl RegisterAddress {
     pub const BANK_SIZE: u8 = 0x40;
     /// Register 40h in all encoders: selects the bank visible at 00h to 3Fh.
     pub const BANK_SELECT: RegisterAddress = RegisterAddress(0x00);
-    /// Register 41h in all encoders: the first bank of the electronic data sheet.
+    /// Register 41h in all encoders, which holds the number of the first electronic data sheet bank.
     pub const EDS_BANK: RegisterAddress = RegisterAddress(0x01);
-    /// Registers 42h and 43h in all encoders: the profile ID.
+    /// Registers 42h and 43h in all encoders, which hold the profile ID.
     pub const PROFILE: RegisterAddress = RegisterAddress(0x02);
-    /// Registers 78h to 7Dh in all encoders: the device ID, followed by the manufacturer ID.
+    /// Registers 78h to 7Dh in all encoders, which hold the device ID and are followed by the manufacturer ID.
     pub const DEVICE_ID: RegisterAddress = RegisterAddress(0x38);
 
     /// Creates the address of a direct register, 40h to 7Fh; `None` outside this range.
@@ -45,24 +45,26 @@ impl RegisterAddress {
         if global < 0x40 + 0x4000 { Some(RegisterAddress(global)) } else { None }
     }
 
-    /// Returns the global number: direct registers start at 0, those of bank 0 at 40h, and so forth.
+    /// Returns the global number, which starts at 0 for direct registers and at 40h for the registers of bank 0,
+    /// followed by the other banks.
     pub const fn global(self) -> u16 {
         self.0
     }
 
-    /// Returns the bank that has to be selected, or `None` for a direct register.
+    /// Returns the bank that must be selected for access, or `None` for a direct register.
     pub const fn bank(self) -> Option<u8> {
         if self.0 < 0x40 { None } else { Some(((self.0 - 0x40) / 0x40) as u8) }
     }
 
-    /// Returns the seven-bit address in the control frame: 40h to 7Fh for direct registers, 00h to 3Fh within a bank.
+    /// Returns the seven-bit address used in the control frame, 40h to 7Fh for direct registers and 00h to 3Fh within a
+    /// bank.
     pub const fn address(self) -> u8 {
         // Always below 40h.
         let offset = (self.0 % 0x40) as u8;
         if self.0 < 0x40 { 0x40 + offset } else { offset }
     }
 
-    /// Returns the address `count` registers further on, or `None` beyond the end of the bank.
+    /// Returns the address `count` registers after this one, or `None` beyond the end of the bank.
     pub fn plus(self, count: u8) -> Option<Self> {
         let offset = u16::from(self.address() % Self::BANK_SIZE) + u16::from(count);
         (offset < u16::from(Self::BANK_SIZE)).then_some(RegisterAddress(self.0 + u16::from(count)))
@@ -105,7 +107,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Expected values from UBICOM reference 3.
+    /// Expected values are taken from UBICOM reference 3.
     #[test]
     fn published_address_map_matches() {
         let cases = [

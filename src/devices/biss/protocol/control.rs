@@ -21,9 +21,9 @@ mod tests;
 pub use encoder::{Encoder, Event};
 pub use host::{Host, Step};
 
-/// Number of consecutive cycles with CDM = 0 that return both sides to rest.
+/// Number of consecutive cycles with CDM = 0 that return host and encoder to the idle state.
 pub const REST_CYCLES: u8 = 14;
-/// Maximum number of cycles for which an encoder may delay its S (`U`).
+/// Maximum number of cycles by which an encoder may delay its start bit S (`U`).
 pub const MAX_WAIT_CYCLES: u8 = 50;
 /// Number of registers that a control frame can address.
 const REGISTERS: u8 = 0x80;
@@ -64,10 +64,10 @@ pub enum ControlError {
     /// No encoder with the given number is on the line.
     #[error("no slave {0} answers")]
     NoSlave(u8),
-    /// The encoder did not echo the kind of access: it either did not understand the request or refused it.
+    /// The encoder did not echo the access type, so it did not understand the request or refused it.
     #[error("the encoder refuses register 0x{0:02X}")]
     Rejected(u8),
-    /// The encoder kept the host waiting for too long.
+    /// The encoder delayed its answer for too many cycles.
     #[error("the encoder does not give register 0x{0:02X} within {MAX_WAIT_CYCLES} cycles")]
     TimeOut(u8),
     /// The encoder's answer is damaged. A write may or may not have taken effect.
@@ -131,7 +131,7 @@ impl Request {
     }
 }
 
-/// Appends the CRC4 to a value, giving twelve bits.
+/// Appends the CRC4 to a value and returns the resulting twelve bits.
 fn with_crc(value: u8) -> u16 {
     let value = u16::from(value);
     value << 4 | u16::from(super::crc::crc4(value, 8))

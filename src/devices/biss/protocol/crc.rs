@@ -3,13 +3,13 @@
 
 use std::fmt;
 
-/// A checksum as specified in a description. Its width follows from the polynomial.
+/// A checksum as specified in a description, whose width follows from the polynomial.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Crc {
     polynomial: u64,
     start: u32,
     inverted: bool,
-    /// Remainders for all byte values. The CRC register is aligned to the upper end of 32 bits.
+    /// Remainders for all byte values, aligned to the upper end of a 32-bit register.
     table: [u32; 256],
 }
 
@@ -19,7 +19,7 @@ pub enum CrcError {
     /// The degree of the polynomial is 0 or above 32.
     #[error("the CRC polynomial {0:#X} must have 2 to 33 bits, including its highest and lowest term")]
     Degree(u64),
-    /// The lowest term of the polynomial is missing: the checksum would not detect every single-bit error.
+    /// The polynomial lacks its lowest term, so the checksum would not detect every single-bit error.
     #[error("the CRC polynomial {0:#X} must end with the term 1")]
     LowestTerm(u64),
     /// The start value is wider than the checksum.
@@ -33,13 +33,13 @@ pub enum CrcError {
 }
 
 impl Crc {
-    /// Polynomial x⁶ + x + 1, sent inverted: used for position data unless an encoder specifies another.
+    /// Polynomial x⁶ + x + 1 for position data, unless an encoder specifies another. The checksum is sent inverted.
     pub const POSITION: u64 = 0x43;
-    /// Polynomial x⁴ + x + 1, sent inverted: used in the control frame.
+    /// Polynomial x⁴ + x + 1 for the control frame. The checksum is sent inverted.
     pub const CONTROL: u64 = 0x13;
 
-    /// Creates a checksum from all terms of its polynomial, including the highest (43h is x⁶ + x + 1), the value of the
-    /// register before the first bit, and whether the result is sent inverted.
+    /// Creates a checksum. The polynomial includes all its terms, even the highest (43h is x⁶ + x + 1), and `start` is
+    /// the value of the register before the first bit.
     ///
     /// # Errors
     /// [`CrcError`] if the parameters do not describe a checksum of 1 to 32 bits.
@@ -70,17 +70,17 @@ impl Crc {
         }
     }
 
-    /// Returns the polynomial with all of its terms.
+    /// Returns the polynomial, including its highest and lowest terms.
     pub const fn polynomial(&self) -> u64 {
         self.polynomial
     }
 
-    /// Returns the value of the register before the first bit.
+    /// Returns the value of the CRC register before the first bit.
     pub const fn start(&self) -> u32 {
         self.start
     }
 
-    /// Returns whether the result is sent inverted.
+    /// Returns whether the checksum is sent inverted.
     pub const fn is_inverted(&self) -> bool {
         self.inverted
     }
@@ -90,7 +90,7 @@ impl Crc {
         self.polynomial.ilog2() as u8 // at most 32
     }
 
-    /// Returns the checksum, as sent, of the lowest `bits` bits of `data`, processed from the highest of them down.
+    /// Returns the checksum of the lowest `bits` bits of `data`, highest bit first, in the form in which it is sent.
     /// Values of `bits` above 64 count as 64.
     pub fn of(&self, data: u64, bits: u8) -> u32 {
         let unused = 32 - u32::from(self.width());
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Returns the remainder by long division in a wide number, without using any of the code under test.
+    /// Computes the remainder by long division, independently of the code under test.
     fn divided(polynomial: u64, start: u32, data: u64, bits: u8) -> u32 {
         let degree = 63 - polynomial.leading_zeros();
         let mut rest = u128::from(data) & ((1u128 << bits) - 1);
@@ -169,7 +169,7 @@ mod tests {
         rest as u32
     }
 
-    /// Expected values from reference 3: header CRC4 over CTS = 1, ID = 0, address.
+    /// Expected header CRC4 values from reference 3, calculated over CTS = 1, ID = 0 and the address.
     #[test]
     fn published_headers_match() {
         let table = [
@@ -215,8 +215,8 @@ mod tests {
         }
     }
 
-    /// Check values over the string 123456789 from the catalogue of parametrised CRC algorithms (reveng): those of any
-    /// width without reflection.
+    /// Check values for the string 123456789 from the catalogue of parametrised CRC algorithms (reveng), for algorithms
+    /// of any width without reflection.
     #[test]
     fn other_polynomials_match_published_check_values() {
         let cases = [

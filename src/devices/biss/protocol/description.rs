@@ -21,7 +21,7 @@ use super::procedure::ProcedureKind;
 use super::single_cycle::Layout;
 use super::status::{Firmware, ProfileId};
 
-/// The description of one kind of encoder.
+/// The description of an encoder type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     name: String,
@@ -45,7 +45,7 @@ pub struct Identity {
     pub device_id: [u8; 6],
 }
 
-/// The encoder is not of the described kind.
+/// A mismatch between an encoder and its description.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the encoder says {found}; the description \"{name}\" is for {expected}")]
 pub struct Mismatch {
@@ -57,7 +57,7 @@ pub struct Mismatch {
     pub found: Identity,
 }
 
-/// The lock to open before a device mode can be selected.
+/// The lock that must be opened before a device mode can be selected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lock {
     /// Address of the password register.
@@ -79,7 +79,7 @@ pub struct Procedure {
     pub command: RegisterAddress,
     /// Address of the status register.
     pub status: RegisterAddress,
-    /// First additional register: the error code and results of a Wiegand test, or the value of a preset.
+    /// First additional register, which holds the error code and results of a Wiegand test or the value of a preset.
     pub data: Option<RegisterAddress>,
     /// First firmware that supports the procedure.
     pub since: Firmware,
@@ -95,7 +95,7 @@ pub struct DescriptionError {
     pub line: usize,
     /// Column number, counted from 1.
     pub column: usize,
-    /// The flaw that was found.
+    /// The flaw at this position.
     pub problem: Flaw,
 }
 
@@ -128,7 +128,7 @@ impl Description {
         self.identity.as_ref()
     }
 
-    /// Returns the position frame layout, or `None` if the encoder's data sheet or the user has to supply it.
+    /// Returns the position frame layout, or `None` if it must come from the encoder's data sheet or the user.
     pub const fn layout(&self) -> Option<&Layout> {
         self.layout.as_ref()
     }
@@ -138,7 +138,7 @@ impl Description {
         self.lock
     }
 
-    /// Returns the registers in file order.
+    /// Returns the registers in the order of the file.
     pub fn registers(&self) -> &[Register] {
         &self.registers
     }
@@ -164,12 +164,12 @@ impl Description {
         self.registers.iter().find(|register| register.role == Some(role))
     }
 
-    /// Returns the register that the byte at an address belongs to, if any.
+    /// Returns the register that contains the byte at an address, if any.
     pub fn at(&self, address: RegisterAddress) -> Option<&Register> {
         self.registers.iter().find(|register| register.contains(address))
     }
 
-    /// Returns the area that the byte at an address belongs to, if any.
+    /// Returns the area that contains the byte at an address, if any.
     pub fn area_at(&self, address: RegisterAddress) -> Option<&Area> {
         self.areas.iter().find(|area| address.bank().is_some_and(|bank| area.contains(bank)))
     }
@@ -179,7 +179,7 @@ impl Description {
         self.procedures.iter().find(|procedure| procedure.kind == kind)
     }
 
-    /// Returns how the byte at an address can be accessed, if it is described.
+    /// Returns the kind of access to the byte at an address, or `None` if it is not described.
     pub fn access(&self, address: RegisterAddress) -> Option<Access> {
         self.at(address).map(|register| register.access).or_else(|| self.area_at(address).map(|area| area.access))
     }
@@ -212,13 +212,13 @@ impl fmt::Display for Identity {
 }
 
 impl Descriptions {
-    /// The descriptions that ship with the program, with their file names.
+    /// The descriptions that ship with the program, each with its file name.
     pub const BUILT_IN: [(&'static str, &'static str); 2] = [
         ("posital_kit.ron", include_str!("../../../../assets/devices/biss/posital_kit.ron")),
         ("unknown.ron", include_str!("../../../../assets/devices/biss/unknown.ron")),
     ];
 
-    /// Parses description files. Returns an error for each file that cannot be used, which does not affect the others.
+    /// Parses description files. An unusable file yields an error and does not affect the others.
     pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<DescriptionError>) {
         let mut errors = Vec::new();
         let mut read = Vec::new();
@@ -248,7 +248,7 @@ impl Descriptions {
         Descriptions(all)
     }
 
-    /// Returns the description for the given identity: a specific one, otherwise one that applies to any encoder.
+    /// Returns the description for the given identity, preferring a specific one over one that applies to any encoder.
     pub fn find(&self, identity: &Identity) -> Option<&Description> {
         self.0.iter().find(|description| description.check(identity).is_ok())
     }

@@ -24,7 +24,7 @@ pub struct EdsField {
     pub width: u8,
     /// Name in the manual.
     pub name: &'static str,
-    /// Factory setting of a kit encoder, or `None` if the manual leaves it open.
+    /// Factory setting of a kit encoder, or `None` if the manual does not give one.
     pub default: Option<u32>,
     meaning: Meaning,
 }
@@ -50,13 +50,13 @@ pub enum EdsValue {
     Number(u32, &'static str),
     /// Bank number.
     Bank(u8),
-    /// Not available: FFh in place of a bank number.
+    /// A bank that is not available, encoded as FFh.
     NotAvailable,
-    /// Time in units that are not published: no unit length fits the manual's tables exactly (`U`).
+    /// Time in an unpublished unit. No unit length fits the manual's tables exactly (`U`).
     Ticks(u8),
-    /// Adaptive time-out, encoded as 0.
+    /// Adaptive time-out, which is encoded as 0.
     Adaptive,
-    /// Unlimited cycle time, encoded as 0.
+    /// Unlimited cycle time, which is encoded as 0.
     NoLimit,
     /// Absolute temperature in kelvin.
     Kelvin(u16),
@@ -64,18 +64,18 @@ pub enum EdsValue {
     Polynomial(u64),
     /// Profile ID.
     Profile(ProfileId),
-    /// Meaning of a bit next to the position.
+    /// Meaning of a status bit sent next to the position.
     Feedback(Feedback),
-    /// Encoder type: 0 for rotary; other numbers are unknown (`U`).
+    /// Encoder type. Type 0 is rotary; other numbers are unknown (`U`).
     EncoderType(u8),
-    /// Number that represents a code.
+    /// Number that stands for a code.
     Code(u32),
 }
 
-/// The meaning of a bit next to the position.
+/// The meaning of a status bit sent next to the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feedback {
-    /// No such bit (code 0).
+    /// The frame has no such bit (code 0).
     None,
     /// Error bit, active low (code 1).
     Error,
@@ -142,22 +142,22 @@ pub struct Eds {
 /// The reason why an electronic data sheet is unreliable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EdsError {
-    /// The last byte is not the sum of the others.
+    /// The last byte is not the sum of all other bytes.
     #[error("EDS bank 0x{bank:02X}: checksum {got:02X} where {expected:02X} was expected")]
     Checksum {
-        /// Bank number from the manual.
+        /// Number of the bank in the manual.
         bank: u8,
         /// Sum of the other bytes.
         expected: u8,
         /// Checksum received.
         got: u8,
     },
-    /// The meaning of a bit next to the position is unknown.
+    /// The meaning of a status bit sent next to the position is unknown.
     #[error("EDS: feedback bit {number} has the unknown meaning 0x{code:02X}")]
     Feedback {
         /// Number of the bit, 1 or 2.
         number: u8,
-        /// Code that states the bit's meaning.
+        /// Unknown code that states the meaning of the bit.
         code: u8,
     },
     /// The two banks disagree on the data length.
@@ -195,7 +195,7 @@ impl EdsBank {
 }
 
 impl Eds {
-    /// Offset of the checksum, which covers the other bytes.
+    /// Offset of the checksum, which covers all other bytes of the bank.
     pub const CHECKSUM_OFFSET: u8 = 0x3F;
 
     /// Parses a bank and verifies its checksum.
@@ -211,7 +211,7 @@ impl Eds {
         Ok(Eds { bank, bytes })
     }
 
-    /// Returns a kit encoder's bank with factory settings, or 0 where the manual gives no value.
+    /// Returns a kit encoder's bank with factory settings; bytes without a value in the manual are 0.
     pub fn delivered(bank: EdsBank) -> Self {
         let mut bytes = [0; 64];
         for field in bank.fields() {
@@ -239,8 +239,8 @@ impl Eds {
         self.bank.fields().iter().map(|field| (field, field.value(&self.bytes)))
     }
 
-    /// Returns the last bank available to users. Returns `None` if no bank is available, and for bank 3, which does not
-    /// contain this field.
+    /// Returns the last bank available to users, or `None` if there is none. Bank 3 does not contain this field and
+    /// always yields `None`.
     pub fn last_user_bank(&self) -> Option<u8> {
         match (self.bank, self.byte(0x03)) {
             (EdsBank::Encoder, _) | (EdsBank::Common, 0xFF) => None,
@@ -289,7 +289,7 @@ impl EdsField {
         bytes.iter().fold(0, |number, byte| number << 8 | u32::from(*byte))
     }
 
-    /// Returns the decoded value of the field without verifying the bank's checksum; see [`Eds::parse`].
+    /// Returns the decoded value of the field without verifying the bank's checksum, which [`Eds::parse`] does.
     pub fn value(&self, bank: &[u8; 64]) -> EdsValue {
         let raw = self.raw(bank);
         // Fields with these meanings are one byte wide, and those two bytes wide use only one of them, so nothing is

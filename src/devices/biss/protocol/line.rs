@@ -8,7 +8,7 @@ use super::single_cycle::Layout;
 pub struct Cycle {
     /// Number of clocks for which the encoder was still busy (SLO = 0), at least 1.
     pub acknowledge: usize,
-    /// CDS: the bit of the control frame that the encoder sends in the cycle.
+    /// CDS, the control frame bit that the encoder sends in this cycle.
     pub control: bool,
     /// Frame bits including the checksum, right-justified.
     pub raw: u64,
@@ -17,7 +17,7 @@ pub struct Cycle {
 /// The reason why samples do not form a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CycleError {
-    /// The line never went low: no encoder is connected, or a wire is broken.
+    /// The line never went low, because no encoder is connected or a wire is broken.
     #[error("the encoder does not acknowledge")]
     NoAcknowledge,
     /// The line never returned to high.
@@ -43,7 +43,7 @@ impl Cycle {
     /// Finds the frame in the samples of a cycle. Samples after the first one of the time-out are ignored.
     ///
     /// # Errors
-    /// [`CycleError`]. The frame's checksum is verified by [`Layout::parse`] instead.
+    /// [`CycleError`]. The frame's checksum is not verified here but in [`Layout::parse`].
     pub fn parse(samples: &[bool], layout: &Layout) -> Result<Self, CycleError> {
         // The line is at rest before the acknowledge.
         let low = samples.iter().position(|sample| !sample).ok_or(CycleError::NoAcknowledge)?;
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Reference 7: MT 1234, ST 18000, acknowledge of three clocks.
+    /// Cycle from reference 7 with multiturn 1234, singleturn 18000 and an acknowledge of three clocks.
     const SAMPLES: &str = "000 1 0 0001001000110100 11000000000000000 1 1 001111 0";
 
     fn samples(text: &str) -> Vec<bool> {

@@ -11,7 +11,7 @@ impl Layout {
         PositionWord::parse([b0, b1, b2, b3, b4])
     }
 
-    /// Returns the position in a word, split by the widths of the frame, or `None` if higher bits are set. The position
+    /// Splits the position in a word by the widths of the frame, or returns `None` if higher bits are set. The result
     /// has no error or warning bit.
     pub fn decode_position(&self, word: PositionWord) -> Option<PositionData> {
         let split = |value: u64, bits: u8| (value & ((1 << bits) - 1), value >> bits);

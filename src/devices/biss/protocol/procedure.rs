@@ -30,7 +30,7 @@ impl ProcedureKind {
     ];
 }
 
-/// Defines a type for the codes of a register, in which unknown codes keep their number.
+/// Defines an enum for the codes of a register. Unknown codes keep their number.
 macro_rules! codes {
     ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $code:literal $text:literal,)* }) => {
         $(#[$about])*
@@ -113,8 +113,8 @@ codes! {
     CalibrationCommand {
         /// Starts the first run, with the motor turning counterclockwise.
         StartCounterclockwise = 0x01 "start counterclockwise",
-        /// Starts the second run, with the motor turning clockwise. On success the table is saved automatically; on
-        /// failure it is lost.
+        /// Starts the second run, with the motor turning clockwise. If the run succeeds, the table is saved
+        /// automatically; if it fails, the table is lost.
         StartClockwise = 0x02 "start clockwise",
     }
 }
@@ -200,9 +200,9 @@ codes! {
         Edit = 0x02 "enable preset value edit",
         /// Saves the preset value and restarts.
         Save = 0x03 "save preset value",
-        /// Same as `Both`, but for the singleturn position only; restarts.
+        /// Sets only the singleturn position to the stored preset value and restarts.
         Singleturn = 0x04 "perform preset, singleturn",
-        /// Same as `Both`, but for the multiturn position only; restarts.
+        /// Sets only the multiturn position to the stored preset value and restarts.
         Multiturn = 0x05 "perform preset, multiturn",
     }
 }
@@ -230,8 +230,8 @@ impl PresetValue {
     /// Maximum singleturn or multiturn value.
     pub const MAX: u32 = (1 << 24) - 1;
 
-    /// Creates a preset value from two parts of up to 24 bits each, or returns `None` if one is larger. The encoder's
-    /// widths may allow less.
+    /// Creates a preset value from two parts of up to 24 bits each, or returns `None` if a part is larger. The
+    /// encoder's position may be narrower.
     pub const fn new(singleturn: u32, multiturn: u32) -> Option<Self> {
         if singleturn <= Self::MAX && multiturn <= Self::MAX {
             Some(PresetValue { singleturn, multiturn })
@@ -240,13 +240,13 @@ impl PresetValue {
         }
     }
 
-    /// Parses the register bytes, in order of address.
+    /// Parses the register bytes in ascending order of address.
     pub const fn parse(bytes: [u8; 6]) -> Self {
         let [s0, s1, s2, m0, m1, m2] = bytes;
         PresetValue { singleturn: u32::from_le_bytes([s0, s1, s2, 0]), multiturn: u32::from_le_bytes([m0, m1, m2, 0]) }
     }
 
-    /// Returns the register bytes, in order of address.
+    /// Returns the register bytes in ascending order of address.
     pub const fn emit(self) -> [u8; 6] {
         let [s0, s1, s2, _] = self.singleturn.to_le_bytes();
         let [m0, m1, m2, _] = self.multiturn.to_le_bytes();
@@ -268,8 +268,8 @@ impl PresetValue {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PulseVoltage(u8);
 
-/// The result of a Wiegand test in both directions (bank 0: the last result from 09h, the factory's from 0Dh, the saved
-/// one from 11h).
+/// The result of a Wiegand test in both directions (bank 0, with the last result from 09h, the factory result from 0Dh
+/// and the saved one from 11h).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WiegandResult {
     /// Average pulse voltage, clockwise.
@@ -283,7 +283,7 @@ pub struct WiegandResult {
 }
 
 impl PulseVoltage {
-    /// Minimum for the average minus four standard deviations: 5.3 V.
+    /// Minimum of 5.3 V for the average minus four standard deviations.
     pub const LIMIT: PulseVoltage = PulseVoltage(53);
 
     /// Creates a voltage from tenths of a volt; every byte is valid.
@@ -369,7 +369,7 @@ mod tests {
         assert_eq!(WiegandResult::parse([1, 2, 3, 4]).lowest_ccw.byte(), 4);
     }
 
-    /// Codes from the manual's tables, and codes that appear in none of them.
+    /// Covers the codes in the manual's tables and codes that appear in none of them.
     #[test]
     fn codes_match_the_manual_and_unknown_ones_are_kept() {
         assert_eq!(

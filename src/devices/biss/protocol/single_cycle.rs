@@ -3,7 +3,7 @@
 
 use super::crc::{Crc, CrcError};
 
-/// Bit layout of a frame, after the start and control bits.
+/// The bit layout of a frame after the start and control bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     multiturn_bits: u8,
@@ -27,7 +27,7 @@ pub enum LayoutError {
     /// The layout contains no position bits.
     #[error("multiturn and singleturn must have at least one bit together")]
     Empty,
-    /// The whole frame, including the checksum, does not fit into 64 bits.
+    /// The frame, including the checksum, is longer than 64 bits.
     #[error("the frame must have at most 64 bits with its CRC, not {0}")]
     Long(u32),
     /// The CRC parameters are invalid.
@@ -40,7 +40,8 @@ pub enum LayoutError {
 pub struct PositionData {
     /// Revolution count, as wide as the layout's multiturn field.
     pub multiturn: u32,
-    /// Position within the revolution, in steps; a revolution has 2 to the power of the layout's singleturn bits.
+    /// Position within the revolution, in steps. The number of steps per revolution is 2 to the power of the layout's
+    /// singleturn bits.
     pub singleturn: u32,
     /// Whether the encoder reports that the position is invalid (the bit on the line is 0).
     pub error: bool,
@@ -55,7 +56,7 @@ pub enum FrameError {
     /// not ready.
     #[error("the data line stays low")]
     StuckLow,
-    /// All bits are 1, which is not a valid frame in this layout: no encoder, or a broken wire.
+    /// All bits are 1, which is not a valid frame in this layout. There is no encoder or a wire is broken.
     #[error("the data line stays high")]
     StuckHigh,
     /// Bits above the frame's length are set.
@@ -75,8 +76,8 @@ pub enum FrameError {
 }
 
 impl Layout {
-    /// Creates a layout with the given field widths; the error bit follows the position, and the warning bit follows
-    /// the error bit.
+    /// Creates a layout with the given field widths. The position is followed by the error bit and then the
+    /// warning bit.
     ///
     /// # Errors
     /// [`LayoutError`] if a field is wider than 32 bits, the frame is longer than 64 bits, or the layout is otherwise
@@ -208,7 +209,8 @@ impl Layout {
 }
 
 impl Default for Layout {
-    /// Returns the layout of the kit encoder: 16 + 17 bits, error, warning, CRC6 43h inverted.
+    /// Returns the layout of the kit encoder, with 16 + 17 position bits, an error bit, a warning bit and the inverted
+    /// CRC6 43h.
     fn default() -> Self {
         let crc = Crc::new(Crc::POSITION, 0, true).ok();
         Layout { multiturn_bits: 16, singleturn_bits: 17, error_bit: true, warning_bit: true, crc }
@@ -257,7 +259,7 @@ mod tests {
         }
     }
 
-    /// Frame 024698000CF is from reference 7; each of its bits is flipped in turn.
+    /// Flips each bit of the frame 024698000CF from reference 7 in turn.
     #[test]
     fn every_flipped_bit_is_detected() {
         let layout = Layout::default();

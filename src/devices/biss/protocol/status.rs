@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-/// The error register (68h). Any set bit drives the position's error bit to 0.
+/// The error register (68h). Any bit set here drives the error bit in the position frame to 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ErrorRegister(u8);
 
@@ -23,9 +23,9 @@ const UNKNOWN_ERROR: &str = "unknown error";
 const UNKNOWN_WARNING: &str = "unknown warning";
 
 impl ErrorRegister {
-    /// Bit 1: the multiturn counter has lost synchronisation.
+    /// Bit 1, set if the multiturn counter has lost synchronisation.
     pub const MULTITURN: ErrorRegister = ErrorRegister(0x02);
-    /// Bit 4: the magnet is missing or too far away.
+    /// Bit 4, set if the magnet is missing or too far away.
     pub const FIELD_TOO_LOW: ErrorRegister = ErrorRegister(0x10);
 
     /// Creates an error register; every byte is valid, and bits that the manual does not use are kept.
@@ -86,7 +86,7 @@ impl Temperature {
         Temperature(byte)
     }
 
-    /// Returns the nearest temperature that the register can represent.
+    /// Creates the nearest temperature that the register can represent.
     pub fn from_celsius(celsius: i16) -> Self {
         Temperature(u8::try_from(celsius.saturating_add(Self::OFFSET).clamp(0, 0xFF)).unwrap_or(0))
     }
@@ -112,7 +112,7 @@ impl Temperature {
 pub struct DeviceMode(u8);
 
 impl DeviceMode {
-    /// Normal operation: the encoder only sends positions.
+    /// Normal operation, in which the encoder only sends positions.
     pub const OPERATION: DeviceMode = DeviceMode(0x00);
     /// Singleturn calibration.
     pub const CALIBRATION: DeviceMode = DeviceMode(0x01);
@@ -135,7 +135,7 @@ impl DeviceMode {
         (DeviceMode::PRESET.0, "preset"),
     ];
 
-    /// Password that unlocks the mode register, written to 6Bh.
+    /// Password that unlocks the device mode register; it is written to 6Bh.
     pub const PASSWORD: u8 = 0x2A;
 
     /// Creates a device mode from a register byte; every byte is valid.
@@ -164,11 +164,11 @@ impl fmt::Display for DeviceMode {
 /// The position filter (6Eh).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Filter {
-    /// 03h, the factory setting: low noise.
+    /// Filter 03h, the factory setting, with low noise.
     Balanced,
-    /// 04h: low latency, more noise.
+    /// Filter 04h, with low latency and more noise.
     Dynamic,
-    /// A value that the manual does not define.
+    /// Filter value that the manual does not define.
     Unknown(u8),
 }
 
@@ -226,12 +226,13 @@ impl ProfileId {
         ProfileId(word)
     }
 
-    /// Returns both bytes as one word, with the first byte in the high half.
+    /// Returns both bytes as a 16-bit word with the first byte in the high half.
     pub const fn word(self) -> u16 {
         self.0
     }
 
-    /// Returns whether bits 15 to 13 are 011, the standard encoder profile BP3, whose data sheet this program can read.
+    /// Returns whether bits 15 to 13 are 011, which denotes the standard encoder profile BP3. This program can read the
+    /// data sheet of that profile.
     pub const fn is_standard_encoder(self) -> bool {
         self.0 >> 13 == 0b011
     }
@@ -262,7 +263,7 @@ mod tests {
         assert_eq!(Temperature::from_celsius(i16::MAX).byte(), 0xFF);
     }
 
-    /// Reference 7: error 12h means multiturn and field too low, warning 01h means temperature.
+    /// In reference 7, error 12h means multiturn and field too low, and warning 01h means temperature.
     #[test]
     fn error_and_warning_bits_are_named() {
         let errors: Vec<_> = ErrorRegister::new(0x12).set().collect();

@@ -5,7 +5,7 @@ use super::crc::Crc;
 
 /// Range of data widths to try, in bits (`U`).
 const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
-/// Number of consecutive matching frames required, each with different data from the one before (`U`).
+/// Required number of consecutive frames that match and differ in data from the one before (`U`).
 const ENOUGH: usize = 8;
 
 /// Returns the data width without the checksum, or `None` if no length fits or too few frames differ. Each frame holds
@@ -47,7 +47,7 @@ mod tests {
         Crc::new(Crc::POSITION, 0, true).unwrap()
     }
 
-    /// Returns the first 64 bits on the line: a `frame` of `bits` bits, followed by zeros.
+    /// Returns the first 64 bits on the line, consisting of a `frame` of `bits` bits followed by zeros.
     fn clock_out_bits(frame: u64, bits: u8) -> u64 {
         frame << (64 - bits)
     }
@@ -79,7 +79,7 @@ mod tests {
     }
 
     proptest! {
-        /// Constant high bits must not lead to a shorter frame.
+        /// Constant high bits must not be mistaken for a shorter frame.
         #[test]
         fn any_frame_length_is_found(multiturn in 0u8..=16, singleturn in 9u8..=30, step in 1u32..40) {
             let layout = Layout::new(multiturn, singleturn, true, true, Some(crc())).unwrap();

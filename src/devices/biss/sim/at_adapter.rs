@@ -5,7 +5,7 @@ use crate::buses::bridge::sim::{AttachableKind, AttachedDevice, BissDevice};
 use crate::sim::{ConfigError, Faults, Motor};
 use crate::units::Moment;
 
-/// A kit encoder on an adapter's bus, set up from a [`Config`].
+/// A kit encoder on the bus of an adapter, created from a [`Config`].
 #[derive(Clone, Copy, Debug)]
 pub struct AtAdapter;
 

@@ -11,7 +11,7 @@ use crate::units::Moment;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conditions {
-    /// Shaft speed in revolutions per minute; above 0 means clockwise.
+    /// Shaft speed in revolutions per minute, positive for clockwise rotation.
     pub(super) rpm: f64,
     /// Speed variation in revolutions per minute.
     pub(super) waver: f64,
@@ -36,7 +36,7 @@ struct Run {
     outcome: CalibrationStatus,
 }
 
-/// Effect of a finished run on the calibration table.
+/// The effect of a finished calibration run on the calibration table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
     No,
@@ -62,7 +62,7 @@ impl Calibration {
         self.run.is_some() && self.status == CalibrationStatus::Running
     }
 
-    /// Handles a command and returns `false` if the command is refused.
+    /// Handles a command, and returns `false` if it is refused.
     pub(super) fn write(&mut self, now: Moment, value: u8, conditions: Conditions) -> bool {
         let clockwise = match CalibrationCommand::from_byte(value) {
             CalibrationCommand::StartCounterclockwise => false,
@@ -107,7 +107,7 @@ impl Calibration {
         }
     }
 
-    /// Aborts the calibration when the mode is left or power is lost.
+    /// Aborts the calibration because the device mode was left or power was lost.
     pub(super) fn abandon(&mut self) -> Ended {
         let lost = self.run.take().is_some_and(|run| run.clockwise);
         self.command = 0;

@@ -63,10 +63,10 @@ enum Power {
 }
 
 impl Encoder {
-    /// Time until control communication is available after power-up: 500 ms (data sheet, 02:0Eh).
+    /// Time from power-up until control communication is available, 500 ms (data sheet, 02:0Eh).
     pub(super) const START: Duration = Duration::from_millis(500);
     const MAX_BANK: u8 = 0x43;
-    /// Temperature that sets the warning, 125 °C; it clears below 123 °C (manual 6.8).
+    /// Temperature at which the warning is set, 125 °C. The warning clears below 123 °C (manual 6.8).
     const HOT: i16 = 125;
     const COOL: i16 = 123;
     const DIAGNOSTICS_SINCE: Firmware = Firmware::new(1, 6, 0);
@@ -133,7 +133,7 @@ impl Encoder {
         self.watch_temperature();
     }
 
-    /// Replaces the flash faults; the store count is kept.
+    /// Replaces the flash faults without resetting the store count.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.die_in_store = faults.die_in_store();
     }
@@ -160,7 +160,7 @@ impl Encoder {
         }
     }
 
-    /// Returns whether the encoder has power; it may still be starting.
+    /// Returns whether the encoder has power, including while it is starting.
     pub fn has_power(&self) -> bool {
         self.power != Power::Off
     }
@@ -225,7 +225,7 @@ impl Encoder {
         Some(value)
     }
 
-    /// Writes a register at `now`; returns `false`, with nothing changed, if the encoder refuses.
+    /// Writes a register at `now`, or returns `false` and changes nothing if the encoder refuses.
     pub fn write(&mut self, now: Moment, address: RegisterAddress, value: u8) -> bool {
         self.settle(now);
         let offset = address.address();
@@ -368,7 +368,7 @@ impl Encoder {
         }
     }
 
-    /// Starts the encoder, clearing its volatile memory.
+    /// Starts the encoder and clears its volatile memory.
     fn start(&mut self, now: Moment) {
         self.abandon();
         self.power = Power::Starting { ready: now + Self::START };

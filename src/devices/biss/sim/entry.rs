@@ -79,7 +79,7 @@ impl DataEntry {
         bytes.get(at).copied()
     }
 
-    /// Enters a byte; returns `false` if the given area is not open.
+    /// Enters a byte, or returns `false` if the area is not open.
     pub(super) fn enter(&mut self, area: Area, at: usize, value: u8) -> bool {
         let place = self.open.as_mut().filter(|(open, _)| *open == area).and_then(|(_, bytes)| bytes.get_mut(at));
         place.map(|byte| *byte = value).is_some()
@@ -130,7 +130,7 @@ impl PresetEntry {
         PresetEntry { command: 0, status: PresetStatus::Idle, bytes: stored.emit() }
     }
 
-    /// Handles a command. `parts` tells whether the encoder can preset singleturn and multiturn separately.
+    /// Handles a command. `parts` is true if the encoder can preset singleturn and multiturn separately.
     pub(super) fn command(&mut self, value: u8, parts: bool, layout: &Layout) -> Then {
         let then = match (PresetCommand::from_byte(value), self.status) {
             (PresetCommand::Edit, _) => {

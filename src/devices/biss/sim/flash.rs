@@ -8,7 +8,8 @@ pub struct Flash {
     pub(super) oem_data: Vec<u8>,
     pub(super) preset: PresetValue,
     pub(super) filter: Filter,
-    /// Pulse average and average minus four standard deviations, clockwise then counterclockwise, in tenths of a volt.
+    /// Wiegand test result in tenths of a volt. Contains the average and the average minus four standard deviations,
+    /// first clockwise, then counterclockwise.
     pub(super) wiegand: [u8; 4],
     pub(super) calibrated: bool,
     pub(super) cycles: u32,

@@ -17,7 +17,7 @@ impl Clone for Drive {
 }
 
 impl Drive {
-    /// Creates the motor. With `reverses`, the motor changes direction by itself when a procedure waits for the
+    /// Creates the motor. If `reverses` is set, the motor changes direction by itself when a procedure waits for the
     /// opposite direction.
     pub(super) fn new(rpm: f64, reverses: bool) -> Self {
         Drive { motor: Motor::at(rpm), reverses }

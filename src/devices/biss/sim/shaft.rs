@@ -10,7 +10,7 @@ pub(super) const FINE: u8 = 8;
 #[derive(Clone, Debug)]
 pub(super) struct Shaft {
     rpm: f64,
-    /// Mechanical position in steps at `since`.
+    /// Mechanical position in steps at the time `since`.
     place: f64,
     since: Moment,
     offset: u64,
@@ -46,7 +46,7 @@ impl Shaft {
         PositionData { multiturn, singleturn, error: false, warning: false }
     }
 
-    /// Returns the position at a moment with [`FINE`] fractional bits, as another encoder on this shaft sees it.
+    /// Returns the position at a moment with [`FINE`] fractional bits, for another encoder on the same shaft.
     pub(super) fn fine(&self, at: Moment) -> u64 {
         let whole = (self.whole_steps(at) + self.offset) % self.range();
         // The product is at least 0 and below 1 << FINE.
@@ -54,7 +54,7 @@ impl Shaft {
         whole << FINE | parts
     }
 
-    /// Presets singleturn, multiturn or both to the given values from `at` on; `None` leaves a part unchanged.
+    /// Presets singleturn, multiturn or both to the given values, effective from `at`. `None` leaves a part unchanged.
     pub(super) fn preset(&mut self, at: Moment, singleturn: Option<u32>, multiturn: Option<u32>) {
         let now = self.reading(at);
         let wanted = PositionData {

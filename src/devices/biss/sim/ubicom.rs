@@ -16,7 +16,7 @@ use crate::sim::Faults;
 use crate::sim::line::{Queue, VirtualLine, Wires};
 use crate::units::Moment;
 
-/// A line with its encoder, as seen from the host. Created from a [`Config`].
+/// A line with a virtual encoder, as seen by the host. Created from a [`Config`].
 #[derive(Clone)]
 pub struct Port {
     encoder: Encoder,
@@ -27,7 +27,7 @@ pub struct Port {
     /// Bytes on their way to the encoder, with their arrival times.
     to_encoder: Queue<u8>,
     to_host: Queue<u8>,
-    /// Time at which the encoder received the last byte of an incomplete frame.
+    /// Time at which the last byte of an incomplete frame arrived at the encoder.
     heard: Option<Moment>,
     work: Option<Work>,
     /// Time until which the encoder drives the line.
@@ -35,7 +35,7 @@ pub struct Port {
     frames: u32,
 }
 
-/// The request being processed by the encoder.
+/// A request that the encoder is processing.
 #[derive(Clone, Copy)]
 struct Work {
     ends: Moment,
@@ -74,7 +74,7 @@ impl Port {
         &self.encoder
     }
 
-    /// Returns the encoder mutably, for example to turn its shaft or change its temperature.
+    /// Returns a mutable reference to the encoder, for example to turn its shaft or change its temperature.
     pub const fn encoder_mut(&mut self) -> &mut Encoder {
         &mut self.encoder
     }

@@ -10,7 +10,7 @@ use crate::units::Moment;
 /// Pulse voltages of the sensor, in tenths of a volt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pulses {
-    /// Average voltage; 0 means no pulses.
+    /// Average voltage, or 0 for no pulses.
     pub(super) average: u8,
     pub(super) lowest: u8,
 }
@@ -45,7 +45,7 @@ impl Wiegand {
         }
     }
 
-    /// Handles a command; returns `false` if the command is refused. The [`Encoder`](super::Encoder) does the saving.
+    /// Handles a command, or returns `false` if it is refused. The result is saved by the [`Encoder`](super::Encoder).
     pub(super) fn write(&mut self, now: Moment, value: u8) -> bool {
         let status = match (WiegandCommand::from_byte(value), self.status) {
             (WiegandCommand::Stop, _) => WiegandStatus::Stopped,
@@ -69,7 +69,8 @@ impl Wiegand {
         matches!(self.status, WiegandStatus::Clockwise | WiegandStatus::Counterclockwise)
     }
 
-    /// Adds the revolutions since the previous call at constant speed, and ends a run that has collected enough.
+    /// Adds the revolutions since the previous call, at constant speed, and ends a run that has collected enough of
+    /// them.
     pub(super) fn settle(&mut self, now: Moment, rpm: f64, pulses: Pulses) {
         if !self.is_running() {
             return;
@@ -95,7 +96,7 @@ impl Wiegand {
         }
     }
 
-    /// Ends the run when the mode is left or power is lost. The result is kept until power is lost.
+    /// Ends the run because the device mode was left or power was lost. The result is kept until power is lost.
     pub(super) fn abandon(&mut self) {
         (self.command, self.status) = (0, WiegandStatus::Stopped);
     }

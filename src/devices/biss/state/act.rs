@@ -17,7 +17,7 @@ use crate::profile::Body;
 use super::table::Group;
 use crate::devices::biss::state::explain as explained;
 
-/// Interval for reading watched registers, which change slowly and hold up the position readings.
+/// Interval between readings of watched registers, which change slowly and delay the position readings.
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
@@ -94,8 +94,8 @@ impl Encoder {
         }
     }
 
-    /// Returns whether a bank that becomes visible should be read: the bank has not been read, nothing is running, no
-    /// stream would be interrupted, and no earlier attempt failed.
+    /// Returns whether a newly visible bank should be read. This requires that the bank has not been read, nothing is
+    /// running, no stream would be interrupted, and no earlier attempt failed.
     pub fn includes_group(&self, group: &Group) -> bool {
         let free = self.session.is_ready() && self.streamed().is_none();
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
@@ -107,7 +107,7 @@ impl Encoder {
         if self.profile().is_some() { self.memory.part(area) } else { Some(area.clone()) }
     }
 
-    /// Returns the reason why an area cannot be edited now, or `None` if editing is possible.
+    /// Returns the reason why an area cannot be edited now, or `None` if it can be.
     pub fn why_not_editable(&self, area: &Area) -> Option<Text> {
         if !area.access.writes() {
             return Some(TEXTS.text("data.read_only"));
@@ -126,7 +126,7 @@ impl Encoder {
         }
     }
 
-    /// Writes a freshly read profile to the file that it was read for.
+    /// Saves a newly read profile to the file for which it was requested.
     pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.memory.count());
         let remarks = explained::saved_unsaved(&profile).into_iter().collect();

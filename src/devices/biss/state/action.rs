@@ -10,18 +10,18 @@ use crate::devices::biss::profile::{MotorSource, MountingRun};
 use crate::devices::biss::protocol::{Register, RegisterAddress};
 
 pub enum BissAction {
-    /// Read errors, warnings, temperature and device mode.
+    /// Reads errors, warnings, temperature and device mode.
     ReadStatus,
     Check,
-    /// Start or stop reading the given register along with the position while polling.
+    /// Starts or stops reading the given register along with the position.
     Watch(Box<Register>, bool),
-    /// Read a bank, or the direct registers for `None`.
+    /// Reads a bank, or the direct registers for `None`.
     ReadBank(Option<u8>),
-    /// Read a newly visible bank that has never been read, if nothing else is going on.
+    /// Reads a newly visible bank that has never been read, unless another job is running.
     SeeBank(Option<u8>),
-    /// Read the plain data area that starts at the given bank.
+    /// Reads the plain data area that starts at the given bank.
     ReadArea(u8),
-    /// Edit bytes of plain data.
+    /// Edits bytes of plain data.
     Put {
         start: RegisterAddress,
         bytes: Vec<u8>,
@@ -31,9 +31,9 @@ pub enum BissAction {
         count: usize,
     },
     Plan(Box<Change>),
-    /// Show the effect of a mounting run. The plain data comes from a profile that is open in another session.
+    /// Plans a mounting run and shows its effect. The plain data comes from a profile that is open in another session.
     PlanMounting {
-        /// The steps of the run, without the plain data.
+        /// Steps of the run, without the plain data.
         run: Box<MountingRun>,
         motor: MotorSource,
         data: Option<SessionId>,
@@ -41,7 +41,7 @@ pub enum BissAction {
     Answer(Task, Answer),
     CloseGuide,
     LeadBack,
-    /// Turn the virtual encoder's shaft, in revolutions per minute.
+    /// Turns the virtual encoder's shaft at a speed in revolutions per minute.
     Turn(f64),
     Save(PathBuf),
 }

@@ -27,7 +27,7 @@ pub enum BissLinkKind {
     Replay,
 }
 
-/// Values of the connection form. Values for another kind of connection are kept but left out of the link. An empty
+/// Values of the connection form. Values for other kinds of connection are kept but not included in the link. An empty
 /// field means the default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissForm {
@@ -46,13 +46,13 @@ pub struct BissForm {
     pub echo: Echo,
     /// Whether the adapter leaves the encoder's supply on after disconnecting.
     pub leave_supply: bool,
-    /// Typed values of the other parameters.
+    /// Values typed for the other parameters.
     pub typed: Typed,
     /// Link parameters that have no form field.
     pub rest: Vec<(String, String)>,
 }
 
-/// Link parameter that puts a virtual adapter in front of the virtual encoder.
+/// Link parameter that connects the virtual encoder to a virtual adapter.
 const BRIDGE: (&str, &str) = ("bridge", "on");
 
 impl Default for BissForm {
@@ -149,7 +149,7 @@ impl BissForm {
         is_taken
     }
 
-    /// Returns the typed fields of the virtual encoder.
+    /// Returns the form fields for the virtual encoder.
     pub fn of_the_virtual() -> Vec<Entry> {
         chosen(&sim::Config::entries(), &["rpm", "fault"])
     }
@@ -158,7 +158,7 @@ impl BissForm {
         BusParameters::entries()
     }
 
-    /// Returns the baud rate field of the configuration pin, and the pin's remaining fields.
+    /// Returns the baud rate field and the other fields for the configuration pin.
     pub fn pin_entries() -> (Vec<Entry>, Vec<Entry>) {
         PinParameters::entries().into_iter().partition(|own| own.key == "baud")
     }
@@ -179,7 +179,7 @@ impl BissForm {
         self.kind == BissLinkKind::Bus || (self.leads_to_pin_or_bus() && self.behind_adapter)
     }
 
-    /// Returns whether this kind of link can lead to either the configuration pin or the bus.
+    /// Returns whether the link may connect to either the configuration pin or the bus.
     pub fn leads_to_pin_or_bus(&self) -> bool {
         matches!(self.kind, BissLinkKind::Virtual | BissLinkKind::Replay)
     }

@@ -12,7 +12,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
 
 impl Encoder {
-    /// Returns the meaning of a register, or `None` if the register was not read or means no more than its number.
+    /// Returns the meaning of a register, or `None` if the register was not read or its number explains itself.
     pub fn meaning(&self, shown: &RegisterEntry<'_>) -> Option<Text> {
         let register = &shown.row.register;
         let bytes = shown.bytes.as_deref()?;
@@ -58,8 +58,8 @@ impl Encoder {
         }
     }
 
-    /// Returns the meaning of data sheet fields that a description cannot express: times, banks, polynomials, the
-    /// checksum.
+    /// Returns the meaning of data sheet fields that a description cannot express, such as times, banks, polynomials
+    /// and the checksum.
     fn of_data_sheet(&self, register: &Register, bytes: &[u8]) -> Option<Text> {
         let offset = register.address.address();
         let bank = [EdsBank::Common, EdsBank::Encoder]

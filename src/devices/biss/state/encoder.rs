@@ -36,7 +36,7 @@ pub struct Encoder {
     pub refusal: Option<Text>,
     pub motor: Option<Motor>,
     pub(super) meaning: Meaning,
-    /// Banks that were read on becoming visible or could not be read, and are not requested automatically again.
+    /// Banks that have been read on becoming visible, or could not be read. They are not requested automatically again.
     pub(super) seen: BTreeSet<Option<u8>>,
     /// Banks that have been written and must be read back.
     pub(super) read_after: BTreeSet<u8>,
@@ -117,7 +117,8 @@ impl Encoder {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Returns the serial number, which is empty if the encoder has none, or `None` if nothing was read.
+    /// Returns the serial number, or `None` if nothing was read. The string is empty if the encoder has no serial
+    /// number.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
@@ -127,7 +128,7 @@ impl Encoder {
         self.memory.is_dirty()
     }
 
-    /// Takes over a survey of the encoder. Edits are kept unless the survey is of another encoder.
+    /// Accepts a survey of the encoder. Edits are kept unless the survey belongs to another encoder.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         let fresh = std::mem::take(&mut self.session.just_connected);
         // Without a serial number, this may be any encoder of the same type.
@@ -174,7 +175,7 @@ impl Encoder {
         Some(words::unsaved(mode))
     }
 
-    /// Returns whether the identity differs from that of the encoder read before.
+    /// Returns whether the identity differs from that of the previously read encoder.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.kind.clone(), identity.serial_number.clone());
         self.identity().is_some_and(|known| who(known) != who(identity))

@@ -63,7 +63,7 @@ impl Kind for Biss {
 }
 
 impl Encoder {
-    /// Reads back the next bank that has been written.
+    /// Reads back the next bank that was written.
     fn read_back_changes(&mut self, services: &mut Services) {
         if let Some(bank) = self.read_after.pop_first() {
             self.submit(BissJob::ReadBank(bank), services);
@@ -138,7 +138,7 @@ impl SessionEvents for Encoder {
         }
     }
 
-    /// Returns whether an error means that neither the encoder nor the adapter responds.
+    /// Returns whether an error means that the encoder and the adapter do not respond.
     fn is_silence(&self, error: &JobError) -> bool {
         let is_lost = match error {
             JobError::Device(cause) => cause.is_lost(),

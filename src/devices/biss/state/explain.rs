@@ -177,7 +177,7 @@ pub fn item_text(requested: RequestedItem) -> Text {
     }
 }
 
-/// Returns the message for an encoder that differs from the best matching description.
+/// Returns the message for an encoder that differs from the description that matches it best.
 pub fn mismatch(mismatch: &Mismatch) -> Text {
     TEXTS
         .text("biss.mismatch")

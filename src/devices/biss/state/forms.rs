@@ -7,7 +7,7 @@ use crate::devices::biss::state::TEXTS;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PresetForm {
-    /// Angle within the revolution, in degrees.
+    /// Entered angle within the revolution, in degrees.
     pub degrees: String,
     pub turns: String,
 }
@@ -36,7 +36,7 @@ impl PresetForm {
         Ok(((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32)
     }
 
-    /// Returns the entered revolution.
+    /// Returns the revolution entered.
     ///
     /// # Errors
     /// A message that states the valid range.

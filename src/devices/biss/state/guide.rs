@@ -11,7 +11,7 @@ use crate::devices::biss::profile::Op;
 pub struct Guide {
     ops: Vec<Op>,
     progress: Option<ProcedureProgress>,
-    /// The interrupted step; the last reported step belongs to the return to operation.
+    /// The interrupted step. The last reported step may instead belong to the return to operation.
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
     skips: Vec<(usize, Task)>,
@@ -27,9 +27,9 @@ pub enum End {
     Failed {
         /// Messages that explain what happened, the state in which the encoder was left, and what to do.
         texts: Vec<Text>,
-        /// Results of the operations completed before.
+        /// Results of the operations that were completed before the interruption.
         before: Vec<Outcome>,
-        /// Whether the encoder may have been left outside operation.
+        /// Whether the encoder may have been left in a mode other than operation.
         may_lead_back: bool,
         cancelled: bool,
     },
@@ -123,7 +123,8 @@ impl Guide {
         steps
     }
 
-    /// Returns the range of skipped steps in an operation, taken from its result or else from the answers.
+    /// Returns the range of skipped steps in an operation, taken from its result if available and from the operator's
+    /// answers otherwise.
     fn skipped(&self, number: usize, steps: &[ProcedureStep]) -> Option<std::ops::Range<usize>> {
         let outcomes = match &self.end {
             Some(End::Done(outcomes) | End::Failed { before: outcomes, .. }) => outcomes.as_slice(),

@@ -13,7 +13,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 
 impl Encoder {
-    /// Logs the first response after the link was opened.
+    /// Logs the first response on a newly opened link.
     pub(super) fn log_answer(&self, services: &mut Services) {
         let Some(identity) = self.identity() else { return };
         self.session.log_answer(vec![transport_text(identity), identity_text(identity)], services);
@@ -41,7 +41,7 @@ impl Encoder {
     }
 }
 
-/// Returns the log text for one changed value, old and new.
+/// Returns the log text for a changed value, consisting of old and new value.
 fn operation(item: &Text, ChangeTexts { part, old, new }: ChangeTexts) -> Text {
     let text = match part {
         None => TEXTS.text("log.operation"),
@@ -50,7 +50,7 @@ fn operation(item: &Text, ChangeTexts { part, old, new }: ChangeTexts) -> Text {
     text.with_text("item", item.clone()).with_text("old", old).with_text("new", new)
 }
 
-/// Returns the log text for the connection to the encoder.
+/// Returns the log text that describes the transport to the encoder.
 fn transport_text(identity: &Identity) -> Text {
     match (&identity.adapter, identity.order) {
         (Some(hello), _) => Text::new("log.adapter")

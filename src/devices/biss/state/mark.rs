@@ -4,7 +4,7 @@
 use super::encoder::Encoder;
 use crate::devices::biss::procedures::Bits;
 
-/// Validity mark on a position.
+/// The validity mark on a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Invalid,
@@ -12,7 +12,7 @@ pub enum Mark {
 }
 
 impl Encoder {
-    /// Returns the mark on the last position, or `None` if the position is valid without warning or unknown.
+    /// Returns the mark on the last position, or `None` if there is no position or it is valid without a warning.
     pub fn mark(&self) -> Option<Mark> {
         let reading = self.record.last()?;
         let status = self.status.as_ref();

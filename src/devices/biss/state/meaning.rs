@@ -13,7 +13,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// Stateful decoder for frames, which must arrive in transmission order.
+/// A stateful decoder of frames, which must arrive in transmission order.
 #[derive(Debug, Default)]
 pub(super) struct Meaning {
     /// Byte order of register numbers, once known.
@@ -54,8 +54,8 @@ impl Meaning {
         })
     }
 
-    /// Decodes bytes received over the configuration pin after a request. A damaged part may still be followed by the
-    /// reply.
+    /// Decodes bytes received over the configuration pin after a request. The reply may still follow a damaged
+    /// part.
     fn reply(&mut self, bytes: &[u8]) -> Explained {
         let broken = |damage| Explained::broken(words::damage(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };

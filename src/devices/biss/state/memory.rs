@@ -32,12 +32,12 @@ pub enum MemoryError {
     /// The register has not been read, so the value to be replaced is unknown.
     #[error("{0} has not been read")]
     NotRead(RegisterAddress),
-    /// The register is not plain data.
+    /// The register is not a plain data register.
     #[error("{0} is no plain data")]
     NoData(RegisterAddress),
 }
 
-/// Runs of edited bytes, each with its start address, the encoder's bytes and the edited bytes.
+/// Runs of edited bytes, each with its start address, the values in the encoder and the edited values.
 pub type Runs = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
 
 impl Memory {
@@ -83,8 +83,8 @@ impl Memory {
         Some((read, wanted))
     }
 
-    /// Returns the consecutive banks of an area that were read, since a profile may contain only some of them, or
-    /// `None` if no bank was read completely.
+    /// Returns the longest run of banks of an area that were read completely, or `None` if there is none. A profile may
+    /// contain only some banks of an area.
     pub fn part(&self, area: &Area) -> Option<Area> {
         let is_read = |bank: u8| {
             let mut places = (0..RegisterAddress::BANK_SIZE).map(|offset| RegisterAddress::banked(bank, offset));
@@ -114,7 +114,7 @@ impl Memory {
     /// Edits bytes from `start` onward as a single undo step.
     ///
     /// # Errors
-    /// [`MemoryError`] if the edit is refused; nothing is changed then.
+    /// [`MemoryError`] if the edit is refused, in which case nothing is changed.
     pub fn put(&mut self, description: &Description, start: RegisterAddress, bytes: &[u8]) -> Result<(), MemoryError> {
         let mut wanted = Vec::with_capacity(bytes.len());
         for (at, byte) in (start.global()..).zip(bytes) {
@@ -152,12 +152,12 @@ impl Memory {
         runs
     }
 
-    /// Returns the edits for a draft on disk, as global addresses and bytes.
+    /// Returns the edits to store in a draft, as global addresses and bytes.
     pub fn edits(&self) -> Vec<(u16, u8)> {
         self.iter().map(|(at, byte)| (at.global(), byte)).collect()
     }
 
-    /// Restores edits from a draft. Edits that equal the encoder's values are dropped once those are read.
+    /// Restores edits from a draft. Once the encoder's values have been read, edits that equal them are dropped.
     pub fn take_draft(&mut self, draft: Vec<(u16, u8)>) {
         let places = draft.into_iter().filter_map(|(at, byte)| Some((RegisterAddress::from_global(at)?, byte)));
         self.set(places);

@@ -15,7 +15,7 @@ use crate::devices::biss::procedures::{Error, FrameRun, PositionReading, Sample,
 use crate::devices::biss::protocol::{Decoded, Decoding, Register};
 use crate::devices::biss::state::explain as words;
 
-/// Consecutive positions with equal field widths.
+/// A batch of consecutive positions with equal field widths.
 #[derive(Default)]
 struct Batch {
     widths: Option<Widths>,
@@ -37,7 +37,7 @@ impl From<&PositionReading> for Widths {
     }
 }
 
-/// Recorder of an encoder's positions, with the latest values.
+/// The recorder of an encoder's positions, which also keeps the latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     track: Track<Register>,
@@ -170,12 +170,12 @@ impl Record {
         self.track.add_watched(&register, &watching);
     }
 
-    /// Sets the registers to record in addition to the position, replacing any previous choice.
+    /// Sets the registers to record along with the position, replacing the previous selection.
     pub(super) fn watch(&mut self, watched: &[Register]) {
         self.track.watch(watched);
     }
 
-    /// Returns the registers recorded in addition to the position.
+    /// Returns the registers recorded along with the position.
     pub fn watched(&self) -> Vec<Register> {
         self.track.watched()
     }
@@ -189,7 +189,7 @@ impl Record {
         self.crc_errors
     }
 
-    /// Returns the latest stream, or `None` if polling has stopped or positions have arrived one by one since.
+    /// Returns the latest stream, or `None` if polling has stopped or positions now arrive one by one.
     pub(super) fn streamed(&self) -> Option<&Streamed> {
         self.stream.as_ref()
     }
@@ -290,7 +290,7 @@ mod tests {
         }
     }
 
-    /// Reference 2: turn 1234h at 270°.
+    /// Expected values from reference 2 for turn 1234h at 270°.
     #[test]
     fn raw_values_are_position_words_also_in_a_stream() {
         let mut record = Record::default();

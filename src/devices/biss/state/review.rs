@@ -12,7 +12,7 @@ use crate::devices::biss::state::explain as words;
 pub type Review = review::Review<Biss>;
 pub type ReviewState = review::ReviewState<Biss>;
 
-/// Returns whether an operation requires an operator, or may be guided by one.
+/// Returns whether an operation requires or supports an operator.
 pub(super) fn is_guided(op: &Op) -> bool {
     op.turns() || matches!(op, Op::FirePreset { .. })
 }
@@ -104,7 +104,7 @@ impl Reviewed for Biss {
     }
 }
 
-/// Returns the selected parts of a mounting run that are missing from the plan because nothing would change.
+/// Returns the selected parts of a mounting run that the plan does not contain because nothing would change.
 fn skipped_operations(change: &Change, ops: &[Op]) -> impl Iterator<Item = Text> {
     let run = match change {
         Change::Guided { run, .. } => Some(run),

@@ -5,7 +5,7 @@ use super::memory::Memory;
 use crate::bits::ByteOrder;
 use crate::devices::biss::protocol::{Access, Decoding, Description, EdsBank, Name, Register, RegisterAddress};
 
-/// Last bank if the description names none, taken from the kit encoder.
+/// Last bank of the kit encoder, used if the description does not name any.
 const LAST_BANK: u8 = 0x43;
 
 #[derive(Clone, Debug, Default)]
@@ -16,16 +16,16 @@ pub struct Table {
 /// A group of rows: the direct registers or a bank.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// Bank number, or `None` for the direct registers.
+    /// Number of the bank, or `None` for the direct registers.
     pub bank: Option<u8>,
-    /// Name of the bank, if described.
+    /// Name of the bank, if the description contains one.
     pub name: Option<Name>,
     rows: Vec<Row>,
 }
 
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// The row's register; an undescribed byte is a register of width 1 without a name.
+    /// Register shown in the row. An undescribed byte is shown as an unnamed register of width 1.
     pub register: Register,
     pub is_data: bool,
 }
@@ -126,7 +126,7 @@ fn addresses(bank: Option<u8>) -> impl Iterator<Item = RegisterAddress> {
     })
 }
 
-/// Returns a register for an undescribed byte.
+/// Creates a register for an undescribed byte.
 fn plain(address: RegisterAddress, access: Access) -> Register {
     Register {
         address,
@@ -143,7 +143,7 @@ fn plain(address: RegisterAddress, access: Access) -> Register {
     }
 }
 
-/// Returns the name of a data sheet bank, which BP3 fixes for every conforming encoder.
+/// Returns the name of a data sheet bank, which is the same for every encoder that conforms to BP3.
 fn standard_bank_name(bank: u8) -> Option<Name> {
     [(EdsBank::Common, "EDS"), (EdsBank::Encoder, "EDS BP3")]
         .into_iter()
@@ -161,7 +161,7 @@ mod tests {
         Table::of(all.named("POSITAL IXARC kit encoder").unwrap(), None)
     }
 
-    /// Manual, appendix 9.1: 68 banks with 64 registers each, and 64 direct registers.
+    /// According to appendix 9.1 of the manual, there are 68 banks with 64 registers each, and 64 direct registers.
     #[test]
     fn every_register_is_listed_once() {
         let table = kit();

@@ -83,7 +83,7 @@ pub fn eds(value: EdsValue) -> Text {
     }
 }
 
-/// Returns the meaning of a data sheet field beyond its raw number, or `None` if it has no further meaning.
+/// Returns the meaning of a data sheet field, or `None` if it means no more than its raw number.
 pub(super) fn non_numeric_text(value: EdsValue) -> Option<Text> {
     match value {
         EdsValue::Number(_, "") => None,
@@ -99,6 +99,7 @@ pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
     described.map_or_else(|| plain(field.name), |register| words::name(&register.name))
 }
 
-/// Built-in description with the manual's field names in both languages, for the fields found in every data sheet.
+/// The built-in description of the kit encoder, with the manual's field names in both languages for the fields found in
+/// every data sheet.
 static KIT: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());

@@ -48,7 +48,7 @@ impl Encoder {
         }
     }
 
-    /// Ends the display of a guided procedure that ended early; returns `true` if a procedure was running.
+    /// Ends the display of a guided procedure that was interrupted, and returns whether a procedure was running.
     pub(super) fn cut_guide(&mut self, how: &EarlyEnd<JobError>, texts: &[Text]) -> bool {
         let error = match how {
             EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error) => Some(*error),
@@ -104,7 +104,7 @@ impl WithMemory for Encoder {
         commit(agreed, OperatorPresence::Unattended(UNATTENDED))
     }
 
-    /// Starts a write. A write that needs an operator at the motor is displayed step by step.
+    /// Starts a write. If the write needs an operator at the motor, it is displayed step by step.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
         let Some(agreed) = self.agree(shown) else { return };
         let ops = &agreed.prepared.plan.ops;

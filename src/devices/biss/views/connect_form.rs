@@ -97,7 +97,7 @@ impl TypedConnectForm for BissConnectForm {
     }
 }
 
-/// Draws the choice between a connection to the configuration pin and one to the bus.
+/// Draws the choice between the configuration pin and the bus.
 fn reached_ui(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     let word = say(theme, "connect.biss_reached");
     entry(ui, theme, &word, |ui| {

@@ -24,7 +24,7 @@ use crate::ui::{NamedAction, Theme, backups, icons, page, status_line};
 pub(crate) enum Page {
     #[default]
     Encoder,
-    /// Registers, listed bank by bank.
+    /// Registers, grouped by bank.
     Registers,
     Data,
     /// Step-by-step calibration, Wiegand test, preset and filter.
@@ -56,7 +56,7 @@ pub(crate) struct BissUiState {
     procedures: procedures::ProceduresUiState,
 }
 
-/// Draws the messages below the table of a page, so that clickable items do not move.
+/// Draws messages below a page's table, so that clickable items do not move.
 fn messages_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let id = egui::Id::unique(encoder.session.id).with("biss_messages");
     egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
@@ -167,7 +167,7 @@ impl TypedDeviceView for BissView {
     }
 }
 
-/// Returns a label from the BiSS catalogue or the common one, in the window's language.
+/// Returns a label from the BiSS or common catalogue, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

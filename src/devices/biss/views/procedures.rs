@@ -166,7 +166,7 @@ fn choice_ui(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words:
     });
 }
 
-/// Returns the requested run, or the reason why it cannot be reviewed yet.
+/// Returns the requested procedures, or the reason why they cannot be reviewed yet.
 fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
     let turns = *own.calibrate || *own.wiegand;
     match own.motor {
@@ -188,7 +188,7 @@ fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, T
     Ok(MountingRun { calibrate: *own.calibrate, wiegand, preset, data: None })
 }
 
-/// Draws the selection of an open profile as the source of the data to write.
+/// Draws the list of open profiles from which the data to write is selected.
 fn data_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, data: &mut Option<SessionId>) {
     let profiles: Vec<&AnyDevice> = studio
         .devices()

@@ -62,7 +62,7 @@ pub(super) fn page_ui(
     });
 }
 
-/// Draws the buttons for the selected bank and register, along with their messages.
+/// Draws the buttons and messages for the selected bank and register.
 fn head_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -252,7 +252,7 @@ fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
     names.iter().map(bit).collect()
 }
 
-/// Parses a hexadecimal byte as displayed in the table.
+/// Parses a hexadecimal byte in the format used by the table.
 fn parse(text: &str) -> Result<u8, Text> {
     let digits = text.trim().trim_start_matches("0x").trim_end_matches(['h', 'H']);
     let byte = u8::from_str_radix(digits, 16).ok().filter(|_| !digits.starts_with('+'));

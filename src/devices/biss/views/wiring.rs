@@ -54,8 +54,8 @@ mod tests {
     use crate::devices::biss::state::TEXTS;
     use crate::ui::wiring::{check_notes, check_wires};
 
-    /// Issue 22.23: kit encoder manual, table 1 (pins), 2 (supply), 14 (preset), 2.1 (connector), 2.3 (point to point,
-    /// RS-422); UBICOM at 115200 baud.
+    /// Issue 22.23: kit encoder manual, tables 1 (pins), 2 (supply) and 14 (preset), sections 2.1 (connector) and 2.3
+    /// (point to point, RS-422); UBICOM at 115200 baud.
     #[test]
     fn the_wiring_card_matches_the_manual() {
         check_wires(

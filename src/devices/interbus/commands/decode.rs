@@ -55,7 +55,7 @@ fn captured(text: &str) -> Result<Captured> {
     })
 }
 
-/// Parses a read-out, given by its name with hyphens or by its number.
+/// Parses a read-out, given as a hyphenated name or a number.
 fn read_out(text: &str) -> Result<ReadOut> {
     let named = READ_OUTS.iter().find(|row| row.name.replace(' ', "-") == text).map(|row| row.read_out);
     let numbered = || parse_number(text).and_then(|number| u16::try_from(number).ok()).map(ReadOut::new);

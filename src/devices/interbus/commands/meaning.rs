@@ -6,7 +6,7 @@ use crate::devices::interbus::protocol::{
     CamOutput, Command, Mode, Parameter, ReadOut, ReadOutValue, Reply, Single, StartupMode, Value, WindowShift,
 };
 
-/// Known facts about a word in addition to its digits.
+/// What is known about a word in addition to its digits.
 pub(super) struct WordContext {
     pub(super) mode: Option<Mode>,
     pub(super) read_out: Option<ReadOut>,
@@ -46,7 +46,7 @@ pub(super) fn k1_word_meaning(word: Single) -> WordMeaning {
     WordMeaning { direction: "IN", modes: Vec::new(), words, value: Some(position), legal: true }
 }
 
-/// Returns the request of an OUT word, or the reason why it must not be sent.
+/// Returns the meanings of an OUT word, or the reason why it must not be sent.
 pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>, String> {
     let readings = Command::readings(word);
     if let [Command::Unknown(_)] = readings.as_slice() {
@@ -73,7 +73,7 @@ pub(super) fn out_word_meanings(word: u32, known: &WordContext) -> Result<Vec<Wo
     }
 }
 
-/// Returns the refusal of an OUT word that must not be sent in the known mode, if it has a meaning in another one.
+/// Returns the meanings, in other modes, of an OUT word that must not be sent in the known mode.
 pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let refused = known.mode.and_then(|mode| Command::in_mode(word, mode).err());
     refused
@@ -94,7 +94,7 @@ fn other_mode_text(command: Command) -> String {
     format!("\"{}\" is for {} mode", command_words(command).0, modes.join(" or "))
 }
 
-/// Returns the meaning of an IN word in the known mode, or in each mode in which it may occur.
+/// Returns the meaning of an IN word in the known mode, or in every mode in which the word may occur.
 pub(super) fn in_word_meanings(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
     let meaning = |modes: &[Mode], words: String, value: Option<u32>| WordMeaning {

@@ -30,7 +30,7 @@ use crate::link::Scheme;
 
 pub(crate) struct InterbusCommands;
 
-/// Warning about the effect of reading cam programs on a machine.
+/// Warning that reading cam programs affects the machine.
 const SWITCHES: &str = "reading cam programs selects them one after the other, which switches the live outputs of \
                         the encoder. On a terminal the command first asks whether the machine stands still; without \
                         a terminal it prints a note to stderr and continues.";
@@ -102,7 +102,7 @@ impl DeviceCommands for InterbusCommands {
     }
 }
 
-/// Parses the item that the user names. A program or a cam that does not exist is reported as out of range.
+/// Parses an item named by the user. A program or cam that does not exist is reported as out of range.
 fn item(text: &str) -> Result<Item> {
     text.parse().map_err(|error: ItemError| match error {
         ItemError::Unknown(_) => Failure::Usage(error.to_string()),
@@ -110,19 +110,19 @@ fn item(text: &str) -> Result<Item> {
     })
 }
 
-/// How a command disturbs the process data used by a machine.
+/// The extent to which a command disturbs the process data used by a machine.
 #[derive(Clone, Copy)]
 enum Disturbance {
     Reading,
-    /// Also select all cam programs one after another.
+    /// All cam programs are selected one after another.
     Programs,
-    /// A state left by another program is ended, and stored.
+    /// A state left by another program is ended and its settings are stored.
     LeadingBack,
 }
 
 impl Disturbance {
-    /// Announces the disturbance in advance. Switching live outputs requires a confirmation on a terminal, unless a
-    /// write was consented to or the encoder is virtual; without a terminal, the command continues.
+    /// Announces the disturbance in advance. On a terminal, switching live outputs requires a confirmation, unless a
+    /// write was already approved or the encoder is virtual; without a terminal, the command continues.
     fn begin(self, common: &Common, output: &Output, consent: Option<&Consenting>) -> Result<()> {
         self.announce(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == Scheme::Sim);

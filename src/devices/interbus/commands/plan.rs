@@ -37,7 +37,7 @@ fn is_shorter(op: &Op) -> bool {
     changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)
 }
 
-/// Asks for consent if required, and carries the plan out. An empty plan sends nothing.
+/// Asks for consent if required, then executes the plan. Nothing is sent for an empty plan.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -65,18 +65,18 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// Returns the plan as text and JSON: each item as old → new, and the cost.
+/// Returns the plan as text and JSON, with the old and new value of each item and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
-/// Returns the operations as JSON; items stored together have no cost of their own.
+/// Returns the operations as JSON. Items that are stored together have no cost of their own.
 pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }
 
-/// Returns the operations with old and new values, a line each.
+/// Returns the operations with old and new values, one per line.
 pub(super) fn change_lines(plan: &InterbusPlan) -> String {
     plan::lines(plan.ops.iter().flat_map(steps)).text()
 }

@@ -47,8 +47,8 @@ impl ProfileCommands for InterbusCommands {
         write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
     }
 
-    /// Reads the encoder for a comparison: everything, or only what the profile contains. Reading a cam program
-    /// switches the encoder's outputs.
+    /// Reads the encoder for a comparison, limited to the contents of the profile if one is given. Reading a cam
+    /// program switches the encoder's outputs.
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
         let profile = match profile.and_then(Body::get::<InterbusProfile>) {
             None => saved(common, output)?,

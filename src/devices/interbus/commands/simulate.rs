@@ -24,7 +24,7 @@ pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn
 }
 
 impl Simulated for Gateway {
-    /// A gateway has several masters at once.
+    /// Returns another connection to the gateway, which serves several masters at once.
     fn another(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         Some(Box::new(self.connection()))
     }

@@ -21,7 +21,7 @@ pub enum WordReply {
     Runs,
     Busy,
     Echoed,
-    /// The echo of a different word, which is out of date unless it persists.
+    /// Late echo of an earlier word, which is out of date unless it persists.
     OldEcho,
     Value(Value),
     Error(ErrorWord),
@@ -52,16 +52,16 @@ impl WordReply {
     }
 }
 
-/// Possible state of an encoder that could not be returned to its mode.
+/// Last known state of an encoder that could not be returned to its mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeftState {
-    /// The last OUT word sent, which stays until another one is written.
+    /// Last OUT word sent, which remains in the gateway until another one is written.
     pub out: u32,
     /// Whether parameters or cams were being set; if so, the encoder sends no position until it receives `80000000`.
     pub parameterising: bool,
-    /// The mode in which the encoder was found, or `None` if it was never read.
+    /// Mode before the job, or `None` if it was never read.
     pub found: Option<StartupMode>,
-    /// The present mode, if known.
+    /// Current mode, if known.
     pub is: Option<StartupMode>,
 }
 

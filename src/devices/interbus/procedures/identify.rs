@@ -12,9 +12,9 @@ use crate::devices::interbus::protocol::{
 pub struct Identity {
     /// Serial number in decimal.
     pub serial_number: String,
-    /// Number of steps over all programmed turns, as read out.
+    /// Number of steps over all programmed turns, as reported by the encoder.
     pub steps: u32,
-    /// Turns until the position starts again.
+    /// Number of turns after which the position starts again from 0.
     pub revolutions: u32,
     pub direction: Direction,
     pub software_version: u32,
@@ -23,8 +23,8 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Returns the gear given by steps and turns. In steps−1 mode, the encoder reports its steps minus one, as older
-    /// encoders do (`U`: the manual says no more about it).
+    /// Returns the gear formed by steps and turns. In steps−1 mode, the encoder reports one step less than the total,
+    /// as older encoders do (`U`: the manual says no more about it).
     ///
     /// # Errors
     /// [`Implausible::Gear`].
@@ -37,7 +37,7 @@ impl Identity {
 pub struct Survey {
     pub identity: Identity,
     pub parameters: Parameters,
-    /// Flag of the preset, as read out.
+    /// Preset flag, as reported by the encoder.
     pub preset_flag: u32,
     /// Operating time in minutes.
     pub operating_minutes: u32,
@@ -47,7 +47,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Returns all values read out, as received.
+    /// Returns all values read from the encoder, in raw form.
     pub fn read_outs(&self) -> impl Iterator<Item = (ReadOut, Value)> {
         self.values.iter().copied()
     }
@@ -75,7 +75,7 @@ pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
     master.run_guarded(|master| read_identity(master, &mut Vec::new()))
 }
 
-/// Reads all that can be read out without selecting a cam program.
+/// Reads everything that can be read without selecting a cam program.
 ///
 /// # Errors
 /// As [`identify`].
@@ -111,7 +111,8 @@ pub fn read_one(master: &mut Master<'_>, read_out: ReadOut) -> Result<Value, Err
     master.run_guarded(|master| master.read_out(read_out))
 }
 
-/// Reads cam programs and the window shift. Each program is selected for reading, which switches the encoder's outputs.
+/// Reads the given cam programs and the window shift. Selecting a program to read it also switches the encoder's
+/// outputs.
 ///
 /// # Errors
 /// [`Error::NoMode`]; errors of the handshake and the exchange.
@@ -123,7 +124,7 @@ pub fn read_programs(
     master.run_guarded(|master| programs(master, wanted, progress))
 }
 
-/// Switches the encoder to the given mode, in which it stays.
+/// Switches the encoder to the given mode and leaves it there.
 ///
 /// # Errors
 /// [`Error::NoMode`], [`Error::NotSelectable`]; errors of the handshake and the exchange.
@@ -201,7 +202,7 @@ fn read_mode(master: &mut Master<'_>) -> Result<StartupMode, Error> {
     }
 }
 
-/// Steps and turns may have changed.
+/// Rereads the gear, since steps and turns may have changed.
 pub(super) fn refresh_gear(master: &mut Master<'_>) -> Result<(), Error> {
     let mut read = |number: u16| master.read_out(ReadOut::new(number));
     let [steps, revolutions, flags] = [read(1)?, read(2)?, read(0xA)?];
@@ -213,7 +214,7 @@ fn gear(steps: u32, revolutions: u32, flags: Flags) -> Result<Gear, Implausible>
     Ok(Gear::new(steps.saturating_add(u32::from(flags.steps_minus_one())), revolutions)?)
 }
 
-/// Reads the position parameters that are not part of the identity, which must have been read in the current job.
+/// Reads the position parameters that are not part of the identity. The identity must have been read in the same job.
 pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity) -> Result<Parameters, Error> {
     let Identity { steps, revolutions, direction, .. } = *identity;
     let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOut::new(number))?.get());
@@ -287,7 +288,7 @@ pub(super) fn read_cam(master: &mut Master<'_>, cam: CamNumber) -> Result<Cam, E
     Ok(Cam { start, stop: master.ask(Command::ReadCamStop(cam))? })
 }
 
-/// Reads the shift of the window; a program is selected.
+/// Reads the window shift while a cam program is selected.
 pub(super) fn read_shift(master: &mut Master<'_>) -> Result<WindowShift, Error> {
     let value = master.ask(Command::ReadShift)?.get();
     let read = Command::ReadShift.emit();
@@ -321,8 +322,8 @@ fn tenths(value: Value) -> i32 {
     }
 }
 
-/// Returns the direction for a code: the parameter's own number, or its complement as a flag (`U`: the manual calls the
-/// read-out a flag).
+/// Returns the direction for a code, which is either the parameter value or its complement as a flag (`U`: the manual
+/// calls the read-out a flag).
 pub(super) fn direction_of(code: u32) -> Result<Direction, Implausible> {
     let flag = match code {
         0 => Some(Direction::Clockwise),

@@ -22,22 +22,22 @@ use crate::units::Moment;
 
 type StepListener<'a> = Box<dyn FnMut(Handshake) + 'a>;
 
-/// Host side of the process data of one encoder, for one job.
+/// Host side of one encoder's process data, for the duration of one job.
 pub struct Master<'a> {
     data: Box<dyn ProcessData + 'a>,
     known: &'a mut KnownState,
     patience: Duration,
     recorded: bool,
     tell: Option<StepListener<'a>>,
-    /// The encoder's mode, if read in this job.
+    /// Mode of the encoder, if read in this job.
     is: Option<StartupMode>,
-    /// Whether the encoder was switched to another mode and has not confirmed it yet.
+    /// Whether a mode switch has not been confirmed by the encoder yet.
     unsure: bool,
     /// Whether the encoder was switched to other modes in this job.
     switched: bool,
     /// The encoder's mode before this job, if known.
     found: Option<StartupMode>,
-    /// The error found before this job; the encoder sends no position in any case.
+    /// Error present before this job, which keeps the encoder from sending positions in any case.
     found_error: Option<u32>,
     parameterising: bool,
     out: Option<Command>,
@@ -51,14 +51,14 @@ pub struct Master<'a> {
 }
 
 impl<'a> Master<'a> {
-    /// Creates a master for one job, over a station's gateway.
+    /// Creates a master for one job that reaches the encoder through the station's gateway.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         let (patience, recorded) = (station.link.handshake, station.recorded);
         let (gateway, known) = Gateway::new(ctx, station);
         Master { recorded, ..Master::with(Box::new(gateway), known, patience) }
     }
 
-    /// Creates a master for one job, over the given process data.
+    /// Creates a master for one job on the given process data.
     pub fn over(data: impl ProcessData + 'a, station: &'a mut Station) -> Self {
         let patience = station.link.handshake;
         Master::with(Box::new(data), &mut station.known, patience)
@@ -102,12 +102,12 @@ impl<'a> Master<'a> {
         self.is.or(self.known.mode)
     }
 
-    /// Returns the mode as read in this job, or `None` if not read or not confirmed.
+    /// Returns the mode, or `None` if it was not read or not confirmed in this job.
     pub(super) const fn reported_mode(&self) -> Option<StartupMode> {
         if self.unsure { None } else { self.is }
     }
 
-    /// Sets the gear now in force, as far as this session knows.
+    /// Records the gear in effect, as far as this session knows.
     pub(super) fn remember_gear(&mut self, gear: Option<Gear>) {
         self.known.gear = gear;
     }
@@ -136,7 +136,7 @@ impl<'a> Master<'a> {
         LeftState { out, parameterising: self.parameterising, found: self.found, is: self.is }
     }
 
-    /// Runs `work`, which returns the encoder to a safe state; cancellation is ignored meanwhile.
+    /// Runs `work`, which returns the encoder to a safe state, and ignores cancellation until it is done.
     pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.data.shield(true);
         let result = work(self);
@@ -144,7 +144,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Waits; ends early when cancelled.
+    /// Waits for the given duration, or until the job is cancelled.
     pub(super) fn wait(&mut self, duration: Duration) -> Result<(), Error> {
         self.data.wait(duration)
     }
@@ -170,7 +170,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads something out.
+    /// Reads a value from the encoder.
     ///
     /// # Errors
     /// As [`set`](Self::set); [`Error::UnknownReadOut`].
@@ -227,7 +227,7 @@ impl<'a> Master<'a> {
         self.shielded(Self::return_to_operation).and(fired)
     }
 
-    /// Sends `out` in every cycle until `judge` returns a result for the IN word and the time for which it has been
+    /// Sends a command in every cycle until `judge` returns a result, given the IN word and how long that word has been
     /// unchanged. Records how long the encoder is busy.
     fn until<T>(
         &mut self,
@@ -284,7 +284,7 @@ impl<'a> Master<'a> {
         Ok(input)
     }
 
-    /// Returns the IN word with its halves exchanged if nothing else explains it, since OUT requests nothing.
+    /// Returns the IN word with its halves exchanged if nothing else explains its value.
     ///
     /// # Errors
     /// Errors of the exchange.

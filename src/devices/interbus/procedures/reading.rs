@@ -3,15 +3,15 @@
 use crate::devices::interbus::protocol::{CamOutput, Gear, Reply, StartupMode, Value, WindowShift};
 use crate::units::Moment;
 
-/// An IN word, with the facts about the encoder known to the session.
+/// An IN word with what the session knows about the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordReading {
     pub at: Moment,
     /// As received.
     pub word: u32,
-    /// The mode, or `None` if not read yet; a running word is then taken for a position.
+    /// Mode of the encoder, or `None` if not read yet. Without a mode, a running word is taken for a position.
     pub mode: Option<StartupMode>,
-    /// Gear of steps and turns, if read.
+    /// Gear formed by steps and turns, if read.
     pub gear: Option<Gear>,
     /// Shift of the position in cam mode, if read.
     pub shift: Option<WindowShift>,
@@ -80,8 +80,8 @@ impl WordReading {
         }
     }
 
-    /// Returns the position within the programmed turns, or `None` without a position or a gear, or beyond the
-    /// measuring range.
+    /// Returns the position within the programmed turns, or `None` if the position or the gear is unknown, or the
+    /// position is beyond the measuring range.
     pub fn place(&self) -> Option<TurnPosition> {
         let (position, gear) = (u64::from(self.position()?), self.gear?);
         let (all, turns) = (u64::from(gear.steps()), u64::from(gear.turns()));
@@ -96,8 +96,8 @@ impl WordReading {
     }
 }
 
-/// Returns the word with its halves exchanged if only the exchanged word is a valid position, whose bits 30..25 should
-/// be 0.
+/// Returns the word with its halves exchanged if only the exchanged word is a valid position, in which bits 30..25 are
+/// 0.
 pub(super) fn swap_words(word: u32) -> Option<u32> {
     let other = word.rotate_left(16);
     let strays = |word| matches!(Reply::parse(word), Reply::Run { stray, .. } if stray != 0);
@@ -105,8 +105,8 @@ pub(super) fn swap_words(word: u32) -> Option<u32> {
     (strays(word) && runs(other)).then_some(other)
 }
 
-/// Returns the word with its halves exchanged if only the exchanged word is a valid position, including for words other
-/// than positions that have no other explanation. An error word without other bits is just an error.
+/// Returns the word with its halves exchanged if only the exchanged word is a valid position. Words that are not
+/// positions are considered as well, except error words without other bits.
 pub(super) fn unexplained_swapped_word(word: u32) -> Option<u32> {
     match Reply::parse(word) {
         Reply::Run { .. } => swap_words(word),
@@ -144,7 +144,7 @@ mod tests {
         }
     }
 
-    /// 1000 steps over 3 turns: turn 1 begins at 333.3, so 334 is its first step.
+    /// With 1000 steps over 3 turns, turn 1 begins at 333.3, so its first step is 334.
     #[test]
     fn a_position_is_split_into_turns_and_steps() {
         let place = |word| reading(word, StartupMode::K3, (1000, 3), 0).place();

@@ -14,7 +14,7 @@ impl Identity {
 }
 
 impl Survey {
-    /// Returns the recorded part of a profile, which excludes everything that can be restored.
+    /// Returns the part of the profile that is only recorded and cannot be restored.
     pub fn recorded(&self) -> Recorded {
         Recorded {
             software_version: Some(self.identity.software_version),
@@ -53,7 +53,8 @@ pub enum SaveStep {
     Program(ProgramNumber),
 }
 
-/// Reads what a plan requires from an encoder identified in the same job: its parameters and the given programs.
+/// Reads the parameters and the given programs, as required for a plan. The encoder must have been identified in the
+/// same job.
 ///
 /// # Errors
 /// [`Error::Implausible`] if steps and turns are not a gear; errors of the handshake and the exchange.
@@ -71,7 +72,7 @@ pub fn read_state(
     })
 }
 
-/// Reads an item. If the item is in a cam program, the program is selected.
+/// Reads one item, selecting its cam program first if it belongs to one.
 ///
 /// # Errors
 /// Errors of the handshake and the exchange.

@@ -14,16 +14,16 @@ parameters! {
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
         pub unit: u8 = 1, "unit" => UNIT, "connect.unit";
-        /// First of the two input registers with the IN word.
+        /// First of the two input registers that contain the IN word.
         pub input: u16 = 0, "input" => INPUT, "connect.input";
-        /// First of the two holding registers with the OUT word.
+        /// First of the two holding registers that contain the OUT word.
         pub output: u16 = 0, "output" => OUTPUT, "connect.output";
         pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
         /// Time limit for an echo, a value or a position (reference 4, `U`).
         pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
-        /// Interval at which the IN word is read, about a gateway's own cycle.
+        /// Interval between readings of the IN word, about the cycle time of a gateway.
         pub cycle: Duration = Duration::from_millis(5), "cycle" => Milliseconds(1..=1000);
-        /// Time limit for a gateway's reply, not counting the line's margin.
+        /// Time limit for a reply from the gateway, not counting the line's margin.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=2000);
     }
 }
@@ -31,11 +31,11 @@ parameters! {
 #[derive(Clone, Debug)]
 pub struct Station {
     pub link: LinkParameters,
-    /// Whether a recording replies, with the recorded request numbers.
+    /// Whether replies come from a recording, which uses the recorded request numbers.
     pub recorded: bool,
     pub(super) line: LineState,
     pub(super) next: u16,
-    /// Bytes received and not used yet.
+    /// Received bytes that have not been processed yet.
     pub(super) waiting: Vec<u8>,
     /// Whether the gateway failed to answer the most recent request.
     pub(super) silent: bool,
@@ -48,7 +48,7 @@ pub(super) struct KnownState {
     pub(super) mode: Option<StartupMode>,
     pub(super) gear: Option<Gear>,
     pub(super) shift: Option<WindowShift>,
-    /// OUT word that keeps the encoder in its current mode, if normal running does not.
+    /// OUT word that keeps the encoder in its current mode, if `00000000` does not.
     pub(super) hold: Option<(StartupMode, Command)>,
     pub(super) kept: Option<StartupMode>,
     /// Longest observed processing time of a single word.
@@ -56,7 +56,7 @@ pub(super) struct KnownState {
 }
 
 impl Station {
-    /// Creates the state of an unused gateway whose encoder occupies the first registers.
+    /// Creates the state of a gateway that has not been used yet, whose encoder occupies the first registers.
     pub fn new(margin: Duration) -> Self {
         Station {
             link: LinkParameters::default(),
@@ -69,7 +69,7 @@ impl Station {
         }
     }
 
-    /// Creates the gateway from its link parameters, ignoring those that do not concern the connection.
+    /// Creates a station from its link parameters, ignoring those that do not concern the connection.
     ///
     /// # Errors
     /// A parameter value is invalid; the error lists the allowed values.

@@ -19,18 +19,18 @@ use crate::profile::{Confirmed, Write};
 
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
 
-/// State in which an encoder was left.
+/// The state in which an encoder is left after a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EndState {
-    /// Running in its original mode.
+    /// The encoder is running in its original mode.
     AsFound,
-    /// The encoder could not be returned to its original mode; contains what is known of its state.
+    /// The encoder could not be returned to its original mode.
     Unknown(LeftState),
 }
 
-/// Time of watching a shaft before a preset.
+/// Time for which the shaft is watched before a preset.
 const WATCHED: Duration = Duration::from_millis(300);
-/// Interval of reading the position meanwhile.
+/// Interval between position readings while the shaft is watched.
 const LOOK: Duration = Duration::from_millis(20);
 
 pub struct EncoderWrite<'w, 'm> {
@@ -129,7 +129,7 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
     Ok(())
 }
 
-/// Sets all parameters in one parameterisation and stores them with `80000000`.
+/// Sets all changed parameters in a single parameterisation and stores them with `80000000`.
 fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut Written) -> Result<(), Error> {
     master.go(StartupMode::K3)?;
     done.write_cycles += 1;
@@ -150,7 +150,7 @@ fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut
     if changes.iter().any(of_gear) { refresh_gear(master) } else { Ok(()) }
 }
 
-/// Reads back a parameter; a direction is returned as the code that sets it.
+/// Reads back a parameter. A direction is returned as the code used to set it.
 fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
     let value = read_parameter(master, parameter)?;
     match parameter {
@@ -159,7 +159,7 @@ fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error
     }
 }
 
-/// Reads a parameter; 0 for the default, which cannot be read.
+/// Reads a parameter, or returns 0 for the default, which cannot be read.
 pub(super) fn read_parameter(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
     let number = match parameter {
         Parameter::Steps => 1,
@@ -221,7 +221,7 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) 
     Ok(())
 }
 
-/// Sets the shaft's position to the preset, which was programmed before.
+/// Sets the shaft's position to the preset value, which must have been programmed before.
 fn fire(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     ensure_standstill(master)?;
     let gear = master.gear();
@@ -255,7 +255,7 @@ fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Returns whether two positions may belong to the same shaft at rest: they may differ by one step, or by a third of a
+/// Returns whether two positions may come from the same shaft at rest. They may differ by one step, or by a third of a
 /// degree if the steps are fine.
 fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
     let most = gear.map_or(1, |gear| (gear.steps() / gear.turns() / 1000).max(1));

@@ -166,7 +166,11 @@ mod tests {
             (0x2040_0093, Mode::Cam, "Active cams: 0, 1, 4, 7"),
             (0x4600_0015, Mode::Cam, "Cam 3 starts at 21"),
             (0x2021_000C, Mode::Position, "Read out: temperature"),
-            (0x4600_0015, Mode::Position, "Not valid in position mode; in other modes: Cam 3 starts at 21"),
+            (
+                0x4600_0015,
+                Mode::Position,
+                "Not valid in position mode. In other modes, this word means: Cam 3 starts at 21",
+            ),
         ] {
             assert_eq!(english(out(word, mode)), says, "{word:08X}");
         }

@@ -3,7 +3,7 @@
 use super::super::crc::crc4;
 use super::{REGISTERS, REST_CYCLES, with_crc};
 
-/// An encoder's control channel, driven cycle by cycle: call [`cds`](Self::cds) at the start of a cycle and
+/// The encoder side of the control channel, driven cycle by cycle. Call [`cds`](Self::cds) at the start of a cycle and
 /// [`cdm`](Self::cdm) at its end.
 #[derive(Clone, Debug)]
 pub struct Encoder {
@@ -37,26 +37,26 @@ enum State {
     Rest,
     /// Ignoring a frame that is unintelligible or addressed to another encoder.
     Ignoring,
-    /// Receiving the head: `cycle` bits have arrived in `bits`, the first one highest.
+    /// Receiving the head of a frame. `bits` contains the `cycle` bits received so far, the first one highest.
     Head { bits: u32, cycle: u8 },
-    /// The host has sent its S and is waiting for the encoder's.
+    /// Waiting for the encoder's start bit S after that of the host.
     Start { address: u8, access: Access },
-    /// The encoder has sent its S and then `sent` bits of `word`, which consists of DATA and CRC4. In a write, `word`
+    /// Sending DATA and CRC4, of which `sent` bits of `word` have been sent after the start bit S. In a write, `word`
     /// grows with the received bits.
     Data { address: u8, access: Access, word: u16, sent: u8 },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Access {
-    /// Read access, with DATA and CRC4 once they are known.
+    /// Read access, with DATA and CRC4 once the value is known.
     Read(Option<u16>),
     Write,
 }
 
 impl Encoder {
-    /// Number of bits in the header: S, CTS, ID, ADR and CRC4.
+    /// Number of bits in the header, which consists of S, CTS, ID, ADR and CRC4.
     const HEADER_BITS: u8 = 16;
-    /// Number of bits in the head: the header, R and W.
+    /// Number of bits in the head, which consists of the header, R and W.
     const HEAD_BITS: u8 = 18;
     const WORD_BITS: u8 = 12;
 
@@ -111,7 +111,7 @@ impl Encoder {
         event
     }
 
-    /// Supplies the value of the last register requested. Has no effect without a pending request.
+    /// Supplies the value of the requested register. Has no effect without a pending request.
     pub fn answer(&mut self, value: u8) {
         if let State::Start { access: access @ Access::Read(None), .. } = &mut self.state {
             *access = Access::Read(Some(with_crc(value)));

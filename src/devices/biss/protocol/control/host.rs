@@ -3,10 +3,11 @@
 use super::super::crc::crc4;
 use super::{ControlError, MAX_WAIT_CYCLES, REST_CYCLES, Request};
 
-/// A host's control channel, driven cycle by cycle. Only one request runs at a time, and the line rests in between.
+/// The host side of the control channel, driven cycle by cycle. Only one request runs at a time, and the line rests in
+/// between.
 #[derive(Clone, Debug)]
 pub struct Host {
-    /// Number of consecutive cycles with CDM = 0, as far as it matters.
+    /// Number of consecutive cycles with CDM = 0, up to the number that matters.
     zeros: u8,
     waiting: Option<Request>,
     state: State,
@@ -15,7 +16,7 @@ pub struct Host {
 /// The result of one cycle.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// CDM bit of the cycle. During the time-out, the clock line carries its inverse.
+    /// CDM bit of the cycle. During the time-out, the clock line carries the inverse of this bit.
     pub cdm: bool,
     /// Outcome if the request ended in this cycle: the values read, or those that the encoder echoed after a write.
     pub outcome: Option<Result<Vec<u8>, ControlError>>,
@@ -24,18 +25,18 @@ pub struct Step {
 #[derive(Clone, Debug)]
 enum State {
     Rest,
-    /// Cycles 0 to 18: `bits` contains the CDM bits, the first one in bit 18.
+    /// Sending the head in cycles 0 to 18. `bits` contains the CDM bits, the first one in bit 18.
     Head {
         request: Request,
         bits: u32,
         cycle: u8,
     },
-    /// S has been sent, and the encoder's S is awaited.
+    /// Waiting for the encoder's start bit S after that of the host.
     Start {
         transfer: Transfer,
         cycles: u8,
     },
-    /// `received` bits of DATA and CRC4 have arrived.
+    /// Transferring DATA and CRC4, of which `received` bits have arrived.
     Data {
         transfer: Transfer,
         word: u16,
@@ -54,7 +55,7 @@ impl Transfer {
         self.request.address.saturating_add(u8::try_from(self.values.len()).unwrap_or(u8::MAX))
     }
 
-    /// Returns bit `at` of the DATA and CRC4 bits that the host sends, counted from the first.
+    /// Returns bit `at`, counted from the first, of the DATA and CRC4 bits that the host sends.
     fn bit(&self, at: u8) -> bool {
         self.request.data(self.values.len()) << at & 0x800 != 0
     }
@@ -67,7 +68,7 @@ impl Default for Host {
 }
 
 impl Host {
-    /// Last cycle of a request's head; in the next one the encoder may send its S.
+    /// Last cycle of a request's head. In the following cycle, the encoder may send its start bit S.
     const LAST_OF_HEAD: u8 = 18;
     const WORD_BITS: u8 = 12;
 
@@ -94,7 +95,7 @@ impl Host {
         self.rest();
     }
 
-    /// Runs one cycle: takes the CDS bit received and returns the CDM bit that ends the cycle.
+    /// Runs one cycle with the received CDS bit and returns the CDM bit that ends the cycle.
     pub fn cycle(&mut self, cds: bool) -> Step {
         let step = match std::mem::replace(&mut self.state, State::Rest) {
             State::Rest => self.begin(),
@@ -187,7 +188,7 @@ impl Host {
     }
 }
 
-/// Returns the head of a request: S, CTS, ID, ADR, CRC4, R, W, S.
+/// Returns the head of a request, which consists of S, CTS, ID, ADR, CRC4, R, W and S.
 fn head(request: &Request) -> u32 {
     let header = 1 << 10 | u16::from(request.slave) << 7 | u16::from(request.address);
     let access = if request.reads() { 0b10 } else { 0b01 };

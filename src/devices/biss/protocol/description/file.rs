@@ -198,7 +198,7 @@ impl TryFrom<RegisterLocation> for RegisterAddress {
     }
 }
 
-/// Implements deserialization with a check of each row, so that an error has the position of the row.
+/// Implements deserialization that checks each row, so that errors contain the position of the row.
 macro_rules! checked {
     ($($row:ident => $own:ty,)*) => {$(
         impl<'de> Deserialize<'de> for $own {
@@ -314,9 +314,9 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
     Firmware::new(major, minor, patch)
 }
 
-/// A row that claims items which no other row may claim.
+/// A row of a description, with the items that no other row may claim.
 trait Row {
-    /// Returns the items that the row claims exclusively.
+    /// Returns the items that no other row may claim.
     fn claims(&self) -> Vec<Claim>;
 }
 
@@ -346,7 +346,7 @@ impl Row for Procedure {
     }
 }
 
-/// A list of rows without conflicting claims.
+/// A list of rows that claim no item twice.
 struct Rows<T>(Vec<T>);
 
 impl<T> Default for Rows<T> {

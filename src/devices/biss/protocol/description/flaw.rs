@@ -13,13 +13,13 @@ use super::register::{Register, Role};
 /// A mistake in a description file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Flaw {
-    /// The file does not have the form of a description; contains the RON parser's message.
+    /// The file does not have the form of a description. Contains the message of the RON parser.
     #[error("{0}")]
     Form(String),
-    /// The address is not that of a direct register.
+    /// The address is not valid for a direct register.
     #[error("direct(0x{0:02X}): a direct register is from 0x40 to 0x7F")]
     Direct(u8),
-    /// The offset is not that of a register in a bank.
+    /// The offset is not valid for a register in a bank.
     #[error("bank(0x{bank:02X}, 0x{offset:02X}): a bank has registers from 0x00 to 0x3F")]
     Banked {
         /// Number of the bank.
@@ -27,7 +27,7 @@ pub enum Flaw {
         /// Offset within the bank.
         offset: u8,
     },
-    /// The register is too wide, or has no bytes.
+    /// The register is too wide or has a width of 0 bytes.
     #[error("\"{name}\": a register has 1 to {} bytes, not {width}", Register::MAX_WIDTH)]
     Width {
         /// Name of the register.
@@ -42,7 +42,7 @@ pub enum Flaw {
         name: String,
         /// Register width in bytes.
         width: u8,
-        /// Address of the register's first byte.
+        /// Address of the first byte of the register.
         address: RegisterAddress,
     },
     /// The number of default bytes differs from the width of the register.
@@ -55,7 +55,7 @@ pub enum Flaw {
         /// Register width in bytes.
         width: u8,
     },
-    /// The bit is outside the register.
+    /// The bit number exceeds the width of the register.
     #[error("\"{name}\": there is no bit {bit} in a width of {width}")]
     Bit {
         /// Name of the register.
@@ -90,7 +90,7 @@ pub enum Flaw {
     /// The German name is empty.
     #[error("\"{0}\": the German name is empty")]
     GermanEmpty(String),
-    /// A German name is given for an English name that is not used.
+    /// A German name is given for an English name that does not occur in the description.
     #[error("german: nothing is called \"{0}\" here")]
     GermanNeedless(String),
 }
@@ -110,7 +110,7 @@ pub enum Claim {
     /// A procedure kind.
     #[error("procedure {0:?}")]
     Procedure(ProcedureKind),
-    /// A name in the list of German names.
+    /// Name in the list of German names.
     #[error("\"{0}\"")]
     Name(String),
 }
@@ -119,7 +119,7 @@ thread_local! {
     static FOUND: Cell<Option<Flaw>> = const { Cell::new(None) };
 }
 
-/// Reports a flaw to the RON parser, which adds its position.
+/// Records a flaw and returns an error for the RON parser, which adds the position.
 pub(super) fn found<E: Error>(flaw: impl Into<Flaw>) -> E {
     let flaw = flaw.into();
     let words = E::custom(&flaw);

@@ -17,7 +17,7 @@ use super::name::Name;
 pub(super) struct GermanTexts(BTreeMap<String, String>);
 
 impl GermanTexts {
-    /// Adds the German names; `text` is the file content, which is searched for the position of a superfluous entry.
+    /// Adds the German names. `text` is the file content, which is searched for the position of an unused entry.
     pub(super) fn translate<'a>(
         mut self,
         names: impl Iterator<Item = &'a mut Name>,

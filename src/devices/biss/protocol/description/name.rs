@@ -11,7 +11,7 @@ pub struct Name {
 }
 
 impl Name {
-    /// Creates an English name; an empty one for a part without a name.
+    /// Creates a name in English, which may be empty for a part without a name.
     pub fn new(english: impl Into<String>) -> Self {
         Name { english: english.into(), german: None }
     }

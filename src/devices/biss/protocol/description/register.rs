@@ -14,17 +14,17 @@ pub struct Register {
     pub width: u8,
     /// Name in the manual.
     pub name: Name,
-    /// Role of the register, if the program needs to know it.
+    /// Role of the register, if it has one for the program.
     pub role: Option<Role>,
     /// Permitted access.
     pub access: Access,
     /// Byte order of the value.
     pub order: ByteOrder,
-    /// Factory setting, one entry per byte of the width; empty if unknown.
+    /// Factory setting of each byte, or empty if unknown.
     pub default: Vec<u8>,
     /// How the value is decoded.
     pub decoding: Decoding,
-    /// Unit symbol; may be empty.
+    /// Unit symbol, which may be empty.
     pub unit: String,
     /// Values that spend a flash write cycle when written.
     pub saves: Vec<u8>,
@@ -38,7 +38,7 @@ pub struct Register {
 pub enum Role {
     /// Selection of the bank visible at 00h to 3Fh.
     BankSelect,
-    /// First bank of the electronic data sheet.
+    /// Number of the first bank of the electronic data sheet.
     EdsBank,
     /// Profile ID.
     Profile,
@@ -83,20 +83,20 @@ pub enum Decoding {
     /// Plain number.
     #[default]
     Number,
-    /// Code shown in hexadecimal, without numerical meaning.
+    /// Code without numerical meaning, shown in hexadecimal.
     Hex,
-    /// Linear scaling: `factor` times the number, plus `offset`.
+    /// Linear scaling, which multiplies the number by `factor` and adds `offset`.
     Scaled {
         /// Value of one step.
         factor: f64,
         /// Value at 0.
         offset: f64,
     },
-    /// Named bits, where the lowest bit is 0.
+    /// Named bits, numbered from 0 for the lowest bit.
     Bits(Vec<(u8, Name)>),
     /// Named values.
     Choice(Vec<(u64, Name)>),
-    /// Version: bytes in order, separated by dots, such as 1.6.0.
+    /// Version, shown as the bytes in order with dots in between, such as 1.6.0.
     Version,
     /// Characters in order of their addresses.
     Text,
@@ -109,9 +109,9 @@ pub enum Decoded<'a> {
     Number(u64),
     /// Code without numerical meaning.
     Hex(u64),
-    /// Quantity in the register's unit.
+    /// Value in the register's unit.
     Scaled(f64),
-    /// Set bits; one without a name is unknown.
+    /// Bits that are set, with their names if known.
     Bits(Vec<(u8, Option<&'a Name>)>),
     /// Value with its name, or `None` if it has no name.
     Choice(u64, Option<&'a Name>),
@@ -119,7 +119,7 @@ pub enum Decoded<'a> {
     Text(String),
 }
 
-/// A range of plain data banks, in which each byte stands on its own.
+/// A range of plain data banks, in which each byte is a separate value.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Area {
     /// Name in the manual.
@@ -130,7 +130,7 @@ pub struct Area {
     pub last: u8,
     /// Permitted access.
     pub access: Access,
-    /// Command that opens the area for writing, in the data procedure.
+    /// Command of the data procedure that opens the area for writing.
     pub open: Option<u8>,
 }
 
@@ -157,7 +157,7 @@ impl Register {
         (first..first + u16::from(self.width)).contains(&address.global())
     }
 
-    /// Returns the number encoded by the bytes, or `None` if there are not as many as the register has.
+    /// Returns the number encoded by the bytes, or `None` if the number of bytes differs from the register's width.
     pub fn number(&self, bytes: &[u8]) -> Option<u64> {
         let join = |number: u64, byte: &u8| number << 8 | u64::from(*byte);
         (bytes.len() == usize::from(self.width)).then(|| match self.order {

@@ -96,19 +96,19 @@ pub fn advice(advice: Advice) -> Text {
     }
 }
 
-/// Returns what a calibration requires of the motor and the encoder.
+/// Returns the text on what a calibration requires of the motor and the encoder.
 pub fn calibration_needs() -> Text {
     let run = Run::CalibrationCounterclockwise;
     let text = speeds(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
     temperatures(text.with_number("best", run.recommended_range().midpoint(), 0))
 }
 
-/// Returns what a Wiegand test requires of the motor.
+/// Returns the text on what a Wiegand test requires of the motor.
 pub fn wiegand_needs() -> Text {
     revolutions(speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed()))
 }
 
-/// Adds the number of revolutions per direction in a Wiegand test.
+/// Adds the number of revolutions per direction in a Wiegand test to a text.
 fn revolutions(text: Text) -> Text {
     text.with("revolutions", WiegandResult::REVOLUTIONS)
 }
@@ -121,7 +121,7 @@ pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {
     text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
 }
 
-/// Returns the result of an operation, one line per item, for the page and the report.
+/// Returns the result of an operation for the page and the report, one line per item.
 pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     match outcome {
         Outcome::Skipped { after } => vec![TEXTS.text(match after {
@@ -229,7 +229,7 @@ mod tests {
         }
     }
 
-    /// Manual 6.3: the average minus four standard deviations must be above 5.3 V.
+    /// In manual 6.3, the average minus four standard deviations must be above 5.3 V.
     #[test]
     fn a_wiegand_result_is_compared_with_the_limit() {
         let result = WiegandResult {
@@ -248,7 +248,7 @@ mod tests {
         assert_eq!(weights, [Severity::Warning, Severity::Good, Severity::Warning, Severity::Note]);
     }
 
-    /// Manual 6.7: 18000h at 17 bits is 270°.
+    /// In manual 6.7, 18000h at 17 bits is 270°.
     #[test]
     fn a_stored_preset_value_is_shown_as_an_angle() {
         let value = PresetValue::new(0x18000, 2).unwrap();

@@ -5,7 +5,7 @@ use crate::devices::biss::profile::{OtherType, PlanError};
 use crate::devices::biss::protocol::ProcedureKind;
 use crate::devices::biss::state::TEXTS;
 
-/// Returns the message for a profile that belongs to another encoder type.
+/// Returns the message for a profile that belongs to another type of encoder.
 pub fn other_type(types: &OtherType) -> Text {
     of_types(types, "biss_review.other_kind", "biss_review.other_width")
 }

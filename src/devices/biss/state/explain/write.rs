@@ -69,7 +69,7 @@ pub fn op(op: &Op, layout: &Layout) -> OperationTexts {
     }
 }
 
-/// Groups consecutive registers into one line each.
+/// Groups consecutive registers, with one line per group.
 fn runs(registers: &[RegisterChange]) -> Vec<ChangeTexts> {
     let words = |range: RegisterRange| {
         let own = registers.iter().filter(|own| range.contains(own.address));
@@ -105,8 +105,8 @@ pub fn written(written: &Written) -> Text {
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// Returns the messages for an interrupted write: progress, cause, the state in which the encoder was left, and the
-/// backup's location.
+/// Returns the messages for an interrupted write, which state the progress, the cause, the state in which the encoder
+/// was left, and the location of the backup.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let done = &interrupted.done;
     let mut texts = vec![if interrupted.cause.is_cancelled() {
@@ -232,7 +232,7 @@ fn wiegand(status: WiegandStatus, code: u8) -> Text {
     }
 }
 
-/// Returns the message for an unexpected status code.
+/// Returns the message for a status code that was not expected.
 fn unknown(status: u8) -> Text {
     TEXTS.text("biss_failure.unknown").with("status", format!("0x{status:02X}"))
 }

@@ -12,9 +12,9 @@ use crate::devices::interbus::procedures::error::AwaitedWord;
 use crate::devices::interbus::procedures::handshake::is_echo;
 use crate::devices::interbus::protocol::{Command, Reply, Value};
 
-/// The word from a busy encoder without further bits, which is also the echo of cam 0's start at 0.
+/// IN word of a busy encoder without further bits. The echo of cam 0's start at 0 is identical.
 const BUSY: u32 = 0xC000_0000;
-/// Number of attempts to set an edge of cam 0 until it reads back correctly. None of the attempts stores.
+/// Maximum number of attempts to set an edge of cam 0. None of the attempts stores the edge.
 const TRIES: u32 = 4;
 
 impl Master<'_> {
@@ -27,8 +27,8 @@ impl Master<'_> {
         self.set_again(command, 0)
     }
 
-    /// Sets like [`set`](Self::set), for a word whose echo proves nothing. `question` reads the value back, and the
-    /// word is repeated, with a longer wait each time, until the encoder has accepted it.
+    /// Sends a word whose echo proves nothing. `question` reads the value back, and the word is repeated, with a longer
+    /// wait each time, until the encoder has accepted it.
     ///
     /// # Errors
     /// As [`set`](Self::set); [`Error::NotTaken`] with the name `item`.
@@ -58,7 +58,7 @@ impl Master<'_> {
         self.wait_for_acknowledgement(command, tried, false)
     }
 
-    /// Sends a word like [`set`](Self::set), but one that an encoder may also accept without a reply (`U`).
+    /// Sends a word like [`set`](Self::set), but also accepts a missing echo while the encoder keeps running (`U`).
     pub(super) fn send_instruction(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.leave_value()?;

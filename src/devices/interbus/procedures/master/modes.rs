@@ -8,12 +8,12 @@ use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::error::AwaitedWord;
 use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};
 
-/// How long the value of a cam request may stay `00000000` before `80000000` is tried (`U`).
+/// Time for which a requested cam value may remain after `00000000` before `80000000` is tried (`U`).
 const VALUE_STAYS: Duration = Duration::from_millis(300);
 /// Number of additional readings, since the first may still return an old word.
 const LOOKS: u32 = 2;
 const LOOK: Duration = Duration::from_millis(10);
-/// How long a mode reading stays valid between two steps of a job that both return the encoder to its mode.
+/// Time for which a mode reading stays valid between two steps of a job that both return the encoder to its mode.
 const STILL: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
@@ -26,7 +26,7 @@ impl Master<'_> {
         self.end(ended)
     }
 
-    /// Returns the encoder to its state before [`begin`](Self::begin), regardless of how the work in between ended.
+    /// Returns the encoder to its state before [`begin`](Self::begin), even if the work in between failed.
     ///
     /// # Errors
     /// The error of the work; [`Error::NotLedBack`].
@@ -49,9 +49,9 @@ impl Master<'_> {
         Err(Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
-    /// Ends a state left by another program (parameterisation, an error, a read-out) and returns the encoder's mode
-    /// afterwards. Doing so stores any values that were set but not stored, which is counted as one store. A persistent
-    /// error is left to the reader of the IN word, since the encoder can be read and set regardless.
+    /// Ends a parameterisation, an error or a read-out left by another program, and returns the resulting mode. Any
+    /// values that were set but not stored are stored, which counts as one store. A persistent error is left to the
+    /// reader of the IN word, since the encoder can be read and set regardless.
     ///
     /// # Errors
     /// Errors of the handshake and the exchange.
@@ -79,7 +79,7 @@ impl Master<'_> {
         ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
-    /// Switches the encoder to a mode and checks that it has arrived there.
+    /// Switches the encoder to a mode and checks that the switch took effect.
     ///
     /// # Errors
     /// [`Error::NoMode`], [`Error::NotSelectable`], [`Error::UnknownMode`]; errors of the handshake and the exchange.
@@ -104,7 +104,7 @@ impl Master<'_> {
         }
     }
 
-    /// Makes the present mode the one to which the encoder is returned after the job.
+    /// Keeps the current mode, so that the encoder is not returned to another one after the job.
     pub(in crate::devices::interbus::procedures) fn stay(&mut self) {
         self.found = self.is;
     }
@@ -158,7 +158,7 @@ impl Master<'_> {
         self.go(mode)
     }
 
-    /// Returns whether the encoder was sent nothing, or is in normal operation.
+    /// Returns whether nothing was sent to the encoder, or the encoder is in normal operation.
     fn is_in_initial_state(&self) -> bool {
         let rests = matches!(self.out, None | Some(Command::Normal));
         rests && !self.lost && !self.parameterising && !self.unsure && self.is == self.found
@@ -170,8 +170,8 @@ impl Master<'_> {
         Ok(mode)
     }
 
-    /// Sends a word that changes the mode, followed by `00000000` if the encoder keeps the mode after it, or else by
-    /// the word that keeps the mode (`U`: the manual does not say which). The encoder is then queried for the result.
+    /// Sends a word that changes the mode, followed by `00000000` if the encoder then keeps the mode, or otherwise by
+    /// the word that keeps the mode (`U`: the manual does not say which). The encoder is then asked for its mode.
     fn switch(&mut self, command: Command, wanted: StartupMode) -> Result<(), Error> {
         let of_cams = matches!(command, Command::Cams(_));
         let keeps = if of_cams { Command::Run } else { command };
@@ -234,7 +234,7 @@ impl Master<'_> {
         self.rest()
     }
 
-    /// Removes `80000000`, which may already be the OUT word, since only its edge has an effect.
+    /// Removes `80000000`, which may already be the OUT word and takes effect only on its edge.
     fn release_run(&mut self) -> Result<(), Error> {
         for _ in 0..LOOKS {
             self.cycle(Command::Normal)?;
@@ -242,7 +242,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Sends the idle word, used while nothing is requested from the encoder.
+    /// Sends the idle word, which requests nothing from the encoder.
     fn rest(&mut self) -> Result<(), Error> {
         self.leave_value()?;
         let word = self.idle_command();
@@ -254,7 +254,7 @@ impl Master<'_> {
         hold.map_or(Command::Normal, |(_, word)| word)
     }
 
-    /// Waits until no value is present, since the next one would look the same.
+    /// Waits until the IN word contains no value, since the next value would look the same.
     pub(super) fn leave_value(&mut self) -> Result<(), Error> {
         let asks = self.out.is_some_and(is_question);
         let stands = matches!(Reply::parse(self.input), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
@@ -276,8 +276,8 @@ impl Master<'_> {
         }
     }
 
-    /// Sends `00000000` during a setting until no value is present, since `80000000` would store the setting. A value
-    /// that persists can be told apart from the next echo.
+    /// Sends `00000000` while parameters or cams are being set until the IN word contains no value, since `80000000`
+    /// would store the settings. A value that persists can be told apart from the next echo.
     fn end_query(&mut self) -> Result<(), Error> {
         let patience = VALUE_STAYS.min(self.patience);
         let ended = self.until(Command::Normal, AwaitedWord::Run, patience, |CycleResult { word, same, .. }| {

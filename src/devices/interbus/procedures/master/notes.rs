@@ -11,14 +11,15 @@ pub(super) struct Notes<'a> {
     journal: Option<Box<dyn Journal + 'a>>,
     serial_number: Option<String>,
     excursion: Option<Excursion>,
-    /// Number of cam programs left unchanged, each of which the encoder may have stored (reference 5).
+    /// Number of cam programs left without a change, each of which the encoder may nevertheless have stored (reference
+    /// 5).
     left: u64,
-    /// Whether the running program was changed, in which case its store belongs to the write.
+    /// Whether the running cam program was changed. If so, its store is counted as part of the write.
     is_set: bool,
 }
 
 impl<'a> Master<'a> {
-    /// Uses `journal` to record facts that outlast this job.
+    /// Uses `journal` to record what must be known after this job.
     #[must_use]
     pub fn with_journal(mut self, journal: impl Journal + 'a) -> Self {
         self.notes.journal = Some(Box::new(journal));
@@ -31,7 +32,7 @@ impl Master<'_> {
         self.notes.serial_number = Some(serial_number.to_string());
     }
 
-    /// Notes that the given number of cam programs will be selected for reading.
+    /// Records, in advance, the number of cam programs to be selected for reading.
     pub(in crate::devices::interbus::procedures) fn will_read(&mut self, programs: usize) -> Result<(), Error> {
         if programs == 0 || self.notes.journal.is_none() {
             return Ok(());
@@ -70,7 +71,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Notes that the encoder is about to be switched to the given mode.
+    /// Records, before the switch, that the encoder will enter the given mode.
     pub(super) fn note_switch(&mut self, wanted: StartupMode) -> Result<(), Error> {
         if let Some(StartupMode::Cams(_)) = self.is
             && !std::mem::take(&mut self.notes.is_set)
@@ -92,7 +93,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Notes that leading back stored settings of another program.
+    /// Records that returning the encoder to operation stored settings made by another program.
     pub(super) fn note_store(&mut self) -> Result<(), Error> {
         if self.notes.journal.is_some() {
             self.serial_number()?;

@@ -9,23 +9,23 @@ use crate::units::Moment;
 const STANDS: u32 = 2;
 /// Minimum duration of a stable echo or value: longer than a gateway usually keeps one word (`U`).
 const STANDS_FOR: Duration = Duration::from_millis(10);
-/// Time after which a word that may answer the previous request is accepted (`U`).
+/// Time after which a word is accepted even if it might answer the previous request (`U`).
 pub(super) const STAYS_FOR: Duration = Duration::from_millis(100);
-/// Number of cycles that replaces the time in a recording, in which no time passes.
+/// Number of cycles used in place of a duration for recordings, in which no time passes.
 const STAYS: u32 = 20;
 
-/// Returns the minimum number of cycles to wait for an answer, old words included, since a single lost reply can use up
-/// all the patience.
+/// Returns the minimum number of cycles to wait for an answer, including cycles with old words. A single lost reply can
+/// use up the whole time limit.
 pub(super) const fn least_cycles(recorded: bool) -> u32 {
     if recorded { STAYS + 4 } else { 8 }
 }
 
-/// Minimum patience; anything shorter would miss words that persist.
+/// Minimum time limit. A shorter one would miss words that persist.
 pub(super) const LEAST_PATIENCE: Duration = Duration::from_millis(150);
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held {
-    /// Whether only cycles count, because no time passes between two readings of a recording.
+    /// Whether only cycles count, as in a recording, in which no time passes.
     timeless: bool,
     cycles: u32,
     since: Option<Moment>,
@@ -33,12 +33,12 @@ pub(super) struct Held {
 }
 
 impl Held {
-    /// Creates the check; the condition does not hold yet.
+    /// Creates a check whose condition does not hold yet.
     pub(super) const fn new(timeless: bool) -> Self {
         Held { timeless, cycles: 0, since: None, lasted: Duration::ZERO }
     }
 
-    /// Records whether the condition holds in the cycle that ends now.
+    /// Records whether the condition holds in the current cycle.
     pub(super) fn go_on(&mut self, holds: bool, now: Moment) {
         if !holds {
             *self = Held::new(self.timeless);
@@ -57,8 +57,8 @@ impl Held {
         self.has_lasted(STAYS_FOR)
     }
 
-    /// Returns whether the condition has held for the given time and, with a slow gateway, for enough cycles to be
-    /// stable.
+    /// Returns whether the condition has held for the given time and, with a slow gateway, for the minimum number of
+    /// cycles.
     pub(super) fn has_lasted(self, duration: Duration) -> bool {
         let least = if self.timeless { STAYS } else { STANDS };
         self.cycles >= least && self.is_stable_for(duration)

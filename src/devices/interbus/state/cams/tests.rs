@@ -68,7 +68,7 @@ fn simulated_outputs_are_compared_with_the_encoders() {
     assert_eq!(chart.lamps(None, None)[0], OutputState { simulated: None, own: None });
     assert_eq!(chart.lamps(Some(1000), None)[0].simulated, None, "beyond the range nothing is known");
     let says = |lamp| words::lamp(lamp).words(Language::English);
-    assert_eq!(says(lamps[5]), "on in the encoder, off in the simulation");
+    assert_eq!(says(lamps[5]), "Encoder: on, simulation: off");
     assert_eq!(says(chart.lamps(None, None)[0]), "not known");
 }
 
@@ -216,13 +216,13 @@ fn a_lane_describes_its_cam_and_its_problems() {
     let says = |text: crate::app::Text| text.words(Language::English);
     assert_eq!(says(words::cam(lane)), "Cam 3 · glue");
     assert_eq!(says(words::edge(lane, Edge::Stop)), "Cam 3: stop");
-    let expected = "On from 900 (324.0°) past the end of the range to 20 (7.2°), 121 steps";
+    let expected = "On from 900 (324.0°) to 20 (7.2°) across the end of the range, 121 steps";
     assert_eq!(says(words::lane(lane, &degrees, 1000)), expected);
     let troubles: Vec<String> = words::troubles(&chart, lane).into_iter().map(says).collect();
-    assert_eq!(troubles, ["Overlaps another pulse on track glue."]);
+    assert_eq!(troubles, ["This pulse overlaps another pulse on track glue."]);
     own.edit(&Edit::Steps(850)).unwrap();
     let chart = Chart::of(&own, program()).unwrap();
     let troubles: Vec<String> = words::troubles(&chart, chart.lane(cam(3)).unwrap()).into_iter().map(says).collect();
-    assert_eq!(troubles[0], "Outside the measuring range, which ends at 849.");
+    assert_eq!(troubles[0], "The position is outside the measuring range, which ends at 849.");
     assert!(chart.lane(cam(3)).unwrap().edited && !chart.lane(cam(5)).unwrap().edited);
 }

@@ -232,7 +232,7 @@ fn operations_are_described_one_by_one() {
         ["cam 5, stop: 10 → 20", "cam 6: 900…40 → 910…55", "active cams: none → 0, 1, 4, 7", "window shift: 0 → 8"]
             .map(str::to_owned)
             .to_vec();
-    assert_eq!(words(&Op::Program(change)), ("Cam program 2, saved once".to_owned(), expected));
+    assert_eq!(words(&Op::Program(change)), ("Cam program 2, saved in one write cycle".to_owned(), expected));
     let fired = words(&Op::FirePreset { value: 500 });
     assert_eq!(fired.1, ["position at that time → 500"]);
     assert!(words(&Op::Default).1[0].contains("experimental"));

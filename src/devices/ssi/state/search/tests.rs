@@ -58,7 +58,7 @@ fn the_table_of_positions_has_frames() {
     let cut = said(&OWN[..OWN.len() - 7]);
     assert_eq!(cut.id(), "ssi_capture.cut_off");
     assert!(
-        cut.terminal().starts_with("The file is cut off at line 3, which has 5 columns instead of 7"),
+        cut.terminal().starts_with("The file is incomplete: line 3 has 5 columns instead of 7"),
         "{}",
         cut.terminal()
     );
