@@ -35,12 +35,12 @@ pub(super) struct Angle {
 
 impl Angle {
     fn of(sine: f64, cosine: f64) -> Self {
-        Angle { quarters: i64::from(quarter(sine, cosine)), sine, cosine }
+        Angle { quarters: i64::from(quadrant_of(sine, cosine)), sine, cosine }
     }
 
     /// Returns the angle advanced to the given voltages, by less than half a period.
     fn moved_to(self, sine: f64, cosine: f64) -> Self {
-        let step = (quarter(sine, cosine) - quarter(self.sine, self.cosine)).rem_euclid(4);
+        let step = (quadrant_of(sine, cosine) - quadrant_of(self.sine, self.cosine)).rem_euclid(4);
         let step = match step {
             3 => -1,
             // Two quarters forward or back: the vectors show which direction is shorter.
@@ -58,7 +58,7 @@ impl Angle {
     fn periods(&self) -> f64 {
         let phase = self.sine.atan2(self.cosine) / std::f64::consts::TAU;
         // Whole quarters are counted; only the part of the phase within the current quarter is added.
-        self.quarters as f64 / 4.0 + phase.rem_euclid(1.0) - f64::from(quarter(self.sine, self.cosine)) / 4.0
+        self.quarters as f64 / 4.0 + phase.rem_euclid(1.0) - f64::from(quadrant_of(self.sine, self.cosine)) / 4.0
     }
 }
 
@@ -163,7 +163,7 @@ fn cut(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize
 
 /// Returns the quarter, 0 to 3, counted in the direction of increasing angle. Optimised for speed by comparisons
 /// without branches.
-fn quarter(sine: f64, cosine: f64) -> i32 {
+fn quadrant_of(sine: f64, cosine: f64) -> i32 {
     let upper = sine > 0.0 || (sine == 0.0 && cosine >= 0.0);
     let right = cosine > 0.0 || (cosine == 0.0 && sine <= 0.0);
     match (upper, right) {

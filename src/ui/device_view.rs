@@ -38,7 +38,7 @@ pub trait TabPage: Copy + PartialEq + Default + 'static {
     }
 }
 
-pub(crate) fn infos<P: TabPage>() -> Vec<PageInfo> {
+pub(crate) fn page_infos<P: TabPage>() -> Vec<PageInfo> {
     P::PAGES.iter().map(|(_, info)| *info).collect()
 }
 
@@ -179,7 +179,7 @@ impl<V: TypedDeviceView> DeviceView for V {
     }
 
     fn pages(&self) -> Vec<PageInfo> {
-        infos::<V::Page>()
+        page_infos::<V::Page>()
     }
 
     fn has_undo_keys(&self) -> bool {

@@ -70,7 +70,7 @@ impl Studio {
 
     fn apply_entries(&mut self, entries: Payload) {
         let Some(connect) = &mut self.connect else { return };
-        let form = connect.forms_mut().find(|form| form.is_of_form(&entries));
+        let form = connect.forms_mut().find(|form| form.has_entries_of_form(&entries));
         if form.is_none_or(|form| form.edit(entries).is_err()) {
             return self.notify_wrong_kind(None);
         }

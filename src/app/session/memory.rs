@@ -47,7 +47,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     fn edited_change(&self) -> Option<Change<Self>>;
 
     /// Returns whether a change was made for a device other than the connected one.
-    fn is_for_another(&self, change: &Change<Self>) -> bool;
+    fn is_for_other_device(&self, change: &Change<Self>) -> bool;
 
     /// Returns whether a change was made for a different type of device, provided that this requires a separate permit.
     fn is_for_another_type(&self, _change: &Change<Self>) -> bool {
@@ -112,7 +112,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         if let Some(why) = self.session().why_not_ready() {
             return services.notify(Severity::Warning, vec![why], Some(&self.session().name()));
         }
-        let review = Review::new(change.clone(), self.is_for_another(&change), self.is_for_another_type(&change));
+        let review = Review::new(change.clone(), self.is_for_other_device(&change), self.is_for_another_type(&change));
         let objection = self.objection(&change);
         let review = self.review_mut().insert(review);
         if let Some(why) = objection {

@@ -51,5 +51,5 @@ pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
 pub use reading::{Example, Reading};
 pub use reference_comparison::{AbsoluteOffset, Nonlinearities, OffsetError, nonlinearity_quantities};
 pub use scope::{Scope, TimeAxisError};
-pub use spectra::{ChannelSpectrum, Spectra, dbv};
+pub use spectra::{ChannelSpectrum, Spectra, decibel_volts};
 pub use table::{Column, Table};

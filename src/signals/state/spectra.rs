@@ -74,7 +74,7 @@ fn median(values: &[f64]) -> f64 {
 }
 
 /// Converts a peak amplitude in volts to its rms level in decibels relative to one volt.
-pub fn dbv(peak_v: f64) -> f64 {
+pub fn decibel_volts(peak_v: f64) -> f64 {
     /// Lowest level in dB that a double can distinguish from zero next to one volt.
     const LEAST: f64 = -160.0;
     (20.0 * (peak_v / std::f64::consts::SQRT_2).log10()).max(LEAST)
@@ -118,8 +118,8 @@ mod tests {
     #[test]
     fn levels_refer_to_the_rms_value() {
         // A sine of √2 V peak has 1 V rms; a tenth of it is 20 dB less.
-        assert!(dbv(2.0_f64.sqrt()).abs() < 1e-12);
-        assert!((dbv(0.2_f64.sqrt() / 10.0_f64.sqrt() * 1.0) - -20.0).abs() < 1e-9);
-        assert_eq!(dbv(0.0), -160.0);
+        assert!(decibel_volts(2.0_f64.sqrt()).abs() < 1e-12);
+        assert!((decibel_volts(0.2_f64.sqrt() / 10.0_f64.sqrt() * 1.0) - -20.0).abs() < 1e-9);
+        assert_eq!(decibel_volts(0.0), -160.0);
     }
 }

@@ -18,7 +18,7 @@ use egui::Ui;
 use crate::app::{Action, SineCosineSource, Studio, Text, ToolKind};
 use crate::signals::state::input_circuit::Form as Circuit;
 use crate::signals::state::{Signals, SignalsKind, TEXTS};
-use crate::ui::device_view::{PageInfo, TabPage, ToolPages, ToolView, infos, page_at};
+use crate::ui::device_view::{PageInfo, TabPage, ToolPages, ToolView, page_at, page_infos};
 use crate::ui::{Theme, icons, page};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,7 +69,7 @@ impl ToolView for SignalsView {
     }
 
     fn pages(&self) -> Vec<PageInfo> {
-        infos::<Page>()
+        page_infos::<Page>()
     }
 
     fn begin(&self) -> Box<dyn ToolPages> {

@@ -174,7 +174,7 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
 }
 
 /// Formats a point in time with the precision of a picture that spans `span` nanoseconds.
-pub(super) fn instant(time: Time, span: i64, language: Language) -> String {
+pub(super) fn time_of_day(time: Time, span: i64, language: Language) -> String {
     let nanoseconds = time.nanoseconds();
     let digits = [(SECOND, 3), (SECOND / 1_000, 6), (0, 9)].into_iter().find(|(least, _)| span >= *least);
     let decimals = digits.map_or(9, |(_, digits)| digits);
@@ -324,7 +324,7 @@ mod tests {
             (12_345_678_901, 5_000_000, "12.345678 s"),
             (901, 1_000, "0.000000901 s"),
         ] {
-            assert_eq!(instant(Time::from_nanoseconds(nanoseconds), span, Language::English), expected);
+            assert_eq!(time_of_day(Time::from_nanoseconds(nanoseconds), span, Language::English), expected);
         }
         assert_eq!(sample_number(Time::from_nanoseconds(7_999)), "7");
     }

@@ -83,7 +83,7 @@ const HALF: f32 = 5.5;
 /// Returns the labelled ticks with the heights of their labels. A label normally sits beside its tick line, since the
 /// space between two lanes holds half a label. A low lane with fewer than two such ticks labels its outermost ticks on
 /// the inside.
-fn labelled(ticks: &[(f64, f32)], top: f32, bottom: f32) -> Vec<(f64, f32)> {
+fn labelled_ticks(ticks: &[(f64, f32)], top: f32, bottom: f32) -> Vec<(f64, f32)> {
     let inside: Vec<(f64, f32)> =
         ticks.iter().copied().filter(|(_, y)| (top + EDGE..=bottom - EDGE).contains(y)).collect();
     let (Some((first, low)), Some((last, high))) = (ticks.first(), ticks.last()) else { return inside };
@@ -102,7 +102,7 @@ fn value_axis(painter: &Painter, theme: &Theme, lane: &Lane, font: &FontId) {
         painter.hline(rect.x_range(), *y, Stroke::new(1.0, theme.palette.line));
     }
     if !lane.empty {
-        for (value, y) in labelled(&ticks, rect.top(), rect.bottom()) {
+        for (value, y) in labelled_ticks(&ticks, rect.top(), rect.bottom()) {
             let label = axes::value_label(value, lane.step, theme.language);
             let place = pos2(rect.left() - 6.0, y);
             painter.text(place, Align2::RIGHT_CENTER, label, font.clone(), theme.palette.muted.into());
@@ -191,7 +191,7 @@ fn paint_pointer_readout(painter: &Painter, context: &Context<'_>, layout: &Layo
     let time = layout.time.time(place.x);
     let words = match context.recorder.counts() {
         true => axes::sample_number(time),
-        false => axes::instant(time, context.recorder.span(), context.theme.language),
+        false => axes::time_of_day(time, context.recorder.span(), context.theme.language),
     };
     let font = FontId::monospace(context.theme.sizes.caption);
     let words = painter.layout_no_wrap(words, font, context.theme.palette.text.into());
@@ -246,9 +246,9 @@ mod tests {
     fn a_low_lane_has_labels_at_both_ends() {
         // Lines at both edges and in the middle; heights grow downwards.
         let low = [(-5.0, 27.0), (0.0, 13.5), (5.0, 0.0)];
-        assert_eq!(labelled(&low, 0.0, 27.0), [(-5.0, 21.5), (5.0, 5.5)]);
+        assert_eq!(labelled_ticks(&low, 0.0, 27.0), [(-5.0, 21.5), (5.0, 5.5)]);
         let high = [(-5.0, 100.0), (-2.5, 75.0), (0.0, 50.0), (2.5, 25.0), (5.0, 0.0)];
-        assert_eq!(labelled(&high, 0.0, 100.0), [(-2.5, 75.0), (0.0, 50.0), (2.5, 25.0)]);
-        assert_eq!(labelled(&[(0.0, 5.0)], 0.0, 10.0), [(0.0, 5.0)], "too low for two");
+        assert_eq!(labelled_ticks(&high, 0.0, 100.0), [(-2.5, 75.0), (0.0, 50.0), (2.5, 25.0)]);
+        assert_eq!(labelled_ticks(&[(0.0, 5.0)], 0.0, 10.0), [(0.0, 5.0)], "too low for two");
     }
 }

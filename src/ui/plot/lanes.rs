@@ -123,8 +123,8 @@ pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, red
         let scale = f64::from(1.0 / pixels_per_point) / grid.width() as f64;
         let time = TimeAxis { from: grid.edge(0), left: chart.left(), scale, pixel: 1.0 / pixels_per_point };
         reduced.update(recorder, &grid);
-        let lanes = lanes(chart, &groups, &time, reduced);
-        let needed = (letters(&lanes) as f32 * LETTER + 10.0).clamp(LEAST, MOST);
+        let lanes = lay_out_lanes(chart, &groups, &time, reduced);
+        let needed = (label_letters(&lanes) as f32 * LETTER + 10.0).clamp(LEAST, MOST);
         if needed <= gutter || rect.width() < gutter * 3.0 {
             // Released in the next frame, if it is more than a character or two: it must not jump with every sample.
             reduced.gutter = if gutter - needed > 2.0 * LETTER { needed } else { gutter };
@@ -134,7 +134,7 @@ pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, red
     }
 }
 
-fn letters(lanes: &[Lane]) -> usize {
+fn label_letters(lanes: &[Lane]) -> usize {
     let longest = |lane: &Lane| {
         let label = |value| axes::value_label(value, lane.step, crate::app::Language::English).len();
         axes::ticks(lane.range.0, lane.range.1, lane.step).map(label).max().unwrap_or(0)
@@ -147,7 +147,7 @@ fn groups(recorder: &Recorder) -> Vec<Vec<&Series>> {
     if recorder.has_one_axis() { vec![shown] } else { shown.into_iter().map(|line| vec![line]).collect() }
 }
 
-fn lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced: &Reduced) -> Vec<Lane> {
+fn lay_out_lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced: &Reduced) -> Vec<Lane> {
     let count = groups.len().max(1) as f32;
     let height = ((chart.height() - BETWEEN * (count - 1.0)) / count).max(1.0);
     let lane = |(at, lines): (usize, &Vec<&Series>)| {

@@ -269,7 +269,7 @@ mod tests {
         shapes
     }
 
-    fn reach(shapes: &[Shape]) -> Rect {
+    fn reach_text(shapes: &[Shape]) -> Rect {
         shapes.iter().fold(Rect::NOTHING, |all, shape| all.union(shape.visual_bounding_rect()))
     }
 
@@ -277,7 +277,7 @@ mod tests {
     fn a_single_sample_spike_is_drawn_to_its_peak() {
         let shapes = drawn(50_000, |at| if at == 31_234 { 1.0 } else { 0.5 }, |_| Flags::NONE);
         assert_eq!(shapes.len(), 1, "one mesh");
-        let reach = reach(&shapes);
+        let reach = reach_text(&shapes);
         assert!(reach.top() <= 0.5 && reach.bottom() < 27.0, "{reach}");
     }
 
@@ -318,7 +318,7 @@ mod tests {
     #[test]
     fn values_beyond_the_lane_are_clamped_to_it() {
         for count in [10, 3_000, 50_000] {
-            let reach = reach(&drawn(count, |at| if at % 2 == 0 { 1e30 } else { -1e30 }, |_| Flags::NONE));
+            let reach = reach_text(&drawn(count, |at| if at % 2 == 0 { 1e30 } else { -1e30 }, |_| Flags::NONE));
             assert!(LANE.expand(20.0).contains_rect(reach), "{count}: {reach}");
         }
     }

@@ -66,7 +66,7 @@ impl WithMemory for Encoder {
         let values = self.wanted().filter(|_| self.staged.is_dirty())?;
         Some(Change { restored: None, values, options: Default::default() })
     }
-    fn is_for_another(&self, change: &Change) -> bool {
+    fn is_for_other_device(&self, change: &Change) -> bool {
         change.restored.zip(self.read()).is_some_and(|(of, own)| of != own.serial)
     }
     fn prepare(change: Change) -> Job {

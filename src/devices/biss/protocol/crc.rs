@@ -155,7 +155,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// Computes the remainder by long division, independently of the code under test.
-    fn divided(polynomial: u64, start: u32, data: u64, bits: u8) -> u32 {
+    fn remainder_by_division(polynomial: u64, start: u32, data: u64, bits: u8) -> u32 {
         let degree = 63 - polynomial.leading_zeros();
         let mut rest = u128::from(data) & ((1u128 << bits) - 1);
         rest <<= degree;
@@ -198,7 +198,7 @@ mod tests {
     fn every_control_header_crc_is_its_remainder() {
         let crc = Crc::new(Crc::CONTROL, 0, true).unwrap();
         for header in 0..1 << 11 {
-            let sum = divided(0x13, 0, header.into(), 11) as u8 ^ 0xF;
+            let sum = remainder_by_division(0x13, 0, header.into(), 11) as u8 ^ 0xF;
             assert_eq!(crc4(header, 11), sum, "{header:03X}");
             assert_eq!(crc.of(header.into(), 11), u32::from(sum), "{header:03X}");
         }
@@ -230,7 +230,7 @@ mod tests {
         for (name, polynomial, start, xor, check) in cases {
             let crc = Crc::new(polynomial, start, xor != 0).unwrap();
             // Nine bytes do not fit into 64 bits, so the first one goes into the start value.
-            let first = divided(polynomial, start, u64::from(b'1'), 8);
+            let first = remainder_by_division(polynomial, start, u64::from(b'1'), 8);
             let rest = Crc::new(polynomial, first, xor != 0).unwrap();
             assert_eq!(rest.of(u64::from_be_bytes(*b"23456789"), 64), check, "{name}");
             let plain = crc.of(u64::from(b'1'), 8) ^ xor;
@@ -260,7 +260,7 @@ mod tests {
             let polynomial = 1 << degree | low | 1;
             let mask = u32::MAX >> (32 - degree);
             let crc = Crc::new(polynomial, start & mask, inverted).unwrap();
-            let sum = divided(polynomial, start & mask, data, bits);
+            let sum = remainder_by_division(polynomial, start & mask, data, bits);
             prop_assert_eq!(crc.of(data, bits), if inverted { sum ^ mask } else { sum });
         }
     }

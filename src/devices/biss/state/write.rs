@@ -86,7 +86,7 @@ impl WithMemory for Encoder {
         self.memory.is_dirty().then(|| Change::Write(self.memory.changes().into_iter().filter_map(edit).collect()))
     }
 
-    fn is_for_another(&self, change: &Change) -> bool {
+    fn is_for_other_device(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
         check_device(profile, &own.profile()).is_err()
     }

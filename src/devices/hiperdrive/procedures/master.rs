@@ -318,7 +318,7 @@ impl<'a> Master<'a> {
     }
 
     fn show_rest(&mut self) {
-        let (now, rest) = (self.line.now(), self.station.receiver.take_rest());
+        let (now, rest) = (self.line.now(), self.station.receiver.take_remaining());
         self.line.show(now, MaskedBytes::clear(&rest));
     }
 

@@ -155,12 +155,12 @@ impl ControlWord {
 
     /// Returns the control word that is ready for a job but starts none: 0439h or 0479h, with bit 6 as acknowledged by
     /// the drive.
-    pub const fn holding(status: StatusWord) -> Self {
+    pub const fn hold_present_state(status: StatusWord) -> Self {
         ControlWord::positioning(status.has(StatusBit::SetpointAcknowledged))
     }
 
     /// Returns the control word that starts a job. Bit 6 is the opposite of the value that the drive has acknowledged.
-    pub const fn starting(status: StatusWord) -> Self {
+    pub const fn for_start(status: StatusWord) -> Self {
         ControlWord::positioning(!status.has(StatusBit::SetpointAcknowledged))
     }
 
@@ -185,19 +185,19 @@ impl ControlWord {
 
     /// Returns this control word with a stop for its mode: speed mode clears bit 6; positioning clears bit 4 and
     /// discards the job. Torque stays on, and jog bits are cleared in both modes.
-    pub const fn stopped(self) -> Self {
+    pub const fn with_stop(self) -> Self {
         let word = self.without(ControlBit::JogOne).without(ControlBit::JogTwo);
         if self.has(ControlBit::SpeedMode) { word.without(ControlBit::Start) } else { word.without(ControlBit::NoStop) }
     }
 
-    /// Returns this control word with the job paused; [`resumed`](Self::resumed) continues it. In speed mode, where bit
+    /// Returns this control word with the job paused; [`without_pause`](Self::without_pause) continues it. In speed mode, where bit
     /// 5 has another meaning, the word is returned unchanged.
-    pub const fn paused(self) -> Self {
+    pub const fn with_pause(self) -> Self {
         if self.has(ControlBit::SpeedMode) { self } else { self.without(ControlBit::NoPause) }
     }
 
     /// Returns this control word with a paused job resumed. In speed mode, the word is returned unchanged.
-    pub const fn resumed(self) -> Self {
+    pub const fn without_pause(self) -> Self {
         if self.has(ControlBit::SpeedMode) { self } else { self.with(ControlBit::NoPause) }
     }
 

@@ -20,11 +20,11 @@ const READY: Step = step(ControlWord::READY, &[(StatusBit::Ready, true), (Status
 const OPERATIONAL: Step = step(ControlWord::OPERATIONAL, &[(StatusBit::Operational, true)]);
 const ENABLED: Step = step(ControlWord::ENABLED, &[(StatusBit::OperationEnabled, true)]);
 
-/// Steps from off to enabled. [`ControlWord::holding`] follows them.
+/// Steps from off to enabled. [`ControlWord::hold_present_state`] follows them.
 pub const ENABLE: [Step; 4] = [step(ControlWord::OFF, &[]), READY, OPERATIONAL, ENABLED];
 
 /// Steps from a fault to enabled. Bit 0 stays set during the acknowledgement, so that its falling edge remains
-/// available for the lock; [`ControlWord::holding`] follows them.
+/// available for the lock; [`ControlWord::hold_present_state`] follows them.
 pub const ACKNOWLEDGE: [Step; 5] = [
     step(ControlWord::ACKNOWLEDGE, &[]),
     step(ControlWord::OPERATIONAL, &[(StatusBit::Fault, false), (StatusBit::SwitchOnLock, true)]),

@@ -39,10 +39,10 @@ fn published_control_words_match() {
         (0x0409, ControlWord::ENABLED),
         (0x0481, ControlWord::ACKNOWLEDGE),
         // ZSW12 is clear in 2A37 and set in 3E37: an equal bit 6 holds, the opposite starts.
-        (0x0439, ControlWord::holding(status(0x2A37))),
-        (0x0479, ControlWord::starting(status(0x2A37))),
-        (0x0479, ControlWord::holding(status(0x3E37))),
-        (0x0439, ControlWord::starting(status(0x3E37))),
+        (0x0439, ControlWord::hold_present_state(status(0x2A37))),
+        (0x0479, ControlWord::for_start(status(0x2A37))),
+        (0x0479, ControlWord::hold_present_state(status(0x3E37))),
+        (0x0439, ControlWord::for_start(status(0x3E37))),
         (0x1419, ControlWord::speed_mode(Clockwise, RangeEnd)),
         (0x1459, ControlWord::running(Clockwise, RangeEnd)),
         (0x1409, ControlWord::speed_mode(Counterclockwise, RangeEnd)),
@@ -85,11 +85,11 @@ fn the_stop_word_depends_on_the_mode() {
         (0x0509, 0x0409),
         (0x0400, 0x0400),
     ] {
-        assert_eq!(word(before).stopped().word(), stopped, "{before:04X}");
+        assert_eq!(word(before).with_stop().word(), stopped, "{before:04X}");
     }
-    assert_eq!(word(0x0479).paused().word(), 0x0459);
-    assert_eq!(word(0x0459).resumed().word(), 0x0479);
-    assert_eq!((word(0x1459).paused().word(), word(0x1419).resumed().word()), (0x1459, 0x1419));
+    assert_eq!(word(0x0479).with_pause().word(), 0x0459);
+    assert_eq!(word(0x0459).without_pause().word(), 0x0479);
+    assert_eq!((word(0x1459).with_pause().word(), word(0x1419).without_pause().word()), (0x1459, 0x1419));
 }
 
 /// Reference 3 and 8.10: a job starts on a difference of levels, a run on an edge, and neither while a condition is
@@ -348,17 +348,17 @@ proptest! {
         let end = if endless { RunEnd::Endless } else { RunEnd::RangeEnd };
         let before = word(from & !0xE806);
         for control in [
-            ControlWord::holding(says),
-            ControlWord::starting(says),
+            ControlWord::hold_present_state(says),
+            ControlWord::for_start(says),
             ControlWord::speed_mode(direction, end),
             ControlWord::running(direction, end),
-            before.stopped(),
+            before.with_stop(),
         ] {
             prop_assert_eq!(ControlWord::parse(control.word()), Ok(control));
             prop_assert!(!control.has(C::JogOne) && !control.has(C::JogTwo));
         }
-        prop_assert_eq!(before.stopped().motion_start(before, says), None);
-        prop_assert_eq!(ControlWord::holding(says).motion_start(before, says), None);
+        prop_assert_eq!(before.with_stop().motion_start(before, says), None);
+        prop_assert_eq!(ControlWord::hold_present_state(says).motion_start(before, says), None);
         prop_assert_eq!(ControlWord::READY.motion_start(before, says), None);
     }
 

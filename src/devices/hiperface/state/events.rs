@@ -206,7 +206,7 @@ impl SessionEvents for Encoder {
             }
             HiperfaceOutput::Status(codes) => self.codes = Some(codes),
             HiperfaceOutput::Position(reading) => self.add_samples(vec![Sample::Position(reading)], 0),
-            HiperfaceOutput::Rest(rest) => self.take_rest(rest),
+            HiperfaceOutput::Rest(rest) => self.adopt_rest_reading(rest),
             HiperfaceOutput::Value(value) => self.take_value(value),
             HiperfaceOutput::Check(lines) => {
                 self.check = Some(lines);

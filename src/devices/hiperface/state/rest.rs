@@ -25,7 +25,7 @@ impl Encoder {
         self.rest.is_under_way = self.try_submit(HiperfaceJob::Rest, services);
     }
 
-    pub(super) fn take_rest(&mut self, rest: Rest) {
+    pub(super) fn adopt_rest_reading(&mut self, rest: Rest) {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Ok(rest));
             return;

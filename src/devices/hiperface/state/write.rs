@@ -37,7 +37,7 @@ impl WithMemory for Encoder {
         self.staged.is_dirty().then(|| Change::Store(self.staged.changed_runs()))
     }
 
-    fn is_for_another(&self, change: &Change) -> bool {
+    fn is_for_other_device(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, &self.identity) else { return false };
         check_device(profile, &own.serial.serial_number, own.label.encoder_type).is_err()
     }

@@ -189,7 +189,7 @@ pub(super) fn read_survey(
         parameters,
         preset_flag: value(6).get(),
         operating_minutes: minutes(value(8)),
-        temperature_tenths: tenths(value(0xC)),
+        temperature_tenths: tenths_of(value(0xC)),
         identity,
         values,
     })
@@ -304,7 +304,7 @@ pub(super) struct Measured {
 
 pub(super) fn read_measured(master: &mut Master<'_>) -> Result<Measured, Error> {
     let minutes = minutes(master.read_out(ReadOut::OPERATING_TIME)?);
-    Ok(Measured { minutes, tenths: tenths(master.read_out(ReadOut::TEMPERATURE)?) })
+    Ok(Measured { minutes, tenths: tenths_of(master.read_out(ReadOut::TEMPERATURE)?) })
 }
 
 fn minutes(value: Value) -> u32 {
@@ -314,7 +314,7 @@ fn minutes(value: Value) -> u32 {
     }
 }
 
-fn tenths(value: Value) -> i32 {
+fn tenths_of(value: Value) -> i32 {
     match ReadOut::TEMPERATURE.value(value) {
         ReadOutValue::TenthsOfDegree(tenths) => tenths,
         // 25 bits.

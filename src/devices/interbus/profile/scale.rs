@@ -127,7 +127,7 @@ impl Scale {
 
     /// Returns whether the scale wraps at the end of the measuring range. Steps always do, and degrees if the range is
     /// a whole number of machine turns.
-    pub fn is_round(&self, range: u32) -> bool {
+    pub fn wraps_around(&self, range: u32) -> bool {
         match self.unit {
             Unit::Steps => true,
             Unit::Millimetres => false,
@@ -156,7 +156,7 @@ impl Scale {
     /// [`Outside`] with the limits.
     pub fn place(&self, value: f64, range: u32) -> Result<Placed, Outside> {
         let outside = || {
-            let first = if self.is_round(range) { 0.0 } else { self.value(0, range) };
+            let first = if self.wraps_around(range) { 0.0 } else { self.value(0, range) };
             Outside { value, least: first, most: first + self.span(range) - 1.0 / self.steps }
         };
         if range == 0 || !value.is_finite() || value.abs() > MOST {
@@ -169,7 +169,7 @@ impl Scale {
         let exact = f64::from(self.zero) + from_zero;
         let nearest = exact.round();
         let off = (nearest - exact) / self.steps;
-        let step = if self.is_round(range) { nearest.rem_euclid(f64::from(range)) } else { nearest };
+        let step = if self.wraps_around(range) { nearest.rem_euclid(f64::from(range)) } else { nearest };
         if (0.0..f64::from(range)).contains(&step) {
             // Below the range, which has 25 bits.
             Ok(Placed { step: step as u32, off })
@@ -189,7 +189,7 @@ impl Scale {
     }
 
     fn round(&self, from_zero: f64, range: u32) -> f64 {
-        if self.is_round(range) && range > 0 { from_zero.rem_euclid(f64::from(range)) } else { from_zero }
+        if self.wraps_around(range) && range > 0 { from_zero.rem_euclid(f64::from(range)) } else { from_zero }
     }
 }
 
@@ -219,7 +219,8 @@ mod tests {
             assert_eq!(placed.step, step, "{scale:?} {value}");
             assert!((placed.off - off).abs() < 1e-9, "{scale:?} {value}: {}", placed.off);
             let shown = scale.value(step, range);
-            let apart = (shown - value - off).rem_euclid(if scale.is_round(range) { scale.span(range) } else { 1e9 });
+            let apart =
+                (shown - value - off).rem_euclid(if scale.wraps_around(range) { scale.span(range) } else { 1e9 });
             assert!(apart < 1e-6 || apart > scale.span(range) - 1e-6, "{scale:?} {value}: {shown}");
         }
     }

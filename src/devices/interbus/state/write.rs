@@ -44,7 +44,7 @@ impl WithMemory for Encoder {
         Some(Change::Write(Box::new(edited)))
     }
 
-    fn is_for_another(&self, change: &Change) -> bool {
+    fn is_for_other_device(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
         check_device(profile, &own.profile()).is_err()
     }

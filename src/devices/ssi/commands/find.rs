@@ -90,7 +90,7 @@ fn spec(class: &Class, families: &Families) -> String {
 
 fn why(class: &Class) -> String {
     let frame = class.members.first().map(|member| words::frame(&member.layout).terminal());
-    let evidence = words::evidence(&class.evidence).terminal();
+    let evidence = words::evidence_for(&class.evidence).terminal();
     frame.into_iter().chain([evidence]).collect::<Vec<_>>().join("; ")
 }
 

@@ -224,7 +224,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     }
     groups.sort_by(|a, b| a.bits.total_cmp(&b.bits));
     let doubt = verdict::doubt(&words, &groups);
-    search(doubt, verdict::classes(&words, groups))
+    search(doubt, verdict::merge_classes(&words, groups))
 }
 
 /// Returns whether two layouts yield the same motion, possibly reversed or with steps of half the size.

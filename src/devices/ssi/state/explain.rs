@@ -178,7 +178,7 @@ pub fn doubt(doubt: Option<Uncertainty>) -> Text {
     })
 }
 
-pub fn evidence(evidence: &Evidence) -> Text {
+pub fn evidence_for(evidence: &Evidence) -> Text {
     TEXTS
         .text("ssi_find.evidence")
         .with("steps", evidence.steps_a_frame)

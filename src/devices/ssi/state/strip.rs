@@ -7,7 +7,7 @@ mod tests;
 mod words;
 
 pub use moving::moved;
-pub use words::{bare, cell, clocks, field, handle, hint, name, reach, short, value};
+pub use words::{bare, cell, clocks, field, handle, hint, name, reach_text, short, value};
 
 use crate::devices::ssi::protocol::{Coded, Flags, Layout, Meaning, Range, Role, Word};
 
@@ -131,7 +131,7 @@ impl Strip {
             }
             cells.push(Cell { clock, role: *role, field: fields.len().saturating_sub(1) });
         }
-        let handles = moving::handles(layout);
+        let handles = moving::strip_handles(layout);
         Strip { layout: layout.clone(), cells, fields, handles }
     }
 
@@ -148,7 +148,7 @@ impl Strip {
     }
 
     /// Returns the movable parts in clock order.
-    pub fn handles(&self) -> &[Handle] {
+    pub fn strip_handles(&self) -> &[Handle] {
         &self.handles
     }
 
@@ -228,7 +228,7 @@ impl Handle {
 
 /// Returns whether any error or parity bits directly follow the position, and therefore move with it.
 pub fn follows(layout: &Layout) -> bool {
-    !moving::chain(layout).is_empty()
+    !moving::bit_chain(layout).is_empty()
 }
 
 /// Returns whether the frame has patterns given as bits, which would change with the length of the frame.

@@ -184,7 +184,7 @@ fn class_ui(
                 paragraph(ui, theme.words(&words::open(*open)));
             });
         }
-        paragraph(ui, theme.caption(theme.words(&words::evidence(evidence))));
+        paragraph(ui, theme.caption(theme.words(&words::evidence_for(evidence))));
     });
 }
 

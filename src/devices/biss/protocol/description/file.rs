@@ -317,11 +317,11 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
 /// A row of a description, with the items that no other row may claim.
 trait Row {
     /// Returns the items that no other row may claim.
-    fn claims(&self) -> Vec<Claim>;
+    fn claimed_items(&self) -> Vec<Claim>;
 }
 
 impl Row for Register {
-    fn claims(&self) -> Vec<Claim> {
+    fn claimed_items(&self) -> Vec<Claim> {
         let bytes = (0..self.width).filter_map(|at| self.address.plus(at)).map(Claim::Register);
         let role = self.role.map(Claim::Role);
         bytes.chain(role).collect()
@@ -329,19 +329,19 @@ impl Row for Register {
 }
 
 impl Row for BankRow {
-    fn claims(&self) -> Vec<Claim> {
+    fn claimed_items(&self) -> Vec<Claim> {
         vec![Claim::Bank(self.bank)]
     }
 }
 
 impl Row for Area {
-    fn claims(&self) -> Vec<Claim> {
+    fn claimed_items(&self) -> Vec<Claim> {
         (self.first..=self.last).map(Claim::Bank).collect()
     }
 }
 
 impl Row for Procedure {
-    fn claims(&self) -> Vec<Claim> {
+    fn claimed_items(&self) -> Vec<Claim> {
         vec![Claim::Procedure(self.kind)]
     }
 }
@@ -374,7 +374,7 @@ impl<'de, T: Deserialize<'de> + Row> Visitor<'de> for RowsVisitor<T> {
         let mut claimed = BTreeSet::new();
         let mut rows = Vec::new();
         while let Some(row) = list.next_element::<T>()? {
-            for claim in row.claims() {
+            for claim in row.claimed_items() {
                 if claimed.contains(&claim) {
                     return Err(flaw::found(Flaw::Twice(claim)));
                 }

@@ -150,7 +150,7 @@ impl DeadMan {
         let moved = self.stage.has_motion();
         self.end(how);
         if moved {
-            let (begun, word) = (self.mark(now), self.sent.control.stopped());
+            let (begun, word) = (self.mark(now), self.sent.control.with_stop());
             self.stage = Stage::Stop { level: StopLevel::Mode, since: now, begun, word };
         }
     }
@@ -195,7 +195,7 @@ impl DeadMan {
         let sent = self.sent.control;
         let enabled = Goal::of_word(sent) == Goal::Enabled;
         match self.level {
-            Goal::Enabled if enabled && !sent.has(ControlBit::SpeedMode) => sent.stopped().paused(),
+            Goal::Enabled if enabled && !sent.has(ControlBit::SpeedMode) => sent.with_stop().with_pause(),
             level => level.word(),
         }
     }
@@ -230,7 +230,7 @@ impl DeadMan {
 fn moving(stage: &Stage, kind: MotionKind, actual: Actual) -> ControlWord {
     let toggled = |acknowledged: &bool, toggle: bool| {
         let status = actual.status.with(StatusBit::SetpointAcknowledged, acknowledged != &toggle);
-        ControlWord::holding(status)
+        ControlWord::hold_present_state(status)
     };
     match (stage, kind) {
         (Stage::Arm { .. }, MotionKind::Run { direction, end }) => ControlWord::speed_mode(direction, end),
@@ -239,7 +239,7 @@ fn moving(stage: &Stage, kind: MotionKind, actual: Actual) -> ControlWord {
         (Stage::Start { acknowledged, .. } | Stage::Go { acknowledged, .. }, MotionKind::Job { .. }) => {
             toggled(acknowledged, true)
         }
-        (Stage::Paused { acknowledged, .. }, MotionKind::Job { .. }) => toggled(acknowledged, true).paused(),
+        (Stage::Paused { acknowledged, .. }, MotionKind::Job { .. }) => toggled(acknowledged, true).with_pause(),
         _ => ControlWord::READY,
     }
 }

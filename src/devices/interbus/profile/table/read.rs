@@ -190,7 +190,7 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
         text => {
             let own =
                 whole(text, &["program", "programm", "p"]).and_then(|own| ProgramNumber::new(u8::try_from(own).ok()?));
-            own.ok_or_else(|| wrong(Column::Program, TableProblemKind::Program { text: excerpt(text) }))?
+            own.ok_or_else(|| wrong(Column::Program, TableProblemKind::Program { text: text_excerpt(text) }))?
         }
     };
     let (mut cam, mut name) = (None, cell(Column::Name).to_owned());
@@ -198,11 +198,11 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
     match whole(text, &["cam", "nocken", "nocke"]) {
         Some(own) => {
             let own = u8::try_from(own).ok().and_then(CamNumber::new);
-            cam = Some(own.ok_or_else(|| wrong(Column::Cam, TableProblemKind::Cam { text: excerpt(text) }))?);
+            cam = Some(own.ok_or_else(|| wrong(Column::Cam, TableProblemKind::Cam { text: text_excerpt(text) }))?);
         }
         None if text.is_empty() => {}
         None if columns.cam_or_name => text.clone_into(&mut name),
-        None => return Err(wrong(Column::Cam, TableProblemKind::Cam { text: excerpt(text) })),
+        None => return Err(wrong(Column::Cam, TableProblemKind::Cam { text: text_excerpt(text) })),
     }
     if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
         let column = if columns.cam_or_name { Column::Cam } else { Column::Name };
@@ -210,7 +210,7 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
     }
     let value = |column| match cell(column) {
         "" => Err(wrong(column, TableProblemKind::Missing(column))),
-        text => number(text, comma).ok_or_else(|| wrong(column, TableProblemKind::Number { text: excerpt(text) })),
+        text => number(text, comma).ok_or_else(|| wrong(column, TableProblemKind::Number { text: text_excerpt(text) })),
     };
     let (start, stop) = (value(Column::Start)?, value(Column::Stop)?);
     let outside = |column| move |outside| wrong(column, TableProblemKind::Outside { column, outside });
@@ -232,7 +232,7 @@ fn edges(
     let first = scale.place(start, range).map_err(start_outside)?;
     let span = scale.span(range);
     let one = span / f64::from(range.max(1));
-    if scale.is_round(range) && scale.unit() != Unit::Steps && (stop - start - span).abs() < one / 2.0 {
+    if scale.wraps_around(range) && scale.unit() != Unit::Steps && (stop - start - span).abs() < one / 2.0 {
         let step = first.step.checked_sub(1).unwrap_or(range.saturating_sub(1));
         let off = start + first.off + span - one - stop;
         return Ok((edge(start, first), TableEdge { requested: stop, step, off }));
@@ -263,7 +263,7 @@ fn whole(text: &str, words: &[&str]) -> Option<u64> {
     bare.parse().ok().filter(|_| is_whole)
 }
 
-fn excerpt(text: &str) -> String {
+fn text_excerpt(text: &str) -> String {
     let mut excerpt: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
     if text.chars().count() > SHOWN {
         excerpt.push('…');

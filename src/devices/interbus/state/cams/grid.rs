@@ -39,7 +39,7 @@ pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<
     let span = scale.span(range);
     let at = |line: usize| {
         let value = (first + line as f64) * unit;
-        let shown = if scale.is_round(range) { turned(value, span) } else { value };
+        let shown = if scale.wraps_around(range) { turned(value, span) } else { value };
         Tick { position: zero + value * one, value: shown, decimals }
     };
     (0..MOST_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()

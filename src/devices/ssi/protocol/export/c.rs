@@ -52,7 +52,7 @@ impl Dialect for C {
         word.to_owned()
     }
 
-    fn divided(&self, number: &str, by: u64) -> String {
+    fn divided_by(&self, number: &str, by: u64) -> String {
         format!("({number}) / UINT64_C({by})")
     }
 
@@ -77,7 +77,7 @@ impl Dialect for C {
         format!("/* {} */", text.replace("*/", "* /"))
     }
 
-    fn negated(&self, condition: &str) -> String {
+    fn negated_condition(&self, condition: &str) -> String {
         format!("!{condition}")
     }
 

@@ -86,7 +86,7 @@ pub fn scl(layout: &Layout, title: &str) -> Result<String, TooWideError> {
         comment(&format!("flags 16#{:X}: {name}, {meaning}", flag.0));
     }
     for line in lines {
-        let _ = writeln!(text, "    {}", if line.starts_with("//") { line } else { local(&line) });
+        let _ = writeln!(text, "    {}", if line.starts_with("//") { line } else { local_variable(&line) });
     }
     text.push_str("END_FUNCTION_BLOCK\n");
     Ok(text)
@@ -176,14 +176,14 @@ impl Halves {
 }
 
 /// Joins two half-word expressions with an operator. If one is `None` (zero), the result is the remaining operand.
-fn joined(a: Option<String>, b: Option<String>, operator: &str) -> Option<String> {
+fn join_terms(a: Option<String>, b: Option<String>, operator: &str) -> Option<String> {
     match (a, b) {
         (Some(a), Some(b)) => Some(format!("({a} {operator} {b})")),
         (one, other) => one.or(other),
     }
 }
 
-fn half(value: u64) -> Option<String> {
+fn half_constant(value: u64) -> Option<String> {
     (value != 0).then(|| format!("DWORD#16#{value:X}"))
 }
 
@@ -221,7 +221,7 @@ impl Dialect for Halves {
     }
 
     fn hex(&self, value: u64) -> Pair {
-        Pair { high: half(value >> HALF), low: half(value & u64::from(u32::MAX)) }
+        Pair { high: half_constant(value >> HALF), low: half_constant(value & u64::from(u32::MAX)) }
     }
 
     fn and(&self, a: &Pair, b: &Pair) -> Pair {
@@ -229,11 +229,17 @@ impl Dialect for Halves {
     }
 
     fn or(&self, a: &Pair, b: &Pair) -> Pair {
-        Pair { high: joined(a.high.clone(), b.high.clone(), "OR"), low: joined(a.low.clone(), b.low.clone(), "OR") }
+        Pair {
+            high: join_terms(a.high.clone(), b.high.clone(), "OR"),
+            low: join_terms(a.low.clone(), b.low.clone(), "OR"),
+        }
     }
 
     fn xor(&self, a: &Pair, b: &Pair) -> Pair {
-        Pair { high: joined(a.high.clone(), b.high.clone(), "XOR"), low: joined(a.low.clone(), b.low.clone(), "XOR") }
+        Pair {
+            high: join_terms(a.high.clone(), b.high.clone(), "XOR"),
+            low: join_terms(a.low.clone(), b.low.clone(), "XOR"),
+        }
     }
 
     fn right(&self, a: &Pair, bits: u8) -> Pair {
@@ -243,7 +249,7 @@ impl Dialect for Halves {
         let crossing = if bits == 0 { None } else { self.shifted_left(a.high.as_ref(), HALF - bits) };
         Pair {
             high: self.shifted_right(a.high.as_ref(), bits),
-            low: joined(self.shifted_right(a.low.as_ref(), bits), crossing, "OR"),
+            low: join_terms(self.shifted_right(a.low.as_ref(), bits), crossing, "OR"),
         }
     }
 
@@ -253,7 +259,7 @@ impl Dialect for Halves {
         }
         let crossing = if bits == 0 { None } else { self.shifted_right(a.low.as_ref(), HALF - bits) };
         Pair {
-            high: joined(self.shifted_left(a.high.as_ref(), bits), crossing, "OR"),
+            high: join_terms(self.shifted_left(a.high.as_ref(), bits), crossing, "OR"),
             low: self.shifted_left(a.low.as_ref(), bits),
         }
     }
@@ -270,7 +276,7 @@ impl Dialect for Halves {
         format!("DWORD_TO_UDINT({})", word.low.as_deref().unwrap_or(NONE))
     }
 
-    fn divided(&self, number: &str, by: u64) -> String {
+    fn divided_by(&self, number: &str, by: u64) -> String {
         format!("({number}) / UDINT#{by}")
     }
 
@@ -314,7 +320,7 @@ impl Dialect for Halves {
         }
     }
 
-    fn negated(&self, condition: &str) -> String {
+    fn negated_condition(&self, condition: &str) -> String {
         format!("NOT {condition}")
     }
 
@@ -335,7 +341,7 @@ fn one_line(text: &str) -> String {
 
 /// Prefixes local variables with `#`, as SCL requires. In the generated code, exactly the variables start with a
 /// lowercase letter.
-fn local(line: &str) -> String {
+fn local_variable(line: &str) -> String {
     let mut out = String::new();
     let mut word = String::new();
     for c in line.chars().chain(std::iter::once('\n')) {

@@ -91,13 +91,13 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     let words = fields.into_iter().map(|(field, bits)| match field {
         Field::Padding => format!("%{bits}p"),
         Field::Position => format!("position%{bits}{modifier}e"),
-        Field::Bit(name) => format!("{}%1b", pin(&name, &mut taken)),
+        Field::Bit(name) => format!("{}%1b", pin_name(&name, &mut taken)),
     });
     Ok(words.collect())
 }
 
 /// Returns a valid pin name that is not taken yet.
-fn pin(name: &str, taken: &mut Vec<String>) -> String {
+fn pin_name(name: &str, taken: &mut Vec<String>) -> String {
     let is_known = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.');
     let letters = name.chars().map(|letter| if is_known(letter) { letter.to_ascii_lowercase() } else { '-' });
     let own: String = letters.collect();

@@ -101,7 +101,7 @@ impl Picture {
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
              role=\"img\" aria-label=\"{}\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-            escaped(&self.title)
+            escape_text(&self.title)
         );
         for shape in &self.shapes {
             // Writing into a String does not fail.
@@ -139,7 +139,7 @@ impl PictureLabel {
         if self.is_centred {
             svg.write_str(" text-anchor=\"middle\"")?;
         }
-        writeln!(svg, " {FONT}>{}</text>", escaped(&self.text))
+        writeln!(svg, " {FONT}>{}</text>", escape_text(&self.text))
     }
 }
 
@@ -172,6 +172,6 @@ impl fmt::Display for PathStep {
     }
 }
 
-fn escaped(text: &str) -> String {
+fn escape_text(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -21,14 +21,14 @@ pub(super) trait Dialect {
     fn differs(&self, a: &Self::Word, b: &Self::Word) -> String;
     /// Converts a word expression to a number expression.
     fn number(&self, word: &Self::Word) -> String;
-    fn divided(&self, number: &str, by: u64) -> String;
+    fn divided_by(&self, number: &str, by: u64) -> String;
     fn rest(&self, number: &str, by: u64) -> String;
     fn assign(&self, name: &str, value: &str) -> String;
     /// Returns the statements that assign a word to a variable.
     fn assign_word(&self, name: &'static str, value: &Self::Word) -> Vec<String>;
     fn when(&self, condition: &str, statement: &str) -> String;
     fn comment(&self, text: &str) -> String;
-    fn negated(&self, condition: &str) -> String;
+    fn negated_condition(&self, condition: &str) -> String;
     fn both(&self, a: &str, b: &str) -> String;
 }
 
@@ -211,8 +211,8 @@ impl<D: Dialect> Writer<'_, D> {
             Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
                 self.comment(&format!("{steps} steps over {numerator}/{denominator} turns"));
                 let turn = u64::from(steps) * u64::from(denominator);
-                self.set("turns", &d.divided(&format!("position * {numerator}"), turn));
-                let first = d.divided(&format!("turns * {turn} + {}", numerator - 1), numerator.into());
+                self.set("turns", &d.divided_by(&format!("position * {numerator}"), turn));
+                let first = d.divided_by(&format!("turns * {turn} + {}", numerator - 1), numerator.into());
                 self.set("steps", &format!("position - {first}"));
                 None
             }
@@ -225,7 +225,7 @@ impl<D: Dialect> Writer<'_, D> {
         };
         if let Some(per_turn) = per_turn {
             self.comment("turns and steps within one");
-            self.set("turns", &d.divided("position", per_turn));
+            self.set("turns", &d.divided_by("position", per_turn));
             self.set("steps", &d.rest("position", per_turn));
         }
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
@@ -234,6 +234,6 @@ impl<D: Dialect> Writer<'_, D> {
         let invalid = self.any_bit_set("flags", layout.invalid().0.into());
         let no_position = d.both(&self.any_bit_set("flags", stuck.0.into()), &self.any_bit_set("flags", none.0.into()));
         self.comment("an error, or a line that is stuck");
-        self.set("valid", &d.both(&d.negated(&invalid), &d.negated(&no_position)));
+        self.set("valid", &d.both(&d.negated_condition(&invalid), &d.negated_condition(&no_position)));
     }
 }

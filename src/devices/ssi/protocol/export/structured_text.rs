@@ -51,7 +51,7 @@ impl Dialect for StructuredText {
         format!("LWORD_TO_ULINT({word})")
     }
 
-    fn divided(&self, number: &str, by: u64) -> String {
+    fn divided_by(&self, number: &str, by: u64) -> String {
         format!("({number}) / ULINT#{by}")
     }
 
@@ -75,7 +75,7 @@ impl Dialect for StructuredText {
         format!("(* {} *)", text.replace("*)", "* )"))
     }
 
-    fn negated(&self, condition: &str) -> String {
+    fn negated_condition(&self, condition: &str) -> String {
         format!("NOT {condition}")
     }
 

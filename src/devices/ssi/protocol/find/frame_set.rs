@@ -131,12 +131,12 @@ impl Bit {
 
     /// Returns the information in bits needed to describe a bit that is not explained by anything else.
     pub(super) fn cost(&self, frames: usize) -> f64 {
-        entropy(self.changes, frames)
+        binary_entropy(self.changes, frames)
     }
 }
 
 /// Returns the information in bits needed to select `some` items out of `all`.
-pub(super) fn entropy(some: usize, all: usize) -> f64 {
+pub(super) fn binary_entropy(some: usize, all: usize) -> f64 {
     if some == 0 || some >= all {
         return 0.0;
     }

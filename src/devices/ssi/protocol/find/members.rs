@@ -42,7 +42,7 @@ pub(super) fn group_members(
             found.push(Member { family, layout, weight, trial });
         }
     };
-    let inverted = inversions(read);
+    let inverted = possible_inversions(read);
     if let Some(families) = families.filter(|_| repeat.is_none()) {
         for (place, family) in families.iter().enumerate() {
             for inverted in inverted {
@@ -57,7 +57,7 @@ pub(super) fn group_members(
 }
 
 /// Returns the inversions to try. In binary, swapped wires only reverse the direction.
-fn inversions(read: &Read) -> &'static [bool] {
+fn possible_inversions(read: &Read) -> &'static [bool] {
     match (read.reading.code, read.reading.inverted) {
         (Code::Binary, _) if read.reading.steps.is_none() => &[false, true],
         (_, true) => &[true],

@@ -49,7 +49,7 @@ pub(super) fn of_family(
                     };
                     let all = match reading.steps {
                         Some((steps, _)) => vec![Settings { steps: u32::try_from(steps).ok(), ..common }],
-                        None => resolutions(&turns, family, &common, (reading.last, *align)),
+                        None => find_resolutions(&turns, family, &common, (reading.last, *align)),
                     };
                     for settings in all {
                         let Ok(resolved) = settings.resolve(family) else { continue };
@@ -86,7 +86,12 @@ pub(super) fn of_family(
 }
 
 /// Returns the settings whose position ends at the last clock of the reading, or one clock earlier.
-fn resolutions(turns: &[Option<u8>], family: &Family, common: &Settings, (last, align): (u8, Align)) -> Vec<Settings> {
+fn find_resolutions(
+    turns: &[Option<u8>],
+    family: &Family,
+    common: &Settings,
+    (last, align): (u8, Align),
+) -> Vec<Settings> {
     let (least, _, most) = family.singleturn;
     let late = u8::from(common.shift);
     let mut all = Vec::new();

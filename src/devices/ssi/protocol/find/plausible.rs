@@ -37,7 +37,7 @@ pub(super) fn widths(multiturn: u8, singleturn: u8) -> f64 {
 }
 
 /// Returns the most usual ways to split bits between turns and steps, the most usual first.
-pub(super) fn shares(bits: u8, most: usize) -> Vec<(u8, u8)> {
+pub(super) fn bit_shares(bits: u8, most: usize) -> Vec<(u8, u8)> {
     let mut all: Vec<(u8, u8)> =
         (0..bits).map(|turns| (turns, bits - turns)).filter(|(turns, steps)| *turns <= 32 && *steps <= 32).collect();
     all.sort_by(|a, b| widths(a.0, a.1).total_cmp(&widths(b.0, b.1)));
@@ -51,12 +51,12 @@ mod tests {
 
     #[test]
     fn common_widths_rank_first() {
-        assert_eq!(shares(25, 1), [(12, 13)]);
-        assert_eq!(shares(24, 1), [(12, 12)]);
-        assert_eq!(shares(13, 1), [(0, 13)]);
-        assert_eq!(shares(30, 1), [(12, 18)]);
-        assert_eq!(shares(1, 4), [(0, 1)]);
+        assert_eq!(bit_shares(25, 1), [(12, 13)]);
+        assert_eq!(bit_shares(24, 1), [(12, 12)]);
+        assert_eq!(bit_shares(13, 1), [(0, 13)]);
+        assert_eq!(bit_shares(30, 1), [(12, 18)]);
+        assert_eq!(bit_shares(1, 4), [(0, 1)]);
         assert!(widths(12, 1) > widths(0, 13) + 6.0, "4096 turns of 2 steps");
-        assert!(shares(64, 9).iter().all(|(turns, steps)| turns + steps == 64));
+        assert!(bit_shares(64, 9).iter().all(|(turns, steps)| turns + steps == 64));
     }
 }

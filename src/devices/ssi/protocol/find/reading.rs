@@ -4,7 +4,7 @@
 use std::ops::RangeInclusive;
 
 use super::code_ends::{ends, unusual_step_cost};
-use super::frame_set::{FrameSet, entropy};
+use super::frame_set::{FrameSet, binary_entropy};
 use super::motion::Motion;
 use crate::devices::ssi::protocol::code::{Code, Coding, gray_to_binary, ones};
 use crate::devices::ssi::protocol::descriptor::Parity;
@@ -138,7 +138,7 @@ impl Reading {
         let mut unexplained = Vec::new();
         for (clock, bit) in seen.bits().filter(|(clock, _)| !self.has(*clock)) {
             if let Some(parity) = self.parity.filter(|parity| parity.clock == clock) {
-                bits += PARITY_BITS + entropy(frames - right(seen, parity), frames);
+                bits += PARITY_BITS + binary_entropy(frames - right(seen, parity), frames);
                 continue;
             }
             bits += bit.cost(frames);

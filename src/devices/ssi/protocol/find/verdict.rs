@@ -119,11 +119,11 @@ pub(super) fn is_varied(read: &Read) -> bool {
     other * 50 >= all
 }
 
-pub(super) fn classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> {
+pub(super) fn merge_classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> {
     let mut last = 1.0_f64;
     let mut classes = Vec::new();
     for group in groups.into_iter().take(CLASSES) {
-        let evidence = evidence(words, &group, last);
+        let evidence = evidence_for(words, &group, last);
         last = evidence.score;
         let open = open(words, &group);
         let members = group.members.into_iter().take(MEMBERS);
@@ -133,7 +133,7 @@ pub(super) fn classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> {
     classes
 }
 
-fn evidence(words: &FrameSet, group: &Group, most: f64) -> Evidence {
+fn evidence_for(words: &FrameSet, group: &Group, most: f64) -> Evidence {
     let Group { read, members, .. } = group;
     let frames = words.words().len();
     let random = f64::from(read.reading.width()) * frames as f64;

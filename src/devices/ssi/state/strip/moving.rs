@@ -18,7 +18,7 @@ pub fn moved(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout
 }
 
 /// Returns the movable parts of a frame, in clock order.
-pub(super) fn handles(layout: &Layout) -> Vec<Handle> {
+pub(super) fn strip_handles(layout: &Layout) -> Vec<Handle> {
     let descriptor = layout.descriptor();
     let mut handles = vec![Handle::Position];
     match Parts::of(layout) {
@@ -71,7 +71,7 @@ pub(super) enum Single {
 }
 
 /// Returns the error and parity bits that directly follow the position, up to the first zero.
-pub(super) fn chain(layout: &Layout) -> Vec<Single> {
+pub(super) fn bit_chain(layout: &Layout) -> Vec<Single> {
     let descriptor = layout.descriptor();
     let mut next = end(layout) + 1;
     let mut chain = Vec::new();
@@ -165,7 +165,7 @@ fn bits(new: &Descriptor, old: &Layout) -> u8 {
 
 /// Moves the parts that follow the end of the position.
 fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Option<()> {
-    let chain = chain(old);
+    let chain = bit_chain(old);
     if !following || chain.is_empty() {
         return Some(());
     }

@@ -88,13 +88,13 @@ proptest! {
     #[test]
     fn moves_can_be_reversed(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8, following: bool) {
         let strip = Strip::of(&layout);
-        let handle = strip.handles()[which.index(strip.handles().len())];
+        let handle = strip.strip_handles()[which.index(strip.strip_handles().len())];
         let at = strip.clock(handle).unwrap();
         let there = strip.moved(handle, to, following);
         let reached = there.clock(handle).unwrap();
         prop_assert!((at.min(to)..=at.max(to)).contains(&reached), "{handle:?}: {at} to {to}, at {reached}");
         // A bit moved directly after others follows them from now on.
-        prop_assume!(moving::chain(there.layout()).len() == moving::chain(&layout).len() || !following);
+        prop_assume!(moving::bit_chain(there.layout()).len() == moving::bit_chain(&layout).len() || !following);
         // So does the end of an area that the position now fills.
         let fills = |layout: &Layout| moving::end(layout) == layout.descriptor().area;
         prop_assume!(fills(there.layout()) == fills(&layout) || !following);
@@ -106,7 +106,7 @@ proptest! {
     #[test]
     fn limits_are_reached_and_not_passed(layout in layouts(), which in any::<prop::sample::Index>(), to in 0..=70_u8) {
         let strip = Strip::of(&layout);
-        let handle = strip.handles()[which.index(strip.handles().len())];
+        let handle = strip.strip_handles()[which.index(strip.strip_handles().len())];
         let (least, most) = strip.limits(handle, false);
         for end in [least, most] {
             prop_assert_eq!(strip.moved(handle, end, false).clock(handle), Some(end));
@@ -129,7 +129,7 @@ proptest! {
             let words = cell(&strip, clock).words(Language::English);
             prop_assert!(words.starts_with(&format!("Clock {clock}: ")) && !words.contains('{'), "{}", words);
         }
-        for own in strip.handles() {
+        for own in strip.strip_handles() {
             for text in [handle(&strip, *own), value(&strip, *own), hint(*own)] {
                 let words = text.words(Language::German);
                 prop_assert!(words != text.id() && !words.contains('{'), "{}", words);
@@ -144,8 +144,8 @@ fn frames_are_divided_into_fields() {
     let position = [(Kind::Before, 1, 4), (Kind::Turns, 5, 12), (Kind::Steps, 13, 20), (Kind::Behind, 21, 25)];
     assert_eq!(kinds(&tree), position);
     let handles = [Handle::LeadEnd, Handle::Position, Handle::Split, Handle::BetweenEnd, Handle::StepsEnd];
-    assert_eq!(tree.handles()[..5], handles);
-    assert_eq!(tree.handles()[5..], [Handle::FrameEnd]);
+    assert_eq!(tree.strip_handles()[..5], handles);
+    assert_eq!(tree.strip_handles()[5..], [Handle::FrameEnd]);
     assert_eq!(tree.position(), Some((5, 20)));
     // MT is 5 to 12, so that its fourth bit from below is on clock 9.
     assert_eq!(cell(&tree, 9).words(Language::English), "Clock 9: MT3, one of 8 turn bits");
@@ -196,7 +196,7 @@ fn moving_boundaries_yields_the_formats_of_the_manual() {
     let apart = tree.moved(Handle::BetweenEnd, 14, true);
     assert_eq!(kinds(&apart)[1..4], [(Kind::Turns, 5, 12), (Kind::Between, 13, 14), (Kind::Steps, 15, 20)]);
     assert_eq!(apart.moved(Handle::TurnsEnd, 20, true).clock(Handle::TurnsEnd), Some(14));
-    assert!(apart.handles().contains(&Handle::TurnsEnd) && !apart.handles().contains(&Handle::Split));
+    assert!(apart.strip_handles().contains(&Handle::TurnsEnd) && !apart.strip_handles().contains(&Handle::Split));
 }
 
 /// TTK70 with 31 clocks; KH53, whose pattern is bits of the whole frame.
@@ -230,7 +230,7 @@ fn step_positions_move_as_one_field() {
     let settings = Settings { steps: Some(3600), ..Settings::default() };
     let strip = family("ahs36", &settings);
     let inside = [Handle::LeadEnd, Handle::Split, Handle::TurnsEnd, Handle::BetweenEnd, Handle::StepsEnd];
-    assert!(inside.iter().all(|handle| !strip.handles().contains(handle) && strip.clock(*handle).is_none()));
+    assert!(inside.iter().all(|handle| !strip.strip_handles().contains(handle) && strip.clock(*handle).is_none()));
     // 12 bits on clocks 1 to 12, two zeros, the error bit on clock 15.
     assert_eq!(strip.limits(Handle::Position, true), (1, 3));
     assert_eq!(kinds(&strip.moved(Handle::Position, 9, true))[..2], [(Kind::Before, 1, 2), (Kind::Position, 3, 14)]);

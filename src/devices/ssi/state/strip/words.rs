@@ -111,7 +111,7 @@ pub fn value(strip: &Strip, handle: Handle) -> Text {
     }
 }
 
-pub fn reach(strip: &Strip, handle: Handle, following: bool) -> Text {
+pub fn reach_text(strip: &Strip, handle: Handle, following: bool) -> Text {
     let (first, last) = strip.limits(handle, following);
     if first == last {
         TEXTS.text("ssi.strip_stuck")

@@ -21,7 +21,7 @@ const ENDS: f32 = 0.25;
 pub(super) fn grips(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
     let (ui, model) = (view.ui, view.model);
     let mut event = None;
-    for handle in model.strip.handles() {
+    for handle in model.strip.strip_handles() {
         let Some((rect, at)) = place(view.rows, model.strip, *handle).zip(model.strip.clock(*handle)) else { continue };
         let id = id(view.base, *handle);
         let turns = matches!(handle, Handle::Error(_) | Handle::Parity);
@@ -111,7 +111,7 @@ pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
 /// Returns whether a handle's tab is set off as the second one at an edge. The boundary between turns and steps lies on
 /// the edge, and the handle for zeros beside it.
 fn is_second(strip: &Strip, handle: Handle) -> bool {
-    handle == Handle::BetweenEnd && strip.handles().contains(&Handle::Split)
+    handle == Handle::BetweenEnd && strip.strip_handles().contains(&Handle::Split)
 }
 
 /// Returns which side of its edge a boundary's field is on: -1 before, 1 after, 0 for both.
@@ -196,7 +196,7 @@ fn tip(view: &StripContext<'_>, response: Response, handle: Handle) {
         let value = view.theme.words(&strip::value(view.model.strip, handle));
         ui.label(format!("{name}: {value}"));
         ui.label(view.theme.caption(view.theme.words(&strip::hint(handle))));
-        let reach = strip::reach(view.model.strip, handle, view.model.following);
+        let reach = strip::reach_text(view.model.strip, handle, view.model.following);
         ui.label(view.theme.caption(view.theme.words(&reach)));
     });
 }
