@@ -42,6 +42,9 @@ pub struct SynchronisedPosition {
 pub struct AmbiguousPeriod;
 
 impl Synchroniser {
+    /// Greatest difference of the positions in steps of 1/32 period that is not a fault (U).
+    pub const MOST_STEPS: f64 = 14.0;
+
     pub fn new(periods: u64) -> Self {
         Synchroniser { periods: periods.max(1), offset_steps: 0.0, half_step: false }
     }
@@ -68,7 +71,7 @@ impl Synchroniser {
         let period = ((u128::from(absolute / STEPS) + u128::from(forward)) % u128::from(range)) as u64;
         let off = residual.abs() * STEPS as f64;
         let verdict = match off {
-            off if off > 14.0 => Verdict::Fault,
+            off if off > Self::MOST_STEPS => Verdict::Fault,
             off if off > 8.0 => Verdict::Warn,
             _ => Verdict::Ok,
         };

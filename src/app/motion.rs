@@ -38,6 +38,12 @@ impl Studio {
         self.motions().any(MotionControl::is_in_control)
     }
 
+    /// Returns whether STOP has an effect on drives: this window controls some, or a motion requested here has not
+    /// ended. It cannot stop the motion of another controller.
+    pub fn can_stop_motion(&self) -> bool {
+        self.is_in_control() || self.is_turned_by_hand()
+    }
+
     pub(super) fn stop_motion(&mut self) {
         self.motions_mut().for_each(MotionControl::stop);
     }

@@ -10,6 +10,8 @@ use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand};
 use crate::store::{Entry, Outcome};
 
+const COMPARE: &str = icons::ARROWS_OUT_LINE_HORIZONTAL;
+
 pub fn page_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     profile_ui(ui, theme, device, actions);
     if *device.phase() == Phase::Offline {
@@ -29,7 +31,7 @@ fn profile_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
     let savable = device.is_savable();
     card(ui, theme, "profile_card.title", |ui| {
         paragraph(ui, theme.label(theme.say("profile_card.words")));
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             if enabled_button(ui, savable, icons::FLOPPY_DISK, &theme.say("profile_card.save")).clicked() {
                 actions.push(Action::Save(device.id()));
             }
@@ -38,6 +40,10 @@ fn profile_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
             }
             if button(ui, icons::FOLDER_OPEN, &theme.say("profile_card.open")).clicked() {
                 actions.push(Action::AskOpen);
+            }
+            let comparable = device.is_comparable();
+            if enabled_button(ui, comparable, COMPARE, &theme.say("shell.compare")).clicked() {
+                actions.push(device.command(DeviceCommand::AskCompare));
             }
         });
     });
@@ -67,6 +73,10 @@ fn backups_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<
                     );
                     if restore.clicked() {
                         actions.push(device.command(DeviceCommand::Restore(backup.path.clone())));
+                    }
+                    let compare = theme.say("backups_card.compare");
+                    if enabled_button(ui, device.is_comparable(), COMPARE, &compare).clicked() {
+                        actions.push(device.command(DeviceCommand::Compare(backup.path.clone())));
                     }
                     if button(ui, icons::FILE_TEXT, &theme.say("backups_card.look")).clicked() {
                         actions.push(Action::Open(backup.path.clone()));

@@ -47,7 +47,7 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
 fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     // In a narrow window only icons are drawn, with their texts as tooltips. A STOP of twice its width needs the space of
     // some.
-    let narrow = ui.ctx().content_rect().width() < if studio.moves() { 1240.0 } else { 1100.0 };
+    let narrow = ui.ctx().content_rect().width() < if shows_wide_stop(studio) { 1240.0 } else { 1100.0 };
     let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
         let word = theme.say(id);
         if narrow { icon_button(ui, enabled, icon, &word) } else { enabled_button(ui, enabled, icon, &word) }
@@ -217,9 +217,8 @@ fn link_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 /// Draws the STOP button, which ends every running job and every motion in all sessions. The button doubles in width
 /// while a drive moves; while this window moves a drive, it acts on press rather than release and ends only motion.
 fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    // Motion by another master cannot be stopped from here: that is no reason to let a job continue.
-    let (moves, by_hand) = (studio.moves(), studio.is_turned_by_hand());
-    let active = moves || studio.can_stop() || studio.is_in_control();
+    let (moves, by_hand) = (shows_wide_stop(studio), studio.is_turned_by_hand());
+    let active = studio.can_stop_motion() || studio.can_stop();
     // Live values alone are nothing to be alarmed about.
     let is_alarming = moves || studio.is_working() || studio.is_in_control();
     let (word, hint) = if studio.has_drives() {
@@ -248,9 +247,14 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     }
 }
 
+/// Returns whether a drive moves that can be stopped from here.
+fn shows_wide_stop(studio: &Studio) -> bool {
+    studio.moves() && studio.can_stop_motion()
+}
+
 /// Draws the STOP button in its usual position while a drive moves, on top of anything that covers the window.
 pub(super) fn stop_overlay_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    if !studio.moves() || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
+    if !shows_wide_stop(studio) || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
         return;
     }
     let Some(place) = ctx.data(|data| data.get_temp::<egui::Pos2>(stop_place())) else { return };

@@ -250,6 +250,9 @@ fn method_2_sets_a_position_in_phase_and_discards_the_readings() {
     assert_eq!((setting.value, setting.exact, setting.verdict), (119, false, Verdict::Ok));
     assert!((setting.remaining_deg - 42.178_766).abs() < 1e-5, "{setting:?}");
     desk.assist(Assistant::Set);
+    assert_eq!((desk.why_not(), desk.encoder().session.review.is_none()), (Some("commutation.needs_second"), true));
+    desk.edit(|form| form.without_second = true);
+    desk.assist(Assistant::Set);
     desk.until_planned();
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
     assert_eq!(prepared.wanted_position, Some(119), "the nearest that keeps the encoder's own five bits");
@@ -374,6 +377,7 @@ fn an_offset_is_saved_in_a_profile_as_a_mounting_value() {
     desk.act(Action::Open(path.clone()));
     desk.until("it is open", |studio| studio.hiperface().unwrap().session.phase == Phase::Offline);
     desk.prepare();
+    desk.edit(|form| form.without_second = true);
     desk.type_in(Slot::OneSide, "339.02");
     desk.assist(Assistant::Store);
     assert_eq!(desk.why_not(), Some("commutation.no_room"), "the motor's data stay");

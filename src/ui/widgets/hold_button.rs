@@ -6,7 +6,8 @@
 //! * **Pointer**: the first button, or a touch; leaving the button ends the hold, and returning does not start it
 //!   again.
 //! * **Accessible**: a button with its label; a click by a screen reader has no duration and does nothing.
-//! * **Painting**: the label with its effect below; filled with the accent while held.
+//! * **Painting**: the label with its effect below; filled with the accent while held, unless what it started has ended
+//!   by itself.
 
 use egui::accesskit::Role;
 use egui::{
@@ -25,6 +26,8 @@ pub struct HoldButton<'a> {
     pub caption: &'a str,
     pub label: &'a str,
     pub enabled: bool,
+    /// Whether what the hold started has ended by itself; the button then looks released.
+    pub has_ended: bool,
 }
 
 /// Context of the hold buttons, which the window sets before they are drawn.
@@ -134,8 +137,14 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
         }
     });
     let hint = theme.say("hold.release_first");
-    let caption = if state.waits_for_release() { &hint } else { button.caption };
-    paint(ui, theme, &HoldButton { caption, enabled, ..*button }, &response, state.is_held());
+    let ended = theme.say("hold.ended");
+    let is_held = state.is_held() && !button.has_ended;
+    let caption = match state.waits_for_release() {
+        true => &hint,
+        false if state.is_held() && button.has_ended => &ended,
+        false => button.caption,
+    };
+    paint(ui, theme, &HoldButton { caption, enabled, ..*button }, &response, is_held);
     event
 }
 

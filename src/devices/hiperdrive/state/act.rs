@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::action::{HiperdriveAction, Motor};
 use super::staged::Edit;
 use super::unit::Unit;
-use super::words;
+use super::{explain, words};
 use crate::app::services::Services;
 use crate::app::session::{Saved, WithMemory};
 use crate::app::{PendingEdits, Severity, Text};
@@ -118,6 +118,9 @@ impl Unit {
         if let Err(why) = self.check_motion_allowed(drive, request) {
             // The present act continues: nothing else has started.
             return self.report_drive_message(drive, Severity::Warning, vec![why], services);
+        }
+        for ended in explain::MOTION_ENDS {
+            services.log.settle(ended, Some(&self.session.name()));
         }
         match request {
             MotionRequest::Jog { .. } => self.moves.press(drive, request),

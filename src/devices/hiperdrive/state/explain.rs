@@ -15,7 +15,7 @@ mod write;
 pub use check::{check, source, switch};
 pub use entry::entry;
 pub use error::{damage, device, out_of_range, range, wrong_length};
-pub use motion::{LOST, ended, goal, lock, lost, parameter_words, phase, refusal, weight};
+pub use motion::{LOST, MOTION_ENDS, ended, goal, lock, lost, parameter_words, phase, refusal, weight};
 pub use names::{ErrorExplanation, control_bit, error, parameter, state, status_bit, variant};
 pub use write::{change, item, op, other_type, plan, service, warning, written};
 

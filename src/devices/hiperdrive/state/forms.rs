@@ -38,6 +38,14 @@ pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     }
 }
 
+/// Checks that a distance or a position was entered at all.
+///
+/// # Errors
+/// Says that it must be entered.
+pub fn ensure_entered(text: &str) -> Result<(), Text> {
+    if text.trim().is_empty() { Err(TEXTS.text("hd_entry.empty")) } else { Ok(()) }
+}
+
 /// Parses a position without checking the limits, as needed for entering limits and for setting the position.
 ///
 /// # Errors

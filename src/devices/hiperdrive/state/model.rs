@@ -7,7 +7,7 @@ use crate::app::action::Opened;
 use crate::app::live_session::LiveSession;
 use crate::app::recorder::Recorder;
 use crate::app::services::{JobEnd, Services};
-use crate::app::session::SessionEvents;
+use crate::app::session::{Phase, SessionEvents};
 use crate::app::{ActContext, DeviceMemory, DeviceModel, DriveMemory, EditStep, MotionControl, Recording, Tab, Text};
 use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob};
 use crate::devices::hiperdrive::protocol::DriveNumber;
@@ -78,14 +78,14 @@ impl DeviceModel for Unit {
     }
 
     fn is_active(&self) -> bool {
-        self.session.is_active() || self.is_moving()
+        self.session.phase == Phase::Opening || self.session.is_busy() || self.is_turned_by_hand()
     }
 
     fn stop(&mut self, services: &mut Services) {
         self.moves.stop();
-        let pace = self.session.line.as_ref().and_then(LiveSession::polling).filter(|_| self.moves.is_open());
+        let pace = self.session.line.as_ref().and_then(LiveSession::polling);
         self.session.stop(services);
-        // Under control the drives are polled continuously.
+        // STOP applies to motion and jobs; the drives remain visible.
         if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {
             line.poll(Some(pace));
         }

@@ -179,6 +179,11 @@ impl Moves {
         }
     }
 
+    /// Returns whether the jog of the held button has ended by itself, so that the button has no effect until its release.
+    pub fn has_held_jog_ended(&self) -> bool {
+        self.act.is_some_and(|act| act.kind == Kind::Held && self.has_ended(act.number, act.drive))
+    }
+
     pub(super) fn hold(&self) {
         if let (Some(motion), Some(act)) = (&self.motion, self.act)
             && act.kind == Kind::Held

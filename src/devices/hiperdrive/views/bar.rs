@@ -17,7 +17,7 @@ const STOP: egui::Vec2 = vec2(112.0, 44.0);
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     ui.horizontal_top(|ui| {
-        stop_ui(ui, theme, (unit.moves.is_open(), studio.is_turned_by_hand()), actions);
+        stop_ui(ui, theme, studio, actions);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = theme.space.inside;
             let is_hub = unit.drives().len() > 1;
@@ -58,19 +58,22 @@ fn control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     two_lines(ui, theme, words, ink.into());
 }
 
-fn stop_ui(ui: &mut Ui, theme: &Theme, (open, moves): (bool, bool), actions: &mut Vec<Action>) {
-    let palette = theme.palette;
+/// Draws the STOP button, which can be pressed only if it has an effect.
+fn stop_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
+    let (palette, active) = (theme.palette, studio.can_stop_motion());
     let word = theme.say("hd_bar.stop");
-    let (ink, fill) = if open { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
+    let (ink, fill) = if active { (palette.on_bad, palette.bad) } else { (palette.muted, palette.raised) };
     let text = RichText::new(format!("{}  {word}", icons::STOP)).font(theme.strong(theme.sizes.section)).color(ink);
-    let edge = if open { Stroke::NONE } else { Stroke::new(1.0, palette.bad) };
-    let button = egui::Button::new(text).fill(fill).stroke(edge);
+    let button = egui::Button::new(text).fill(fill).stroke(Stroke::NONE);
     // Pressing down counts: a stop does not wait for the release.
-    let response = ui.add_sized(STOP, button).on_hover_text(theme.say("hd_bar.stop_hint"));
+    let response = ui.add_enabled_ui(active, |ui| ui.add_sized(STOP, button)).inner;
+    let response = response
+        .on_hover_text(theme.say("hd_bar.stop_hint"))
+        .on_disabled_hover_text(say(theme, "hd_bar.stop_without_control"));
     let pressed = goes_down(ui, &response);
-    if name(response, true, &word).clicked() || pressed {
+    if name(response, active, &word).clicked() || pressed {
         // A second press shortly after the first has the same meaning.
-        means_motion(ui.ctx(), moves, pressed_at(ui, pressed));
+        means_motion(ui.ctx(), studio.is_turned_by_hand(), pressed_at(ui, pressed));
         actions.push(Action::StopMotion);
     }
 }

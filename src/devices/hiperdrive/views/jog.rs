@@ -2,7 +2,7 @@
 
 use egui::{FontId, RichText, Ui, Vec2, vec2};
 
-use super::motion::{MotionUiState, effort_ui, length_ui};
+use super::motion::{MotionUiState, effort_ui, length_ui, move_effort_text};
 use super::travel::travel_ui;
 use crate::app::{Action, HoldEvent, SessionId, Text};
 use crate::devices::hiperdrive::procedures::dead_man::Outside;
@@ -44,6 +44,7 @@ pub(super) fn step_card_ui(
 ) {
     folding_card(ui, theme, TEXTS.text("hd_step.title"), |ui| {
         length_ui(ui, theme, unit, "hd_step.by", &mut view.step, actions);
+        let allowed = &allowed.clone().and_then(|()| forms::ensure_entered(&view.step));
         ui.horizontal_wrapped(|ui| {
             for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
                 if allowed_button(ui, theme, allowed, "", &say(theme, id)).clicked() {
@@ -59,7 +60,7 @@ pub(super) fn step_card_ui(
             }
         });
         problem_below(ui, theme, view.step_problem.as_ref());
-        paragraph(ui, theme.caption(say(theme, "hd_step.words")));
+        paragraph(ui, theme.caption(move_effort_text(theme, unit, "hd_step.words")));
     });
 }
 
@@ -106,7 +107,8 @@ pub(super) fn pads_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, enabled: bool, ac
                 },
             );
             let (enabled, label) = (enabled && !blocked, say(theme, label));
-            let button = HoldButton { word, caption: &caption, label: &label, enabled };
+            let has_ended = unit.moves.has_held_jog_ended();
+            let button = HoldButton { word, caption: &caption, label: &label, enabled, has_ended };
             let press = Motor::JogPress { direction, repeated: false };
             pad_ui(ui, theme, (unit.session.id, unit.drive()), press, (&button, vec2(width, PAD)), actions);
         }

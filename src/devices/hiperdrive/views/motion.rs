@@ -204,8 +204,9 @@ fn to_position_ui(
     );
     let entered = effort.clone();
     let allowed = effort.and(unit.may_move(drive));
+    let can_go = allowed.clone().and_then(|()| forms::ensure_entered(&view.target));
     ui.horizontal_wrapped(|ui| {
-        if allowed_button(ui, theme, &allowed, icons::PLAY, &say(theme, "hd_move.go")).clicked() {
+        if allowed_button(ui, theme, &can_go, icons::PLAY, &say(theme, "hd_move.go")).clicked() {
             view.target_problem = forms::target(unit, &view.target, unit.measure)
                 .map(|target| motor(actions, id, Motor::Move { target }))
                 .err();
@@ -246,7 +247,7 @@ fn speed_control_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<()
             }
         }
     });
-    paragraph(ui, theme.caption(say(theme, "hd_run.words")));
+    paragraph(ui, theme.caption(move_effort_text(theme, unit, "hd_run.words")));
     let endless = unit.could_run_endlessly(unit.drive());
     // It can always be switched off.
     ui.add_enabled_ui(endless.is_ok() || expert, |ui| {
@@ -380,6 +381,12 @@ fn note_ui(ui: &mut Ui, theme: &Theme, typed: &Result<(), Text>, sent: Option<Pe
         }
         (Ok(()), None, None) => {}
     }
+}
+
+/// Returns a text with the speed and torque of moves, steps and runs.
+pub(super) fn move_effort_text(theme: &Theme, unit: &Unit, id: &'static str) -> String {
+    let Effort { speed, torque } = unit.moves.move_effort(unit.drive());
+    theme.words(&TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get()))
 }
 
 pub(super) fn length_ui(

@@ -23,6 +23,7 @@ const READ: f32 = 176.0;
 const POSITION: f32 = 80.0;
 /// Width from which both limits are in one row.
 const BOTH_LIMITS: f32 = 420.0;
+const MESSAGE_LINES: f32 = 3.0;
 /// Minimum width for a layout with two columns.
 const COLUMNS: f32 = 700.0;
 
@@ -49,7 +50,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
             theme.gap(ui);
             second_ui(ui, theme, encoder, form, actions);
             theme.gap(ui);
-            result::offset_ui(ui, theme, encoder);
+            result::offset_ui(ui, theme, encoder, form);
             theme.gap(ui);
             result::field_ui(ui, theme, encoder, form, actions);
             theme.gap(ui);
@@ -165,23 +166,27 @@ fn rest_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actio
         let [one, other, _] = &mut form.typed;
         slot(ui, theme, encoder, Slot::OneSide, one, actions);
         slot(ui, theme, encoder, Slot::OtherSide, other, actions);
-        match commutation.offset(encoder.geometry()) {
-            Ok(offset) => {
-                if let Some(apart) = offset.apart_deg {
-                    let text = TEXTS.text("commutation.apart_value").with_number("apart", apart, 2);
-                    row(ui, theme, &say(theme, "commutation.apart"), theme.mono(theme.words(&text)));
-                }
-                row(ui, theme, &say(theme, "commutation.mean"), theme.mono(theme.number(offset.fine_periods, 5)));
-                if offset.apart_deg.is_none() {
-                    verdict_ui(ui, theme, Verdict::Warn, &TEXTS.text("commutation.only_one_side"));
-                }
-            }
-            Err(why) if any => {
-                paragraph(ui, RichText::new(theme.words(&why)).color(theme.palette.warn));
-            }
-            Err(_) => {}
-        }
-        problem_ui(ui, theme, commutation.problem.as_ref());
+        // Rows and message always take the same space, so that no button moves when a reading comes.
+        let offset = commutation.offset(encoder.geometry());
+        let values = offset.as_ref().ok();
+        let apart = values.and_then(|offset| offset.apart_deg);
+        let apart = apart.map(|apart| TEXTS.text("commutation.apart_value").with_number("apart", apart, 2));
+        let mean = values.map(|offset| theme.number(offset.fine_periods, 5));
+        let mono = |value: Option<String>| theme.mono(value.unwrap_or_else(|| "–".to_owned()));
+        row(ui, theme, &say(theme, "commutation.apart"), mono(apart.map(|text| theme.words(&text))));
+        row(ui, theme, &say(theme, "commutation.mean"), mono(mean));
+        let warning = match &offset {
+            Ok(offset) if offset.apart_deg.is_none() => Some(TEXTS.text("commutation.only_one_side")),
+            Ok(_) if commutation.sides_are_equal() => Some(TEXTS.text("commutation.sides_equal")),
+            Ok(_) => None,
+            Err(why) => any.then(|| why.clone()),
+        };
+        let message = match (&commutation.problem, warning) {
+            (Some(problem), _) => RichText::new(theme.words(problem)).color(theme.palette.bad),
+            (None, Some(warning)) => RichText::new(theme.words(&warning)).color(theme.palette.warn),
+            (None, None) => RichText::new(""),
+        };
+        reserved_ui(ui, theme, message);
     });
     if clear {
         actions.push(ask(encoder, Assistant::Clear));
@@ -199,6 +204,15 @@ fn second_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, act
             Some(Err(why)) => paragraph(ui, theme.label(theme.words(&why))),
             None => {}
         }
+    });
+}
+
+/// Draws a message in a space that is the same without one.
+pub(super) fn reserved_ui(ui: &mut Ui, theme: &Theme, message: RichText) {
+    let room = egui::vec2(ui.available_width(), MESSAGE_LINES * theme.sizes.body * 1.4);
+    ui.allocate_ui(room, |ui| {
+        ui.set_min_height(room.y);
+        paragraph(ui, message);
     });
 }
 
@@ -235,7 +249,9 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
         }
         ui.label(shown);
         if let Some(reading) = reading {
-            ui.label(theme.caption(theme.words(&kind_words(reading))));
+            // On the same line in any case: the buttons below stay in place.
+            let words = theme.words(&kind_words(reading));
+            ui.add(egui::Label::new(theme.caption(&words)).truncate()).on_hover_text(words);
         }
     });
 }

@@ -7,10 +7,10 @@ mod scale;
 mod table;
 mod window;
 
-use egui::Ui;
+use egui::{RichText, Ui};
 
 use crate::app::Action;
-use crate::devices::interbus::protocol::ProgramNumber;
+use crate::devices::interbus::protocol::{NOMINAL_STORES, ProgramNumber};
 use crate::devices::interbus::state::cams::Chart;
 use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS};
 use crate::devices::interbus::views::say;
@@ -74,6 +74,8 @@ fn unread_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumb
             return;
         }
         empty(ui, theme, &say(theme, "ib_cams.unread"), None);
+        let cost = TEXTS.text("ib_cams.read_cost").with("cycles", NOMINAL_STORES);
+        paragraph(ui, RichText::new(theme.words(&cost)).color(theme.palette.warn));
         let ready = encoder.session.is_ready() && encoder.is_stopped();
         ui.vertical_centered(|ui| {
             if enabled_button(ui, ready, icons::ARROW_CLOCKWISE, &say(theme, "ib_cams.read_one")).clicked() {

@@ -24,7 +24,7 @@ fn jog() -> Harness<'static, Jog> {
             return;
         }
         surround_hold_buttons(ui.ctx(), jog.around);
-        let button = HoldButton { word: "+", caption: "hold", label: "Jog up", enabled: !jog.locked };
+        let button = HoldButton { word: "+", caption: "hold", label: "Jog up", enabled: !jog.locked, has_ended: false };
         jog.events.extend(hold_button(ui, &theme(), &button, Vec2::new(120.0, 64.0)));
     })
 }

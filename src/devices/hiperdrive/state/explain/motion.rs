@@ -73,6 +73,20 @@ pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
     }
 }
 
+/// IDs of the texts with which a motion ends badly while the drive can be moved again. These notices end with the next
+/// motion.
+pub const MOTION_ENDS: [&str; 9] = [
+    "hd_end.range_end",
+    "hd_end.stale",
+    "hd_end.deaf",
+    "hd_end.no_answer",
+    "hd_end.not_started",
+    "hd_end.left",
+    "hd_end.short",
+    "hd_end.beyond",
+    "hd_end.wrong_way",
+];
+
 pub const fn weight(ended: Ended) -> Severity {
     match ended {
         Ended::Done | Ended::Arrived | Ended::Stopped | Ended::Replaced => Severity::Note,

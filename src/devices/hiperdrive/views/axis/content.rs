@@ -138,7 +138,8 @@ fn pads_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
             [(Direction::Counterclockwise, "−", "hd_axis.jog_down"), (Direction::Clockwise, "+", "hd_axis.jog_up")]
         {
             let (label, enabled) = (say(theme, label), may_jog(shown, direction).is_ok());
-            let button = HoldButton { word, caption: &caption, label: &label, enabled };
+            let has_ended = shown.unit.moves.has_held_jog_ended();
+            let button = HoldButton { word, caption: &caption, label: &label, enabled, has_ended };
             let press = Motor::SlowJogPress { direction, repeated: false };
             let about = (shown.unit.session.id, shown.axis.drive());
             pad_ui(ui, theme, about, press, (&button, vec2(width, PAD)), actions);

@@ -2,9 +2,9 @@
 
 use super::outcome::check_can_read;
 use super::{CommutationAction, Slot};
-use crate::app::Severity;
 use crate::app::services::Services;
 use crate::app::session::{SessionEvents, WithMemory};
+use crate::app::{Severity, Text};
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob};
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 
@@ -22,7 +22,7 @@ impl Encoder {
             CommutationAction::Read(slot) => self.read_into_slot(slot, services),
             CommutationAction::Use(slot) => self.commutation.apply_typed_value(slot),
             CommutationAction::Clear => self.commutation.forget_readings(),
-            CommutationAction::Store => match self.commutation.bytes(self.geometry(), &self.staged) {
+            CommutationAction::Store => match self.verified(|own| own.commutation.bytes(own.geometry(), &own.staged)) {
                 Ok((field, address, bytes)) => {
                     self.put(field, address, &bytes, services);
                     // Storing it there again keeps the place, whatever is empty then.
@@ -37,7 +37,7 @@ impl Encoder {
                 }
                 Err(why) => self.commutation.problem = Some(why),
             },
-            CommutationAction::Set => match self.commutation.setting(self.geometry()) {
+            CommutationAction::Set => match self.verified(|own| own.commutation.setting(own.geometry())) {
                 Ok(setting) => {
                     let (wanted, exact) = (setting.value, setting.exact);
                     let change = Change::SetPosition { wanted, exact, synchronise: false, kit: false };
@@ -46,6 +46,12 @@ impl Encoder {
                 Err(why) => self.commutation.problem = Some(why),
             },
         }
+    }
+
+    /// Returns the result if the offset may be used.
+    fn verified<T>(&self, result: impl FnOnce(&Self) -> Result<T, Text>) -> Result<T, Text> {
+        let result = result(self)?;
+        self.commutation.ensure_verified(self.geometry()).map(|()| result)
     }
 
     fn read_into_slot(&mut self, slot: Slot, services: &mut Services) {

@@ -36,6 +36,8 @@ pub struct Form {
     pub limit_deg: String,
     /// Lead of the second vector in electrical degrees, as typed.
     pub second_deg: String,
+    /// Whether the user has decided to use the offset without verifying it with a second vector.
+    pub without_second: bool,
     /// Fine positions in periods, as typed, in the order of [`Slot::ALL`].
     pub typed: [String; 3],
     pub storage: Storage,
@@ -121,6 +123,7 @@ impl Default for Form {
             phase: String::new(),
             limit_deg: "5".to_owned(),
             second_deg: "90".to_owned(),
+            without_second: false,
             typed: Default::default(),
             storage: Storage::Record,
             field: None,

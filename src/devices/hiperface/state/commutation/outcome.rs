@@ -1,7 +1,7 @@
 //! Result of the readings: mean of both sides, offset, verification with a second vector, the bytes for method 1 and
 //! the position for method 2.
 
-use super::{Commutation, Kind, OffsetInputs, OffsetLocation, Slot, Source, Storage};
+use super::{Commutation, Kind, OffsetInputs, OffsetLocation, RestReading, Slot, Source, Storage};
 use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::{ElectricalAngle, preset_position};
 use crate::analysis::quality::Verdict;
@@ -129,16 +129,37 @@ impl Commutation {
         matches!(self.second(geometry), Some(Ok((Verdict::Ok, _))))
     }
 
+    /// Returns whether both sides gave the same signals and the same position, as if the shaft had not been turned.
+    pub fn sides_are_equal(&self) -> bool {
+        let is_fine = |reading: &&RestReading| matches!(reading.kind, Kind::Fine { .. });
+        let [one, other] = [Slot::OneSide, Slot::OtherSide].map(|slot| self.reading(slot).filter(is_fine));
+        one.is_some() && one == other
+    }
+
+    /// Checks whether the offset may be used, which requires a matching second vector, or the decision of the user to
+    /// do without it.
+    ///
+    /// # Errors
+    /// States what is missing.
+    pub fn ensure_verified(&self, geometry: Option<Geometry>) -> Result<(), Text> {
+        let is_usable = self.form.without_second || self.is_confirmed(geometry);
+        if is_usable { Ok(()) } else { Err(TEXTS.text("commutation.needs_second")) }
+    }
+
+    fn ensure_not_refuted(&self, geometry: Option<Geometry>) -> Result<(), Text> {
+        match self.second(geometry) {
+            Some(Ok((Verdict::Fault, _))) => Err(TEXTS.text("commutation.second_refuses")),
+            _ => Ok(()),
+        }
+    }
+
     /// Returns the data field, the index of the first byte, and the bytes to store for method 1.
     ///
     /// # Errors
     /// States what is missing.
     pub fn bytes(&self, geometry: Option<Geometry>, staged: &Staged) -> Result<(u8, usize, Vec<u8>), Text> {
         let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
-        // A failed check prevents storing, a missing one does not.
-        if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
-            return Err(TEXTS.text("commutation.second_refuses"));
-        }
+        self.ensure_not_refuted(geometry)?;
         let OffsetLocation { field, address } = self.place(staged)?;
         let bytes = match self.form.storage {
             Storage::Number => offset.angle.bits().to_be_bytes().to_vec(),
@@ -163,9 +184,7 @@ impl Commutation {
     /// States what is missing, or why the method cannot be used.
     pub fn setting(&self, geometry: Option<Geometry>) -> Result<Setting, Text> {
         let (inputs, _) = (self.form.inputs(geometry)?, self.offset(geometry)?);
-        if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
-            return Err(TEXTS.text("commutation.second_refuses"));
-        }
+        self.ensure_not_refuted(geometry)?;
         let step = inputs.motor.electrical_step_deg();
         if step >= UNUSABLE_DEG {
             return Err(TEXTS.text("commutation.unusable").with_number("step", step, 1));

@@ -1,6 +1,7 @@
 //! Report of a commutation run: preparation, readings and results, one line per item.
 
 use super::{Commutation, Kind, RestReading, Slot, Vector};
+use crate::analysis::synchronise::Synchroniser;
 use crate::app::Text;
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
@@ -55,7 +56,8 @@ impl Commutation {
 pub fn kind_words(reading: &RestReading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {
-            TEXTS.text("commutation.kind_fine").with_number("residual", residual_periods * 32.0, 2)
+            let text = TEXTS.text("commutation.kind_fine").with("limit", Synchroniser::MOST_STEPS);
+            text.with_number("residual", residual_periods * 32.0, 2)
         }
         Kind::Absolute => TEXTS.text("commutation.kind_absolute"),
         Kind::Typed => TEXTS.text("commutation.kind_typed"),

@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use super::{ask, number_ui};
+use super::{ask, number_ui, reserved_ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, DeviceCommand, PendingEdits};
 use crate::devices::hiperface::state::commutation::{CommutationAction as Assistant, Form, Storage, Stored, stored};
@@ -13,26 +13,34 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
+/// Draws the offset, in a space that is the same without one.
+pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form) {
     card(ui, theme, TEXTS.text("commutation.offset"), |ui| {
-        let offset = match encoder.commutation.offset(encoder.geometry()) {
-            Ok(offset) => offset,
-            Err(why) => {
-                ui.label(theme.value("–").color(theme.palette.muted));
-                return paragraph(ui, theme.label(theme.words(&why)));
-            }
+        let offset = encoder.commutation.offset(encoder.geometry());
+        let values = offset.as_ref().ok();
+        let degrees = |id, degrees, decimals| theme.words(&TEXTS.text(id).with_number("degrees", degrees, decimals));
+        let none = || "–".to_owned();
+        let angle = values.map(|offset| degrees("commutation.offset_value", offset.angle.degrees(), 4));
+        ui.label(theme.value(angle.unwrap_or_else(none)));
+        let resolution = values.and_then(|offset| offset.resolution_deg);
+        let rows = [
+            ("commutation.as_number", values.map(|offset| format!("{:08X}h", offset.angle.bits()))),
+            ("commutation.shaft", values.map(|offset| format!("{}°", theme.number(offset.shaft_deg, 4)))),
+            ("commutation.resolution", resolution.map(|own| degrees("commutation.resolution_value", own, 2))),
+        ];
+        for (id, value) in rows {
+            row(ui, theme, &say(theme, id), theme.mono(value.unwrap_or_else(none)));
+        }
+        let is_confirmed = encoder.commutation.is_confirmed(encoder.geometry());
+        let message = match &offset {
+            Err(why) => theme.label(theme.words(why)),
+            Ok(_) if is_confirmed => RichText::new(say(theme, "commutation.confirmed")).color(theme.palette.good),
+            Ok(_) => RichText::new(say(theme, "commutation.unconfirmed")).color(theme.palette.warn),
         };
-        let degrees = |id, degrees, decimals| TEXTS.text(id).with_number("degrees", degrees, decimals);
-        ui.label(theme.value(theme.words(&degrees("commutation.offset_value", offset.angle.degrees(), 4))));
-        row(ui, theme, &say(theme, "commutation.as_number"), theme.mono(format!("{:08X}h", offset.angle.bits())));
-        row(ui, theme, &say(theme, "commutation.shaft"), theme.mono(format!("{}°", theme.number(offset.shaft_deg, 4))));
-        if let Some(resolution) = offset.resolution_deg {
-            let text = degrees("commutation.resolution_value", resolution, 2);
-            row(ui, theme, &say(theme, "commutation.resolution"), theme.mono(theme.words(&text)));
-        }
-        if !encoder.commutation.is_confirmed(encoder.geometry()) {
-            verdict_ui(ui, theme, Verdict::Warn, &TEXTS.text("commutation.unconfirmed"));
-        }
+        reserved_ui(ui, theme, message);
+        ui.add_enabled_ui(!is_confirmed, |ui| {
+            ui.checkbox(&mut form.without_second, say(theme, "commutation.without_second"));
+        });
     });
 }
 
@@ -76,7 +84,8 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
             verdict_ui(ui, theme, Verdict::Warn, &words);
         }
         ui.horizontal_wrapped(|ui| {
-            let allowed = bytes.as_ref().map(|_| ()).map_err(Clone::clone);
+            let verified = encoder.commutation.ensure_verified(encoder.geometry());
+            let allowed = bytes.as_ref().map_err(Clone::clone).and(verified);
             if allowed_button(ui, theme, &allowed, icons::MEMORY, &say(theme, "commutation.store")).clicked() {
                 actions.push(ask(encoder, Assistant::Store));
             }
@@ -141,7 +150,7 @@ pub(super) fn position_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &
             }
             Err(_) => {}
         }
-        let allowed = setting.map(|_| ());
+        let allowed = setting.and(encoder.commutation.ensure_verified(encoder.geometry()));
         let ready = if encoder.session.is_ready() { allowed } else { Err(TEXTS.text("commutation.not_ready")) };
         if allowed_button(ui, theme, &ready, icons::CROSSHAIR, &say(theme, "commutation.set")).clicked() {
             actions.push(ask(encoder, Assistant::Set));

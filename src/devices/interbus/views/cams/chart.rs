@@ -3,6 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::app::Action;
+use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 use crate::devices::interbus::state::cams::{Chart, VisibleRange as Stretch};
 use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, Preview, TEXTS};
@@ -54,12 +55,14 @@ pub(super) fn card_ui(
     let edit = |edit: Edit| Action::device(encoder.session.id, Interbus::Edit(Box::new(edit)));
     card_with(ui, theme, TEXTS.text("ib_cams.title"), aside, |ui| {
         let label = theme.words(&TEXTS.text("ib_startup.program").with("program", chart.program.get()));
-        let sends = encoder.record.last().filter(|own| own.mode == Some(StartupMode::Cams(chart.program)));
+        // An old reading would look like the present one.
+        let reading = encoder.record.last().filter(|_| encoder.session.is_polling());
+        let sends = reading.filter(|own| own.mode == Some(StartupMode::Cams(chart.program)));
         let model = CamChart {
             label: &label,
             chart,
             scale: &encoder.scale,
-            position: encoder.position(),
+            position: reading.and_then(WordReading::position),
             own: sends.and_then(|own| own.cams()).map(|cams| cams.outputs),
             selected,
             movable: !encoder.session.is_writing(),
@@ -76,6 +79,8 @@ pub(super) fn card_ui(
         });
         if sends.is_some() {
             agreement_ui(ui, theme, &encoder.preview);
+        } else if reading.is_none() && encoder.session.line().is_some() {
+            paragraph(ui, theme.caption(say(theme, "ib_cams.not_live")));
         }
         paragraph(ui, theme.caption(say(theme, "ib_cams.chart_words")));
     });

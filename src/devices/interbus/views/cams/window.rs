@@ -29,7 +29,11 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
             }
         });
         let label = say(theme, "ib_window.label");
-        let sends = encoder.record.last().filter(|own| matches!(own.mode, Some(StartupMode::Cams(_))));
+        let sends = encoder
+            .record
+            .last()
+            .filter(|_| encoder.session.is_polling())
+            .filter(|own| matches!(own.mode, Some(StartupMode::Cams(_))));
         let shown = sends.filter(|_| encoder.shift() == Some(own)).map(|own| own.word);
         word_layout(ui, theme, &WordLayout { label: &label, shift: own, word: shown, range: encoder.range() });
         paragraph(ui, theme.caption(say(theme, "ib_window.words")));
