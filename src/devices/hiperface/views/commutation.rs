@@ -7,23 +7,25 @@ use egui::{RichText, Ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, Text};
 use crate::devices::hiperface::state::commutation::{
-    CommutationAction as Assistant, Form, Slot, Source, Vector, check_can_read, kind_words,
+    CommutationAction as Assistant, Form, Offset, Slot, Source, Vector, check_can_read, kind_words,
 };
 use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, entry, folding_card, icon_button, labelled_entry, paragraph, row, split,
+    allowed_button, card, card_with, choice, entry, folding_card, icon_button, labelled_entry, paragraph, split,
     text_entry, verdict_ui,
 };
 use crate::ui::{Theme, icons};
 
 const NUMBER: f32 = 96.0;
 /// Width of the column with the read buttons.
-const READ: f32 = 176.0;
+const READ: f32 = 186.0;
 const POSITION: f32 = 80.0;
+/// Width from which the position is on the line of its buttons.
+const BESIDE: f32 = 430.0;
 /// Width from which both limits are in one row.
 const BOTH_LIMITS: f32 = 420.0;
-const MESSAGE_LINES: f32 = 3.0;
+const MESSAGE_LINES: f32 = 2.0;
 /// Minimum width for a layout with two columns.
 const COLUMNS: f32 = 700.0;
 
@@ -166,25 +168,17 @@ fn rest_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, actio
         let [one, other, _] = &mut form.typed;
         slot(ui, theme, encoder, Slot::OneSide, one, actions);
         slot(ui, theme, encoder, Slot::OtherSide, other, actions);
-        // Rows and message always take the same space, so that no button moves when a reading comes.
-        let offset = commutation.offset(encoder.geometry());
-        let values = offset.as_ref().ok();
-        let apart = values.and_then(|offset| offset.apart_deg);
-        let apart = apart.map(|apart| TEXTS.text("commutation.apart_value").with_number("apart", apart, 2));
-        let mean = values.map(|offset| theme.number(offset.fine_periods, 5));
-        let mono = |value: Option<String>| theme.mono(value.unwrap_or_else(|| "–".to_owned()));
-        row(ui, theme, &say(theme, "commutation.apart"), mono(apart.map(|text| theme.words(&text))));
-        row(ui, theme, &say(theme, "commutation.mean"), mono(mean));
-        let warning = match &offset {
-            Ok(offset) if offset.apart_deg.is_none() => Some(TEXTS.text("commutation.only_one_side")),
-            Ok(_) if commutation.sides_are_equal() => Some(TEXTS.text("commutation.sides_equal")),
-            Ok(_) => None,
-            Err(why) => any.then(|| why.clone()),
-        };
-        let message = match (&commutation.problem, warning) {
+        let warn = |words: Text| RichText::new(theme.words(&words)).color(theme.palette.warn);
+        let message = match (&commutation.problem, commutation.offset(encoder.geometry())) {
             (Some(problem), _) => RichText::new(theme.words(problem)).color(theme.palette.bad),
-            (None, Some(warning)) => RichText::new(theme.words(&warning)).color(theme.palette.warn),
-            (None, None) => RichText::new(""),
+            (None, Err(why)) if any => warn(why),
+            (None, Err(_)) => RichText::new(""),
+            (None, Ok(_)) if commutation.sides_are_equal() => warn(TEXTS.text("commutation.sides_equal")),
+            (None, Ok(Offset { apart_deg: None, .. })) => warn(TEXTS.text("commutation.only_one_side")),
+            (None, Ok(Offset { apart_deg: Some(apart), fine_periods, .. })) => {
+                let text = TEXTS.text("commutation.rest_value").with_number("apart", apart, 2);
+                RichText::new(theme.words(&text.with_number("mean", fine_periods, 5)))
+            }
         };
         reserved_ui(ui, theme, message);
     });
@@ -224,11 +218,7 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
         Slot::OtherSide => ("commutation.read_other", "commutation.use_other"),
         Slot::Second => ("commutation.read_second", "commutation.use_second"),
     };
-    let reading = commutation.reading(slot);
-    let shown = match reading {
-        Some(reading) => theme.mono(theme.number(reading.fine_periods, 5)),
-        None => theme.mono("–").color(theme.palette.muted),
-    };
+    let beside = ui.available_width() >= BESIDE;
     ui.horizontal_wrapped(|ui| {
         let allowed = check_can_read(commutation, encoder.session.is_ready());
         // All of the same width, so that the entries form one column.
@@ -247,11 +237,22 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
         if icon_button(ui, filled, icons::CHECK, &say(theme, take)).clicked() || (enter && filled) {
             actions.push(ask(encoder, Assistant::Use(slot)));
         }
-        ui.label(shown);
-        if let Some(reading) = reading {
-            // On the same line in any case: the buttons below stay in place.
-            let words = theme.words(&kind_words(reading));
-            ui.add(egui::Label::new(theme.caption(&words)).truncate()).on_hover_text(words);
+        if beside {
+            value_ui(ui, theme, encoder, slot);
         }
     });
+    if !beside {
+        ui.horizontal(|ui| value_ui(ui, theme, encoder, slot));
+    }
+}
+
+/// Draws the position of a slot and how it was obtained, on one line with and without it.
+fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot) {
+    let Some(reading) = encoder.commutation.reading(slot) else {
+        ui.label(theme.mono("–").color(theme.palette.muted));
+        return;
+    };
+    ui.label(theme.mono(theme.number(reading.fine_periods, 5)));
+    let words = theme.words(&kind_words(reading));
+    ui.add(egui::Label::new(theme.caption(&words)).truncate()).on_hover_text(words);
 }

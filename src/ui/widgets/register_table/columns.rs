@@ -35,11 +35,11 @@ const BYTES: [Widths; 8] = [
 const NUMBERS: [Widths; 7] = [
     (Column::Marks, 42.0, 34.0),
     (Column::Address, 36.0, 36.0),
-    (Column::Name, 180.0, 152.0),
+    (Column::Name, 172.0, 152.0),
     (Column::Value, 60.0, 60.0),
-    (Column::Meaning, 110.0, 64.0),
-    (Column::Range, 130.0, 88.0),
-    (Column::Default, 96.0, 78.0),
+    (Column::Meaning, 140.0, 64.0),
+    (Column::Range, 146.0, 88.0),
+    (Column::Default, 84.0, 78.0),
 ];
 /// Columns in the order in which they are hidden if space is short. Hidden values move to the tooltip.
 const LEAST: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];

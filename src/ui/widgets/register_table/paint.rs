@@ -119,9 +119,9 @@ pub(super) fn row(
             Column::Default if row.differs => (theme.mono(format!("≠ {}", row.default)), palette.text),
             Column::Default => (theme.mono(&row.default), palette.muted),
         };
-        // A name that is too long is smaller, not cut.
+        // A name or meaning that is too long is smaller, and cut only if it still does not fit.
         let words = match column {
-            Column::Name if is_too_long(ui, theme, range, &words) => words.size(theme.sizes.caption),
+            Column::Name | Column::Meaning if is_too_long(ui, theme, range, &words) => words.size(theme.sizes.caption),
             _ => words,
         };
         let right = column == Column::Decimal;

@@ -19,18 +19,16 @@ pub(super) fn offset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mu
         let offset = encoder.commutation.offset(encoder.geometry());
         let values = offset.as_ref().ok();
         let degrees = |id, degrees, decimals| theme.words(&TEXTS.text(id).with_number("degrees", degrees, decimals));
-        let none = || "–".to_owned();
         let angle = values.map(|offset| degrees("commutation.offset_value", offset.angle.degrees(), 4));
-        ui.label(theme.value(angle.unwrap_or_else(none)));
+        ui.label(theme.value(angle.unwrap_or_else(|| "–".to_owned())));
         let resolution = values.and_then(|offset| offset.resolution_deg);
-        let rows = [
-            ("commutation.as_number", values.map(|offset| format!("{:08X}h", offset.angle.bits()))),
-            ("commutation.shaft", values.map(|offset| format!("{}°", theme.number(offset.shaft_deg, 4)))),
-            ("commutation.resolution", resolution.map(|own| degrees("commutation.resolution_value", own, 2))),
+        let parts = [
+            values.map(|offset| format!("{:08X}h", offset.angle.bits())),
+            values.map(|offset| degrees("commutation.shaft", offset.shaft_deg, 4)),
+            resolution.map(|own| degrees("commutation.resolution", own, 2)),
         ];
-        for (id, value) in rows {
-            row(ui, theme, &say(theme, id), theme.mono(value.unwrap_or_else(none)));
-        }
+        let parts = parts.into_iter().flatten().collect::<Vec<_>>().join("  ·  ");
+        ui.add(egui::Label::new(theme.mono(&parts)).truncate().selectable(true)).on_hover_text(parts);
         let is_confirmed = encoder.commutation.is_confirmed(encoder.geometry());
         let message = match &offset {
             Err(why) => theme.label(theme.words(why)),
