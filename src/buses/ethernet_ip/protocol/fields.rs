@@ -24,7 +24,7 @@ pub enum Structure {
     ForwardOpen,
     #[error("the reply to ForwardOpen")]
     ForwardOpenReply,
-    #[error("the refusal of a connection")]
+    #[error("the rejection of ForwardOpen")]
     Refusal,
     #[error("ForwardClose")]
     ForwardClose,

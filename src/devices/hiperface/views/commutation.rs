@@ -19,7 +19,7 @@ use crate::ui::{Theme, icons};
 
 const NUMBER: f32 = 96.0;
 /// Width of the column with the read buttons.
-const READ: f32 = 186.0;
+const READ: f32 = 160.0;
 const POSITION: f32 = 80.0;
 /// Width from which the position is on the line of its buttons.
 const BESIDE: f32 = 430.0;
