@@ -141,7 +141,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
         let mut screen = Screen::opened_in(tab, link, SIZE);
         screen.until("it is read", |studio| is_read(studio) && !studio.is_working());
         if screen.studio().is_live() {
-            screen.key(egui::Key::Escape);
+            screen.click("live.pause");
             screen.until("it is not polled", |studio| !studio.is_live());
         }
         for focused in [true, false] {
