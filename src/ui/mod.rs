@@ -17,6 +17,7 @@ pub mod icons;
 mod input_order;
 mod keys;
 mod label_column;
+mod live_pace;
 pub(crate) mod motor;
 mod navigation;
 pub mod page;

@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::Instant;
 
+use super::live_pace::processor_time;
 use super::{TabViews, Window, end, install_fonts};
 use crate::app::{Environment, Kinds, Studio, ThemeData, Wake, explain};
 use crate::cli::Window as Start;
@@ -52,7 +53,8 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
         Box::new(move |cc| {
             install_fonts(&cc.egui_ctx);
             let _ = context.set(cc.egui_ctx.clone());
-            Ok(Box::new(StudioApp { window: Window::new(studio, look, tabs), began: Some(began) }))
+            let window = Window::new(studio, look, tabs).with_processor_time(processor_time);
+            Ok(Box::new(StudioApp { window, began: Some(began) }))
         }),
     );
     let result = result.map_err(|error| {

@@ -10,6 +10,7 @@ use super::dialogs::{self, FileView, PaletteUiState};
 use super::docks::Docks;
 use super::input_order::HeldInput;
 use super::keys::Keys;
+use super::live_pace::LivePace;
 use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
@@ -28,6 +29,8 @@ pub struct Window {
     dressed: Option<crate::app::ColorScheme>,
     /// Displayed notice, and the time on the window's clock since which it has been shown.
     notice_since: Option<(jiff::Zoned, f64)>,
+    live_pace: LivePace,
+    processor_time: fn() -> Option<Duration>,
 }
 
 impl Window {
@@ -44,7 +47,15 @@ impl Window {
             look,
             dressed: None,
             notice_since: None,
+            live_pace: LivePace::default(),
+            processor_time: || None,
         }
+    }
+
+    /// Adapts the rate of live frames to the processor time of the program, as returned by `processor_time`.
+    #[must_use]
+    pub(super) fn with_processor_time(self, processor_time: fn() -> Option<Duration>) -> Self {
+        Window { processor_time, ..self }
     }
 
     pub fn studio(&self) -> &Studio {
@@ -349,8 +360,9 @@ impl Window {
             // The refresh of any motion: 250 ms without a frame stop it.
             ctx.request_repaint_after(Duration::from_millis(30));
         } else if self.studio.is_live() {
-            // Fast enough for the eye, and cheap enough for software rendering.
-            ctx.request_repaint_after(Duration::from_millis(50));
+            ctx.request_repaint_after(
+                self.live_pace.next(Duration::from_secs_f64(ctx.input(|input| input.time)), (self.processor_time)()),
+            );
         }
     }
 }
